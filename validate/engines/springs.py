@@ -5,9 +5,9 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.springs import make_spring_network
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.springs import square_net, state_of
-from validate.scene import PYMUNK, Engine
+from validate.methods import EXPLICIT, IMPLICIT_MESH, INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.springs import implicit_net, net_model, pymunk_net_model, square_net, state_of
+from validate.scene import PYMUNK, engine, ours
 
 
 def start_of(net, positive):
@@ -69,16 +69,31 @@ def pymunk_net(net, dt, observe):
     return pymunk_world(space, dt, lambda: observe(np.array([body.position for body in bodies])[:, :d]))
 
 
+def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
+    """Return the runners of a scene of the ReferenceNetwork net(p): our methods, and pymunk.
+
+    motion           the Motion of net(p)
+    limits           (p, dt) → {order: largest relative error}
+    finer_in_full    of pymunk
+    mesh_in_quick    fields of the Runner of the implicit mesh, whose step takes seconds to compile
+    The implicit methods of lesson 1 are left to a full run: they build a dense matrix at every correction.
+    """
+    return (
+        *(ours(m, limit=limits, predicted=motion.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER,
+               compiled_in_quick=m in EXPLICIT) for m in INTEGRATORS),
+        ours(IMPLICIT_MESH, limit=limits, predicted=motion.predict_model(net_model(net, implicit_net)),
+             **mesh_in_quick),
+        engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), "DampedSpring between point masses",
+               finer_in_full=finer_in_full, order=1, limit=limits,
+               predicted=motion.predict_model(net_model(net, pymunk_net_model))),
+    )
+
+
 # the fields that the scenes of a SquareNet share
 NET = {
     "lesson": "springs",
-    "methods": (*INTEGRATORS, IMPLICIT_MESH),
     "start": start_net,
     "observe": observe_net,
-    "engines": (
-        Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1,
-               "DampedSpring between point masses"),
-    ),
     "points": net_points,
     "links": net_links,
     "link_look": "spring",

@@ -6,7 +6,8 @@ finds its rest state.
 """
 
 from cmath import rect
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -44,10 +45,11 @@ def pendulum_period(theta, L, g):
 def tensions(theta, omega, l, m, g, late=0.0):
     """Return the tensions T (n,) [N] in the links of a rope of equal points with the angles θ from straight down.
 
-    The relative acceleration along each link is −l ω²: e_k·(a_k − a_{k−1}) = −l ω_k²:   T_{k−1} e_k·u_{k−1} − 2
-    T_k + T_{k+1} e_k·u_{k+1} = −m l ω_k²;   the first has one point and gravity:  −T_1 + T_2 e_1·u_2 = −m (l
-    ω_1² + g cos θ_1).  The tensions pull along u = e + late ω t, t normal to e; u = e for a real rope. *Source:*
-    Newton's law for every point, with the tensions as unknowns.
+    The relative acceleration along each link is −l ω²,  e_k·(a_k − a_{k−1}) = −l ω_k²:
+        T_{k−1} e_k·u_{k−1} − 2 T_k + T_{k+1} e_k·u_{k+1} = −m l ω_k²
+    The first link has one point, and gravity:  −T_1 + T_2 e_1·u_2 = −m (l ω_1² + g cos θ_1).
+    The tensions pull along u = e + late ω t, t normal to e; u = e for a real rope.
+    *Source:* Newton's law for every point, with the tensions as unknowns.
     """
     n, apart = theta.size, np.diff(theta)
     bands = np.zeros((3, n))
@@ -77,8 +79,9 @@ def rope_slope(l, m, g, late=0.0):
 def rods_slope(n, l, m, g, inertia):
     """Return the same where each point is a body with a moment of inertia [kg m²] that turns with the link above it.
 
-    Σ_j μ_max(k,j) l² (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + μ_k l g sin θ_k = 0,   μ_k: the mass
-    from k on *Source:* Lagrange's equations.
+    Σ_j μ_max(k,j) l² (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + μ_k l g sin θ_k = 0
+    μ_k is the mass from k on.
+    *Source:* Lagrange's equations.
     """
     below = m * (n - np.maximum.outer(np.arange(n), np.arange(n)))
 
@@ -281,8 +284,8 @@ def held(v, x):
     return v + along_links(x, x, -np.sum(links_of(x) * links_of(v), axis=1))
 
 
-def rattle(x, v, h, l, a, corrections):
-    """One step of RATTLE; rope_step takes one correction, RATTLE as many as change anything."""
+def rattle(x, v, h, l, a, corrections=50):
+    """One step of RATTLE, which takes as many corrections as change anything."""
     half = v + 0.5 * h * a
     for _ in range(corrections):
         change = along_links(x, x + h * half, excess(x + h * half, l) / h)
@@ -293,9 +296,12 @@ def rattle(x, v, h, l, a, corrections):
     return new, held(half + 0.5 * h * a, new)
 
 
+rattle_once = partial(rattle, corrections=1)             # rope_step
+
+
 def composed_rope(x, v, h, l, a):
     for share in (GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA):
-        x, v = rattle(x, v, share * h, l, a, 1)
+        x, v = rattle_once(x, v, share * h, l, a)
     return x, v
 
 
@@ -315,12 +321,6 @@ def chipmunk_rope(x, v, h, l, a):
     return x, v + along_links(x, x, length * rate - np.sum(d * links_of(v), axis=1))
 
 
-ROPE_STEPS = {
-    "RATTLE": (2, lambda *now: rattle(*now, 50)), "rope": (2, lambda *now: rattle(*now, 1)),
-    "rope, composed": (4, composed_rope), "pymunk": (1, chipmunk_rope), "pymunk, fewer iterations": (1, chipmunk_rope),
-    "projection": (1, onto_circle), "PBD": (1, onto_circle), "XPBD": (1, onto_circle)}
-
-
 def nudged(rope, nudge):
     """The places of a rope of which each link is turned a little, so that it keeps its length."""
     d = links_of(rope.x)
@@ -329,37 +329,80 @@ def nudged(rope, nudge):
     return np.concatenate((rope.x[:1], rope.x[0] + np.cumsum(turned, axis=0)))
 
 
-def rope_errors(T, rope, seen, truth, floor, labels, unfinished=()):
-    """Return the field `predicted_error` of a scene with one rope.
+def rope_after(step, rope, h, steps):
+    """Return x (N + 1, 2) after so many steps (x, v, h, l, a) → (x, v) from rest."""
+    x, v, a = rope.x, np.zeros_like(rope.x), np.zeros_like(rope.x)
+    a[1:, 1] = -rope.g
+    for _ in range(steps):
+        x, v = step(x, v, h, rope.l, a)
+    return x
 
-    rope(p) → Rope;    seen(x (N + 1, 2)) → what is observed;    floor(p, dt) → round-off;    labels: of ROPE_STEPS;
-    unfinished: those whose sweeps stop before all links are right, known within a factor of two only
-    """
-    @cache
-    def error_law(label, p):
-        one, (order, step) = rope(p), ROPE_STEPS[label]
-        a = np.zeros_like(one.x)
-        a[1:, 1] = -one.g
 
-        def run(steps, nudge):
-            x = nudged(one, nudge)
-            v = np.zeros_like(x)
-            for _ in range(steps):
-                x, v = step(x, v, T / steps, one.l, a)
-            return seen(x)
-        return ErrorLaw(run, np.array(truth(p, T), dtype=float), order, T, {1: 800, 2: 800, 4: 400}[order])
+FINEST = {1: 800, 2: 800, 4: 400}    # steps of the finest run of such a step, by its order
+UNFINISHED = 0.5             # of the error of a rope whose sweeps stop before all links are right [-]
+OTHER_ORDER = 0.02           # of the error of pybullet's rope: sweeps in another order leave another error [-]
 
-    def predicted_error(label, p, dt):
-        """The error, with its sign, of the same step with a dense matrix: at the same step where that is coarse, else
-        by its expansion in powers of dt.  pymunk moves the points first and then corrects each link within one step;
-        in a rope its sweeps do not finish, and the band is half of the error.
+
+class RopeMotion(NamedTuple):
+    """What a scene tells of its rope, as the Motion of validate/reference/schemes.py does of points."""
+    T: float                 # the output time [s]
+    rope: Callable           # p → Rope
+    seen: Callable           # x (N + 1, 2) → what the scene observes
+    truth: Callable          # (p, t) → the same, with no error
+    floor: Callable          # (p, dt) → round-off, relative
+
+    def error_law(self, run, order, finest):
+        """Return p → ErrorLaw of run(rope, h, steps) → x."""
+        @cache
+        def law(p):
+            one = self.rope(p)
+            nudged_run = lambda steps, nudge: self.seen(
+                run(one._replace(x=nudged(one, nudge)), self.T / steps, steps))
+            return ErrorLaw(nudged_run, np.array(self.truth(p, self.T), dtype=float), order, self.T, finest)
+        return law
+
+    def predict(self, step, order):
+        """Return the field `predicted` of a Runner that makes such steps."""
+        law = self.error_law(partial(rope_after, step), order, FINEST[order])
+
+        def predicted_error(p, dt):
+            """The error, with its sign, of the same step with a dense matrix: at the same step where that is coarse,
+            else by its expansion in powers of dt.
+            """
+            return law(p).prediction(dt, self.floor(p, dt))
+        return predicted_error
+
+    def predict_unfinished(self, step, order):
+        """Return the same where sweeps stop before all links are right: it is known within a factor of two only."""
+        law = self.error_law(partial(rope_after, step), order, FINEST[order])
+
+        def predicted_error(p, dt):
+            """pymunk moves the points first and then corrects each link within one step.  In a rope its sweeps do not
+            finish: the band is wider by half of the error.
+            """
+            return widened(law(p), dt, self.floor(p, dt), UNFINISHED)
+        return predicted_error
+
+    def predict_bullet(self, share, sweeps):
+        """Return the same for pybullet's rope; I = share · m l², sweeps(links) → how often a step visits each link.
+
+        The engine sorts its joints; sweeps up and down the rope differ by 1 % of the error at most.
         """
-        found = error_law(label, p).prediction(dt, floor(p, dt)) if label in labels else None
-        if found is None or label not in unfinished:
-            return found
-        return found._replace(band=found.band + 0.5 * np.linalg.norm(found.error) / error_law(label, p).size)
+        law = self.error_law(lambda rope, h, steps: bullet_rope(rope.x[1:], share, rope.l, rope.g, h, steps,
+                                                                sweeps(len(rope.x) - 1)), 1, 1600)
 
-    return predicted_error
+        def predicted_error(p, dt):
+            """pybullet: its own step of bodies on joints, from the law that bodies obey, with as many sweeps as it has.
+            They are in another order there: the band is wider by 2 % of the error.
+            """
+            return widened(law(p), dt, self.floor(p, dt), OTHER_ORDER)
+        return predicted_error
+
+
+def widened(law, dt, floor, share):
+    """Return the Prediction of an ErrorLaw, its band wider by that share of the error; None where it has none."""
+    found = law.prediction(dt, floor)
+    return found and found._replace(band=found.band + share * np.linalg.norm(found.error) / law.size)
 
 
 def bullet_bob(bob, m, inertia, g, dt, steps):
@@ -408,27 +451,3 @@ def bullet_rope(x, share, l, g, dt, steps, sweeps):
         v, omega = u[::3] + 1j * u[1::3], u[2::3]
         z, angle = z + v * dt, angle + omega * dt
     return np.stack((z.real, z.imag), axis=1)
-
-
-ORDERS = 0.02                # of the error of pybullet's rope: sweeps in another order leave another error [-]
-
-
-@cache
-def bullet_rope_law(T, rope, share, sweeps, law):
-    """Return the ErrorLaw of pybullet's rope; rope: (places, l, g), and its law, as tuples."""
-    one = Rope(np.array(rope[0]), *rope[1:])
-
-    def run(steps, nudge):
-        return bullet_rope(nudged(one, nudge)[1:], share, one.l, one.g, T / steps, steps, sweeps).ravel()
-    return ErrorLaw(run, np.array(law), 1, T, 1600)
-
-
-def bullet_rope_error(T, rope, share, sweeps, law, dt, floor):
-    """Return the Prediction for pybullet's rope, all points of it; None where it cannot be trusted.
-
-    The engine sorts its joints; sweeps up and down the rope differ by 1 % of the error at most.
-    """
-    found = bullet_rope_law(T, (tuple(map(tuple, rope.x)), rope.l, rope.g), share, sweeps, tuple(law))
-    prediction = found.prediction(dt, floor)
-    return prediction and prediction._replace(
-        band=prediction.band + ORDERS * np.linalg.norm(prediction.error) / found.size)

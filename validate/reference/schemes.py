@@ -9,7 +9,6 @@ One loop runs all of them, with forces of validate/reference: nothing here is sh
 *Source:* Hairer, Lubich, Wanner 2006, II.1 (Runge–Kutta) and II.2 (partitioned).
 """
 
-import inspect
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
@@ -75,15 +74,6 @@ OLD_VELOCITY_OLD_FORCE = EULER
 NEW_VELOCITY_OLD_FORCE = SYMPLECTIC_EULER
 OLD_VELOCITY_NEW_FORCE = Tableau(1, (0.0, 1.0), ((), END), ((), ()), END, ((1, 1.0),))
 
-TABLEAUX = {                 # {label of validate/methods.py: Tableau}
-    "Euler": EULER, "midpoint": MIDPOINT, "Runge–Kutta 4": RK4, "average velocity": AVERAGE_VELOCITY,
-    "symplectic Euler": SYMPLECTIC_EULER, "Verlet": VERLET, "implicit Euler": IMPLICIT_EULER,
-    "implicit midpoint": IMPLICIT_MIDPOINT, "Blanes–Moan": BLANES_MOAN,
-    "old velocity, old force": OLD_VELOCITY_OLD_FORCE, "new velocity, old force": NEW_VELOCITY_OLD_FORCE,
-    "old velocity, new force": OLD_VELOCITY_NEW_FORCE,
-}
-ORDERS = {label: table.order for label, table in TABLEAUX.items()}
-
 
 def weighted(weights, values):
     total = 0.0
@@ -132,7 +122,7 @@ def implicit_stage(law, t, x, v, h):
 
 def advance(scheme, law, x, v, h, steps):
     """(x, v) after so many steps.  A scheme is a Tableau, or a function like those of `step_of`."""
-    move = scheme if callable(scheme) else step_of(scheme if isinstance(scheme, Tableau) else TABLEAUX[scheme])
+    move = scheme if callable(scheme) else step_of(scheme)
     with np.errstate(all="ignore"):
         for n in range(steps):
             x, v = move(law, n * h, x, v, h)
@@ -228,7 +218,7 @@ class Model(NamedTuple):
 
 
 def table_model(scheme, law, begin, seen, order=1, ahead=0.0, march=advance):
-    """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like those of
+    """The Model of a method or an engine that does what a scheme does: a Tableau, or p → a function like those of
     `step_of`.
 
     Its first velocity is that of begin(p) and  ahead h a  at the start.  march: `advance`, or its like for such a law.
@@ -286,58 +276,6 @@ class Motion(NamedTuple):
             """
             return error_law(p).prediction(dt, self.floor(p, dt))
         return predicted_error
-
-
-def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None,
-                      march=advance):
-    """The field `predicted_error` of a scene, (label, p, dt) → Prediction, from the tables above.
-
-    law(p) → a(t, x, v);    begin(p) → (x, v);    seen(x, p) → what the scene observes of x;    floor(p, dt) → round-off
-    engines: {label: Model};    departures: those of the scene;    finest: {order or label: steps of the finest run of a
-    table}
-    powers: {label: the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k};    march:
-    `advance`, or `advance_modes` for modes that do not touch
-    """
-    engines, departures, finest = engines or {}, departures or {}, {**FINEST, **(finest or {})}
-
-    @cache
-    def error_law(label, p):
-        own = departures[label].own_law if label in departures else truth
-        order, run = engines.get(label) or table_model(label, law, begin, seen, ORDERS[label], march=march)
-        return ErrorLaw(lambda steps, nudge: run(p, T / steps, steps, nudge), np.array(own(p, T), dtype=float),
-                        (powers or {}).get(label, order), T, finest.get(label, finest[order]))
-
-    def predicted_error(label, p, dt):
-        """The error, with its sign, of the method's own table of coefficients (Runge–Kutta, partitioned), in a program
-        that shares neither steps nor forces with the lesson: with the same step where that is coarse, otherwise by an
-        expansion of the error in powers of dt.  A run must agree with it as closely as the expansion is known.
-        """
-        return error_law(label, p).prediction(dt, floor(p, dt)) if label in engines or label in TABLEAUX else None
-
-    return predicted_error
-
-
-def predict_angles(T, law, begin, seen, truth, floor, labels, finest=None):
-    """The field `predicted_error` of methods whose coordinates are angles: a table of numbers, applied to the angles.
-
-    law(p) → θ̈(t, θ, ω);    labels: {label of a method or an engine: label of TABLEAUX};    the others as above.
-    """
-    tables = {label: table_model(scheme, law, begin, seen, ORDERS[scheme]) for label, scheme in labels.items()}
-    by_tables = predict_by_tables(T, law, begin, seen, truth, floor, tables, finest=finest)
-
-    def predicted_error(label, p, dt):
-        """Angles cannot leave a joint open: the method, applied to the angles, predicts the error."""
-        return by_tables(label, p, dt) if label in labels else None
-
-    return predicted_error
-
-
-def first_of(*predictions):
-    """One field `predicted_error` from several, of which each knows some labels."""
-    def predicted_error(label, p, dt):
-        return next((found for each in predictions if (found := each(label, p, dt))), None)
-    predicted_error.__doc__ = "\n\n".join(inspect.getdoc(each) for each in predictions)
-    return predicted_error
 
 
 def summed(velocity, T, dt, new):

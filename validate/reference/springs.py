@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import solve_triangular
 from scipy.optimize import minimize, root
 
-from validate.reference.schemes import Model, nudged, predict_by_tables
+from validate.reference.schemes import Model, Motion, nudged
 from validate.scene import EXACT, ROUND_OFF
 
 RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts: a step errs by less than it rounds
@@ -71,19 +71,8 @@ def square_net(p):
     pairs = np.argwhere(np.triu((squared == 1) | (squared == 2) & bool(p.shear) | (squared == 4) & bool(p.bend)))
     rest = p.spacing * np.sqrt(squared[pairs[:, 0], pairs[:, 1]])
     x = p.spacing * np.stack((c, -r), axis=1)
-    return ReferenceNetwork(
-        x,
-        0.0 * x,
-        tuple(range(p.n)),
-        pairs,
-        rest,
-        p.m,
-        p.k,
-        p.k_d,
-        p.k_v,
-        np.array([0.0, -p.g]),
-        np.array([p.wind, 0.0]),
-    )
+    gravity, wind = np.array([0.0, -p.g]), np.array([p.wind, 0.0])
+    return ReferenceNetwork(x, 0.0 * x, tuple(range(p.n)), pairs, rest, p.m, p.k, p.k_d, p.k_v, gravity, wind)
 
 
 def state_of(net, make_mesh):
@@ -117,12 +106,6 @@ def motion(net, T, rtol=RTOL):
     start = np.concatenate((net.x.ravel(), net.v.ravel()))
     run = solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=ATOL, dense_output=True)
     return lambda t: np.split(run.y[:, -1] if t == T else run.sol(t), 2)[0].reshape(shape)
-
-
-@cache
-def net_motion(p, T):
-    """motion() of a SquareNet."""
-    return motion(square_net(p), T)
 
 
 def rest_positions(net):
@@ -198,15 +181,20 @@ def _noted(make, p):
     return *modes(net), np.sqrt(net.k / net.m) * np.linalg.norm(B, 2)
 
 
-def net_limits(make, p, size, T, dt, uncertainty):
-    """Return by_mode for the net of make(p), with √2 times its frequencies at rest, but none above the largest.
+def net_limits(make, T, truth, uncertainty):
+    """Return the field `limit` of a net: by_mode, with √2 times its frequencies at rest, but none above the largest.
 
     Released without tension, threads oscillate between zero and twice their rest tension.  A slow mode is held by
     tension, so its ω² oscillates between zero and twice its value.  A spring's stiffness is k along it and k
     (1 − rest/l) < k across, so no mode of any shape of the net exceeds √(k/m) |B|.
+    make(p) → ReferenceNetwork;    truth(p, t);    uncertainty: of the truth, relative [-]
     """
-    omega, c, amplitude, fastest = _noted(make, p)
-    return by_mode(np.minimum(np.sqrt(2.0) * omega, fastest), c, amplitude, size, T, dt, uncertainty)
+    def limits(p, dt):
+        """Each mode on its own, with a margin for large motion; every engine here is symplectic Euler, order 1."""
+        omega, c, amplitude, fastest = _noted(make, p)
+        size = np.linalg.norm(truth(p, T))
+        return by_mode(np.minimum(np.sqrt(2.0) * omega, fastest), c, amplitude, size, T, dt, uncertainty)
+    return limits
 
 
 # ---------------------------------------------------------------------- what a step does get wrong
@@ -285,29 +273,29 @@ def pymunk_net_model(net, h, steps, iterations=10):
     return x
 
 
-def net_errors(make, T, truth, uncertainty, seen=lambda x, p: x.ravel(), engines=None, **more):
-    """Return the field `predicted_error` of a net: methods by their tables, implicit mesh and pymunk by the above."""
-    def model(run):
-        return Model(1, lambda p, h, steps, nudge: seen(run(make(p)._replace(x=nudged(make(p).x, nudge)), h, steps), p))
-
-    models = {"implicit mesh": model(implicit_net), "pymunk": model(pymunk_net_model), **(engines or {})}
-    return predict_by_tables(T, net_law(make), lambda p: (make(p).x, make(p).v), seen, truth,
-                             lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty, models, **more)
+def net_model(make, run):
+    """Return the Model of order 1 of what run(net, h, steps) → x does with the net of make(p)."""
+    def observed(p, h, steps, nudge):
+        net = make(p)
+        return run(net._replace(x=nudged(net.x, nudge)), h, steps).ravel()
+    return Model(1, observed)
 
 
-def net_truth(T, uncertainty):
-    """Return the fields of a SquareNet's scene that judge it: its truth up to T [s], and the errors that theory allows.
+def net_steps(make, T, truth, uncertainty):
+    """Return the Motion of the net of make(p), of which a scene observes every point, as in net_limits."""
+    return Motion(T, net_law(make), lambda p: (make(p).x, make(p).v), lambda x, p: x.ravel(), truth,
+                  lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty)
 
-    uncertainty: of the truth, relative [-].
-    """
+
+@cache
+def square_net_motion(p, T):
+    """Return motion() of a SquareNet."""
+    return motion(square_net(p), T)
+
+
+def net_truth(T):
+    """Return the truth of a SquareNet's scene up to T [s]."""
     def truth(p, t):
         """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
-        return net_motion(p, T)(t).ravel()
-
-    def tolerance(p, dt):
-        """Each mode on its own, with a margin for large motion; pymunk is symplectic Euler, order 1."""
-        limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, uncertainty)
-        return {**limits, "pymunk": limits[1]}
-
-    return {"duration": T, "truth": truth, "truth_uncertainty": uncertainty, "tolerance": tolerance,
-            "predicted_error": net_errors(square_net, T, truth, uncertainty)}
+        return square_net_motion(p, T)(t).ravel()
+    return truth

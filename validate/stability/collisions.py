@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 from solutions import collisions as worked
 from validate.engines.bullet import Bullet
 from validate.reference.collisions import anew_steering, depth_of, held_steering, hull_nearest
-from validate.reference.schemes import TABLEAUX, step_of
+from validate.reference.schemes import MIDPOINT, VERLET, step_of
 from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, log_slope, refuses, series
 
 from ..products import PYBULLET
@@ -402,7 +402,7 @@ def nearest_approach(lesson, closing, k, reach, steps=10_000):
     begin = 2.0 * half - 2.0 * radius                               # its potential energy there counts as well
     x = np.array([[-half, 0.0], [half, 0.0]])
     v = np.array([[0.5, 0.0], [-0.5, 0.0]]) * np.sqrt(closing**2 - 2.0 * k * (1.0 / begin - 1.0 / reach) ** 2)
-    least, verlet = np.inf, step_of(TABLEAUX["Verlet"])
+    least, verlet = np.inf, step_of(VERLET)
     law = lambda t, x, v: lesson.flock_acceleration(t, x, v, p)
     for n in range(steps):
         x, v = verlet(law, n * dt, x, v, dt)
@@ -421,7 +421,7 @@ def steered_past(lesson, distance, offset, anew, steps=4000):
     moves away from the centre.  Then the speed is that after the last step that turned it by less than 0.1 rad.
     """
     x, v, centre, dt = np.array([-distance, offset]), np.array([1.0, 0.0]), np.zeros(2), distance / steps
-    law, midpoint = lambda t, x, v: lesson.steer(x, v, centre, 1.0, np.inf), step_of(TABLEAUX["midpoint"])
+    law, midpoint = lambda t, x, v: lesson.steer(x, v, centre, 1.0, np.inf), step_of(MIDPOINT)
     if not anew:
         a, t = law(0.0, x, v), np.linspace(0.0, distance, steps + 1)[:, None]
         return np.linalg.norm(x + v * t + 0.5 * a * t * t, axis=1).min(), np.linalg.norm(v + a * distance)

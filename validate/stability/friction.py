@@ -11,7 +11,7 @@ from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
-from validate.reference.schemes import TABLEAUX, step_of
+from validate.reference.schemes import EULER, step_of
 from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 from ..products import PYBULLET, PYMUNK
@@ -243,7 +243,7 @@ def regularised_friction_creeps(lesson):
         return a - (a @ p.n) * p.n + lesson.kinetic_friction(a, v, p.n, p.mu_k)
 
     def euler_step(acceleration, t, x, v, dt, p):
-        return step_of(TABLEAUX["Euler"])(lambda *now: acceleration(*now, p), t, x, v, dt)
+        return step_of(EULER)(lambda *now: acceleration(*now, p), t, x, v, dt)
 
     for dt in (0.05, 0.02, 0.01):
         steps = round(1.0 / dt)

@@ -838,29 +838,28 @@ def swinging(t, x, v, p):
 @case("one-step", "One step of each method", compiled=False)
 def one_step(lesson):
     """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
-    label = {**LABEL, BLANES_MOAN.function: BLANES_MOAN.label}
     rng, worst, history = np.random.default_rng(11), Worst(), 0.0
     for _ in range(TRIED):
         (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
         t, h, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
-        for name in label:
-            p = Swing(k, 0.0 * c if name == "blanes_moan_step" else c, drive, omega)
-            law, step = lambda t, x, v, p=p: swinging(t, x, v, p), schemes.step_of(schemes.TABLEAUX[label[name]])
+        for method in (*INTEGRATORS, BLANES_MOAN):
+            p = Swing(k, 0.0 * c if method is BLANES_MOAN else c, drive, omega)
+            law, step = lambda t, x, v, p=p: swinging(t, x, v, p), schemes.step_of(method.table)
             truth = step(law, t, x, v, h)
-            got = getattr(lesson, name)(swinging, t, x, v, h, p)
-            worst.keep(name, np.max(np.abs(np.array(got) - truth)))
+            got = getattr(lesson, method.function)(swinging, t, x, v, h, p)
+            worst.keep(method, np.max(np.abs(np.array(got) - truth)))
         # a history is that of single steps, each at its own time, and ends where a run of many steps ends
         p, states, rk4 = Swing(k, c, drive, omega), [(x, v)], lesson.rk4_step
         for n in range(3):
             law = lambda t, x, v, p=p: swinging(t, x, v, p)
-            states.append(schemes.step_of(schemes.TABLEAUX[label["rk4_step"]])(law, t + n * h, *states[-1], h))
+            states.append(schemes.step_of(schemes.RK4)(law, t + n * h, *states[-1], h))
         ts, xs, vs = lesson.trajectory(rk4, swinging, t, x, v, h, 3, p)
         end = np.array(lesson.advance(rk4, swinging, t, x, v, h, 3, p))
         errors = np.stack((xs, vs), axis=1) - np.array(states), ts - t - h * np.arange(4), end - states[-1]
         history = np.max((history, *(np.max(np.abs(error)) for error in errors)))
-    return [agreement(f"One step of {label[name]} is that of its published coefficients.",
-                      f"{label[name]}: largest error of a step [m, m/s]", error,
-                      100.0 * NEWTON if "implicit" in name else ROUNDED) for name, error in worst.items()] + [
+    return [agreement(f"One step of {method.label} is that of its published coefficients.",
+                      f"{method.label}: largest error of a step [m, m/s]", error,
+                      100.0 * NEWTON if method in IMPLICIT else ROUNDED) for method, error in worst.items()] + [
         agreement("Many steps are single steps, each at its own time.",
                   "history of Runge–Kutta 4: largest error in three steps [s, m, m/s]", history, ROUNDED)], None
 

@@ -1,5 +1,6 @@
 """A bob is released with its string horizontal: projection keeps the length of the string, but loses energy."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -10,10 +11,21 @@ from solutions.support.pbd import make_constraint_network
 from solutions.support.pbd import network_gravity as acceleration
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
-from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
-from validate.reference.pbd import ROPE_STEPS, Rope, bullet_bob, pendulum_angle, pendulum_period, rope_errors
-from validate.reference.schemes import first_of, predict_angles
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Engine, Prediction, Scene, by_order
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
+from validate.reference.pbd import (
+    Rope,
+    RopeMotion,
+    bullet_bob,
+    chipmunk_rope,
+    composed_rope,
+    onto_circle,
+    pendulum_angle,
+    pendulum_period,
+    rattle,
+    rattle_once,
+)
+from validate.reference.schemes import Motion
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -65,25 +77,42 @@ def with_inertia(p, t):
     return place(pendulum_angle(np.radians(p.degrees), p.L, p.g / (1.0 + SHARE), t), p)
 
 
-
-
-def tolerance(p, dt):
+def limits(p, dt):
     """Nothing changes faster than the rate √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
 
     With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
-    order 2. pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a
-    step leaves. pybullet does the same, with erp 1: both are of order 1.
+    order 2.  pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a step leaves.
+    pybullet does the same, with erp 1: both are of order 1, but pymunk moves the bob before it pulls.  The coordinate
+    of MuJoCo is the angle, which cannot leave a joint open: a table of coefficients, applied to it, predicts the error.
     """
-    limits = by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
-    return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
+    return by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT]
 
 
 def rope(p):
     return Rope(np.stack((np.zeros(2), place(np.radians(p.degrees), p))), p.L, p.g)
 
 
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT]
+def swinging(p):
+    """Return θ̈(t, θ, ω), θ from straight down."""
+    return lambda t, theta, omega: -p.g / p.L * np.sin(theta)
+
+
+BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor)
+ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor)
+
+
+def bullet_error(p, dt):
+    """pybullet's bob moves by symplectic Euler, and in each step its joint closes what the last step has opened.  The
+    prediction is this step, written out.  Sweeps and roundings leave 1e-15 of a velocity, which grows as a pendulum's
+    errors do.
+    """
+    bob = place(np.radians(p.degrees), p)
+    error = bullet_bob(bob, p.m, SHARE * p.m * p.L**2, p.g, dt, round(T / dt)) - with_inertia(p, T)
+    return Prediction(error, 1e-11) if np.linalg.norm(error) < 0.1 * p.L else None
 
 
 def pymunk_make(p, dt):
@@ -94,48 +123,32 @@ def pybullet_make(p, dt):
     return bullet_rope([place(np.radians(p.degrees), p)], p.m, p.g, SHARE * p.m * p.L**2, dt, lambda x: x[0])
 
 
-def mujoco_make(integrator):
-    def make(p, dt):
-        string = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
-        return mujoco_chain(string, p.m, SMALL * p.m * p.L**2, 1.0, p.g, dt,
-                            lambda angles: p.L * np.array([np.cos(angles[0]), np.sin(angles[0])]), integrator)
-    return make
+def mujoco_make(p, dt, integrator="RK4"):
+    string = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
+    return mujoco_chain(string, p.m, SMALL * p.m * p.L**2, 1.0, p.g, dt,
+                        lambda angles: p.L * np.array([np.cos(angles[0]), np.sin(angles[0])]), integrator)
 
 
-def by_bullet(label, p, dt):
-    """pybullet's bob moves by symplectic Euler, and in each step its joint closes what the last step has opened.  The
-    prediction is this step, written out.  Sweeps and roundings leave 1e-15 of a velocity, which grows as a pendulum's
-    errors do.
-    """
-    if label != "pybullet":
-        return None
-    bob = place(np.radians(p.degrees), p)
-    error = bullet_bob(bob, p.m, SHARE * p.m * p.L**2, p.g, dt, round(T / dt)) - with_inertia(p, T)
-    return Prediction(error, 1e-11) if np.linalg.norm(error) < 0.1 * p.L else None
-
-
-def swinging(p):
-    """Return θ̈(t, θ, ω), θ from straight down."""
-    return lambda t, theta, omega: -p.g / p.L * np.sin(theta)
-
-
-by_angles = predict_angles(T, swinging, lambda p: (np.radians(p.degrees), 0.0), lambda theta, p: place(theta, p), truth,
-                           floor, {"mujoco": "Runge–Kutta 4", "mujoco, default": "symplectic Euler"})
-
-ENGINES = (
-    Engine(
-        PYMUNK, "", pymunk_make, 1, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link"
-    ),
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        1,
-        f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²; "
-        "a step without gravity beforehand, after which moments count",
-    ),
-    Engine(MUJOCO, "", mujoco_make("RK4"), 4, "hinge; Runge–Kutta 4", 5000),
-    Engine(MUJOCO, "default", mujoco_make("Euler"), 1, "hinge; the semi-implicit Euler step", 5000),
+RUNNERS = (
+    ours(PROJECTION, limit=limits, predicted=BOB.predict(onto_circle, 1), most_in_quick=2000),
+    ours(PBD, limit=limits, predicted=BOB.predict(onto_circle, 1)),
+    ours(XPBD, limit=limits, predicted=BOB.predict(onto_circle, 1), in_quick=False),     # on one rigid link it is PBD
+    ours(RATTLE, limit=limits, predicted=BOB.predict(rattle, 2)),
+    ours(ROPE, limit=limits, predicted=BOB.predict(rattle_once, 2)),
+    ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
+    engine(PYMUNK, "", pymunk_make, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
+           order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
+    engine(PYBULLET, "", pybullet_make,
+           f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} "
+           "mL²; a step without gravity beforehand, after which moments count",
+           order=1, limit=limits, predicted=bullet_error,
+           departure=Departure(
+               f"its solver, which sweeps over three axes, needs a bob with a moment of inertia. It has {SHARE} mL² "
+               f"and turns with the string, so that it falls as if gravity were g/{1.0 + SHARE:g}", with_inertia)),
+    engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
+           order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
+    engine(MUJOCO, "default", partial(mujoco_make, integrator="Euler"), "hinge; the semi-implicit Euler step",
+           order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table), most_steps=5000),
 )
 
 
@@ -168,28 +181,14 @@ def in_space(p):
 SCENE = Scene(
     title="Pendulum", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
-    tolerance=tolerance,
-    predicted_error=first_of(rope_errors(T, rope, lambda x: x[1], truth, floor, ROPE_STEPS), by_angles, by_bullet),
-    engines=ENGINES,
-    expected_departures={
-        "pybullet": Departure(
-            (f"its solver, which sweeps over three axes, needs a bob with a moment of inertia. It has {SHARE} mL² "
-             f"and turns with the string, so that it falls as if gravity were g/{1.0 + SHARE:g}"),
-            with_inertia,
-        )
-    },
-    # On a single inextensible link it is PBD.
-    slow_methods=("xpbd_step",),
     published_states=(
         (0.0, (1.0, 0.0), 1e-15),
         (10.0, (0.275087463, -0.961419205), 5e-10),
         (2.367841948, (1.0, 0.0), 5e-9),
     ),
-    finer_in_full={"pymunk": (20_000, 50_000)},
-    shorter_in_quick={"constraint_projection_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "one link", "one step function"),

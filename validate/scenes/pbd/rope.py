@@ -1,5 +1,6 @@
 """A rope of points on strings is released horizontally; while it falls its end whips round."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -12,15 +13,18 @@ from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_s
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import (
     Rope,
-    bullet_rope_error,
+    RopeMotion,
+    chipmunk_rope,
+    composed_rope,
+    rattle,
+    rattle_once,
     rope_energy,
-    rope_errors,
     rope_lag,
     rope_motion,
     rope_places,
     rope_rates,
 )
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, by_order, engine, ours
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 600, 1000, 2000, 5000)
@@ -76,93 +80,103 @@ def of_bodies(p, t):
     return rope_places(theta, p.l).ravel()
 
 
-def tolerance(p, dt):
+def of(p):
+    """Return what the functions of the reference take."""
+    return p.links, p.l, p.m, p.g, T
+
+
+def size(p):
+    return np.linalg.norm(truth(p, T))
+
+
+def beyond(p, dt):
+    """Return the part of the limits of order 1 and 2 that is of order 2."""
+    return rope_rates(*of(p))[1] * dt**2 + by_order(0.0, T, dt)[2]
+
+
+def limits(p, dt):
     """First order by the modified equation, integrated by DOP853.
 
     Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
     time.  For the fourth order it is dt⁴ ∫ρ⁵ dt.
-
-    PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep leaves a link too long by
-    at most the distance that its tension moves a point in one step, T dt²/m (stability case stiffness-depends-on-dt
-    has it exactly).  Over N links that adds up to N times as much in position.  Links that are too long also change
-    the forces, which adds ∫ρ dt times as much again.
     """
-    one, three, five, pull = rope_rates(p.links, p.l, p.m, p.g, T)
-    size, of = np.linalg.norm(truth(p, T)), (p.links, p.l, p.m, p.g, T)
-    second = three * dt**2 + by_order(0.0, T, dt)[2]
-    first = rope_lag(*of, late=1.0, ahead=0.5) / size * dt + second
-    soft = p.links**1.5 * pull / p.m * dt**2 * (1.0 + one) / size
-    witness = rope_lag(*of, ahead=-0.5) / size * dt + second
-    bodies = rope_lag(*of, inertia=SHARE * p.m * p.l**2, ahead=0.5) / np.linalg.norm(of_bodies(p, T)) * dt + second
-    fourth = five * dt**4 + by_order(0.0, T, dt)[4]
-    ours = {1: first, 2: second, 4: fourth, "PBD": first + soft, "XPBD": first + soft}
-    return {**ours, "pymunk": witness, "pymunk, fewer iterations": witness, "pybullet": bodies}
+    first = rope_lag(*of(p), late=1.0, ahead=0.5) / size(p) * dt + beyond(p, dt)
+    return {1: first, 2: beyond(p, dt), 4: rope_rates(*of(p))[2] * dt**4 + by_order(0.0, T, dt)[4]}
 
 
-def supports(name, p):
-    """The projection method for ropes whose matrix is not too large; few iterations where they do not explode."""
-    return p.links <= 20 or name not in ("constraint_projection_step", "pymunk, fewer iterations")
+def unfinished_limit(p, dt):
+    """PBD and XPBD stop their sweeps before all links have their length.
+
+    Even a single sweep leaves a link too long by at most the distance that its tension moves a point in one step,
+    T dt²/m (stability case stiffness-depends-on-dt has it exactly).  Over N links that adds up to N times as much in
+    position.  Links that are too long also change the forces, which adds ∫ρ dt times as much again.
+    """
+    one, _, _, pull = rope_rates(*of(p))
+    return limits(p, dt)[1] + p.links**1.5 * pull / p.m * dt**2 * (1.0 + one) / size(p)
 
 
-# the others stop their sweeps before all links have their length, or turn their points
-UNFINISHED = ("pymunk", "pymunk, fewer iterations")
-PREDICTED = ("RATTLE", "rope", "rope, composed", *UNFINISHED)
+def pymunk_limit(p, dt):
+    """pymunk moves before it pulls, and its modified equation has another first order."""
+    return rope_lag(*of(p), ahead=-0.5) / size(p) * dt + beyond(p, dt)
 
 
-def rope(p):
-    return Rope(np.concatenate((np.zeros((1, 2)), straight(p))), p.l, p.g)
+def bodies_limit(p, dt):
+    """The modified equation of pybullet is that of bodies which turn with the link above."""
+    lag = rope_lag(*of(p), inertia=SHARE * p.m * p.l**2, ahead=0.5)
+    return lag / np.linalg.norm(of_bodies(p, T)) * dt + beyond(p, dt)
 
 
 def floor(p, dt):
     return by_order(0.0, T, dt)[EXACT] + 1e-10                # of the truth, DOP853 at 1e-12
 
 
-steps_in_the_plane = rope_errors(T, rope, lambda x: x[1:].ravel(), truth, floor, PREDICTED, UNFINISHED)
+def rope(p):
+    return Rope(np.concatenate((np.zeros((1, 2)), straight(p))), p.l, p.g)
 
 
-def predicted_error(label, p, dt):
-    """Our methods and pymunk: the same step with a dense matrix.  pybullet: its own step of bodies on joints, from the
-    law that bodies obey, with as many sweeps as it has; they are in another order there.
-    """
-    if label != "pybullet":
-        return steps_in_the_plane(label, p, dt)
-    return bullet_rope_error(T, rope(p), SHARE, bullet_sweeps(p.links), of_bodies(p, T), dt, floor(p, dt))
+MOTION = RopeMotion(T, rope, lambda x: x[1:].ravel(), truth, floor)
+BODIES = MOTION._replace(seen=np.ravel, truth=of_bodies)
 
 
-def pymunk_make(sweeps):
-    return lambda p, dt: pymunk_rope(straight(p), p.l, p.m, p.g, dt, np.ravel, sweeps * max(p.links, 10))
+def short(p):
+    """Whether the dense matrix of the projection method is small, and few iterations do not explode."""
+    return p.links <= 20
+
+
+def pymunk_make(p, dt, sweeps=ITERATIONS):
+    return pymunk_rope(straight(p), p.l, p.m, p.g, dt, np.ravel, sweeps * max(p.links, 10))
 
 
 def pybullet_make(p, dt):
     return bullet_rope(straight(p), p.m, p.g, SHARE * p.m * p.l**2, dt, np.ravel)
 
 
-ENGINES = (
-    Engine(
-        PYMUNK,
-        "",
-        pymunk_make(ITERATIONS),
-        1,
-        f"PinJoints between masses that cannot turn; error_bias 0, {ITERATIONS} iterations for each link",
-        5000,
-    ),
-    Engine(
-        PYMUNK,
-        "fewer iterations",
-        pymunk_make(FEWER),
-        1,
-        f"the same with {FEWER} iterations for each link: the fastest setting that errs no more",
-        5000,
-    ),
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        1,
-        (f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with I = "
-         f"{SHARE} m l²; a step without gravity beforehand, after which moments count"),
-        5000,
-    ),
+IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
+SWEPT = "its sweeps stop before all links have their length, and what they leave is bounded, but not modelled"
+FINER = (10_000, 20_000, 50_000)
+RUNNERS = (
+    ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum has it
+    ours(PBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
+    ours(XPBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
+    ours(RATTLE, limit=limits, predicted=MOTION.predict(rattle, 2)),
+    ours(ROPE, limit=limits, predicted=MOTION.predict(rattle_once, 2), compiled_in_quick=True),
+    ours(COMPOSED_ROPE, limit=limits, predicted=MOTION.predict(composed_rope, 4), compiled_in_quick=True),
+    engine(PYMUNK, "", pymunk_make,
+           f"PinJoints between masses that cannot turn; error_bias 0, {ITERATIONS} iterations for each link",
+           order=1, limit=pymunk_limit, predicted=MOTION.predict_unfinished(chipmunk_rope, 1),
+           most_steps=5000, finer_in_full=FINER),
+    engine(PYMUNK, "fewer iterations", partial(pymunk_make, sweeps=FEWER),
+           f"the same with {FEWER} iterations for each link: the fastest setting that errs no more",
+           order=1, limit=pymunk_limit, predicted=MOTION.predict_unfinished(chipmunk_rope, 1), supports=short,
+           most_steps=5000, finer_in_full=FINER),
+    engine(PYBULLET, "", pybullet_make,
+           f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with "
+           f"I = {SHARE} m l²; a step without gravity beforehand, after which moments count",
+           order=1, limit=bodies_limit, predicted=BODIES.predict_bullet(SHARE, bullet_sweeps), most_steps=5000,
+           departure=Departure(
+               "its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
+               f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly",
+               of_bodies)),
 )
 
 
@@ -199,27 +213,13 @@ def in_space(p):
 SCENE = Scene(
     title="Rope", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    expected_departures={
-        "pybullet": Departure(
-            ("its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
-             f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly"),
-            of_bodies,
-        )
-    },
-    supports=supports,
     omitted_methods=("the projection method has a dense matrix of all points and links; a long rope would need a "
                      "sparse one, and pymunk more iterations"),
     # The reference solution alone takes seconds.
     slow_cases=("50 links",),
-    finer_in_full=dict.fromkeys(("pymunk", "pymunk, fewer iterations"), (10_000, 20_000, 50_000)),
-    slow_methods=("constraint_projection_step",),                    # the pendulum has it
-    compiled_in_quick=("pbd_step", "xpbd_step", "rope_step", "composed_rope_step"),
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),

@@ -20,7 +20,7 @@ from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.simulator import pybullet_chain, pymunk_chain
 from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
 from validate.reference.orientation import about
-from validate.reference.schemes import predict_angles
+from validate.reference.schemes import Motion
 from validate.reference.simulator import (
     rods_ends,
     rods_energy,
@@ -30,14 +30,13 @@ from validate.reference.simulator import (
     rods_motion,
     rods_slope,
 )
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene, by_order
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, ours
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
 SWEEPS = 10                  # of both engines for each rod: an impulse travels one rod per sweep
 HEADING = np.array([0.6, 0.8, 0.0])      # of the chain in space: along no axis
 THICK = 0.01                 # moment of a rod about itself over the other two [-]
-LABELS_IN_ANGLES = (IN_ANGLES.label, "mujoco")        # whose coordinates are angles: no joint can open
 FIVE = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)
 
 
@@ -127,36 +126,46 @@ def truth(p, t):
     return rods_ends(rods_motion(*of(p)).sol(t)[:p.rods], p.l).ravel()
 
 
-def tolerance(p, dt):
-    """Ours: the error of the same discrete Lagrangian written in angles, an independent code.  It is taken
-    from one run, of 20 steps per rod (8 for the fourth order), at least 200 (100), and scaled with dt² (dt⁴); half as
-    much again for what the next order adds in shorter steps.
+def size(p):
+    return np.linalg.norm(truth(p, T))
 
-    pymunk and pybullet also begin half a step late or early: that is of first order.  And they close a joint in
+
+def second(p, dt):
+    """Return the relative error at T of the discrete Lagrangian, as in limits, and half as much again."""
+    coarse = max(200, 10 * p.rods)
+    return 1.5 * rods_error(*of(p), coarse) * (dt * coarse / T) ** 2 / size(p)
+
+
+def fourth(p, dt):
+    """Return the same of five of its steps with Suzuki's shares."""
+    coarse = max(100, 4 * p.rods)
+    return 1.5 * rods_error(*of(p), coarse, FIVE) * (dt * coarse / T) ** 4 / size(p)
+
+
+def limits(p, dt):
+    """Ours: the error of the same discrete Lagrangian written in angles, an independent code.  It is taken
+    from one run, of 10 steps per rod (4 for the fourth order), at least 200 (100), and scaled with dt² (dt⁴); half as
+    much again for what the next order adds in shorter steps.
+    """
+    rounded = 1e-11 + T / dt * 100.0 * ROUND_OFF
+    return {2: second(p, dt) + rounded, 4: fourth(p, dt) + rounded}
+
+
+def swept_limit(p, dt):
+    """pymunk and pybullet also begin half a step late or early: that is of first order.  And they close a joint in
     the step after the one that opened it: that is of second order.  Where a rod turns by more than a
     radian in a step, an expansion in powers of dt says nothing.
-
-    The angles of Runge–Kutta's method and of MuJoCo change at the greatest rate of a rod.
     """
-    size, n = np.linalg.norm(truth(p, T)), p.rods
-    coarse, composed = max(200, 10 * n), max(100, 4 * n)
-    second = 1.5 * rods_error(*of(p), coarse) * (dt * coarse / T) ** 2 / size
-    fourth = 1.5 * rods_error(*of(p), composed, FIVE) * (dt * composed / T) ** 4 / size
-    rounded = 1e-11 + T / dt * 100.0 * ROUND_OFF
     gaps, fastest = rods_gaps(*of(p))
-    witness = (rods_lag(*of(p)) * dt + gaps * dt**2) / size + second + 1e-9 if fastest * dt < 1.0 else np.inf
-    return {1: witness, 2: second + rounded, 4: fourth + rounded,
-            **dict.fromkeys(LABELS_IN_ANGLES, by_order(fastest, T, dt)[4] + 1e-9)}
+    late = (rods_lag(*of(p)) * dt + gaps * dt**2) / size(p)
+    return late + second(p, dt) + 1e-9 if fastest * dt < 1.0 else np.inf
 
 
-def pymunk_make(p, dt, iterations, bias):
-    return pymunk_chain(straight(p), p.m, inertia(p), p.g, iterations * p.rods, bias, dt,
-                        lambda x, angle: lower_ends(x, angle, p))
-
-
-def mujoco_make(p, dt):
-    return mujoco_chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: rods_ends(
-        angles + 0.5 * np.pi, p.l).ravel())
+def angles_limit(p, dt):
+    """The angles of Runge–Kutta's method and of MuJoCo change at the greatest rate of a rod.  They cannot leave a joint
+    open: the method's table, applied to them, predicts the error.
+    """
+    return by_order(rods_gaps(*of(p))[1], T, dt)[4] + 1e-9
 
 
 def hanging(p):
@@ -165,17 +174,46 @@ def hanging(p):
     return lambda t, theta, omega: slope(t, np.concatenate((theta, omega)))[p.rods:]
 
 
-def pybullet_make(p, dt, erp):
+def released(p):
+    return np.full(p.rods, 0.5 * np.pi), np.zeros(p.rods)
+
+
+def ends_of(theta, p):
+    return rods_ends(theta, p.l).ravel()
+
+
+ANGLES = Motion(T, hanging, released, ends_of, truth, lambda p, dt: 1e-9)
+
+
+def pymunk_make(p, dt):
+    return pymunk_chain(straight(p), p.m, inertia(p), p.g, SWEEPS * p.rods, 0.0, dt,
+                        lambda x, angle: lower_ends(x, angle, p))
+
+
+def pybullet_make(p, dt):
     return pybullet_chain(straight(p), p.m, inertia(p) * np.array([THICK, 1.0, 1.0]), p.g, SWEEPS * max(p.rods, 10),
-                          erp, dt, lambda x, angle: lower_ends(x, angle, p))
+                          1.0, dt, lambda x, angle: lower_ends(x, angle, p))
 
 
-ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, SWEEPS, 0.0), 1,
-           f"PivotJoints, error_bias 0, {SWEEPS} iterations for each rod"),
-    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 1.0), 1,
-           f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane"),
-    Engine(MUJOCO, "", mujoco_make, 4, "hinges; Runge–Kutta 4"),
+def mujoco_make(p, dt):
+    return mujoco_chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
+
+
+LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which its limit has"
+SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
+FINER = (2000, 5000, 10_000, 20_000)
+RUNNERS = (
+    ours(JOINTS, limit=limits, predicted=LAGRANGIAN),
+    ours(COMPOSED_JOINTS, limit=limits, predicted=LAGRANGIAN, in_quick=False),
+    ours(JOINTS_IN_SPACE, limit=limits, predicted=LAGRANGIAN, in_quick=False),
+    ours(IN_ANGLES, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
+    engine(PYMUNK, "", pymunk_make, f"PivotJoints, error_bias 0, {SWEEPS} iterations for each rod",
+           order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
+    engine(PYBULLET, "", pybullet_make,
+           f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane",
+           order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
+    engine(MUJOCO, "", mujoco_make, "hinges; Runge–Kutta 4",
+           order=4, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
 )
 
 
@@ -219,18 +257,10 @@ def poses(observed, p):
 SCENE = Scene(
     title="A chain of rods", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(JOINTS, COMPOSED_JOINTS, JOINTS_IN_SPACE, IN_ANGLES),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
-    tolerance=tolerance,
-    predicted_error=predict_angles(
-        T, hanging, lambda p: (np.full(p.rods, 0.5 * np.pi), np.zeros(p.rods)),
-        lambda theta, p: rods_ends(theta, p.l).ravel(), truth, lambda p, dt: 1e-9,
-        dict.fromkeys(LABELS_IN_ANGLES, "Runge–Kutta 4")),
-    engines=ENGINES,
-    finer_in_full=dict.fromkeys(("pymunk", "pybullet"), (2000, 5000, 10_000, 20_000)),
     slow_cases=("50 rods",),
-    slow_methods=("composed_joint_step_2d", "joint_step"),
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses,

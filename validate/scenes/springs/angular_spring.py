@@ -11,9 +11,9 @@ from solutions.checks import check_positive
 from solutions.integrators import advance
 from solutions.springs import angular_spring_forces
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.reference.schemes import Model, predict_by_tables
-from validate.scene import EXACT, PYMUNK, Engine, Scene, by_order
+from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.schemes import Model, Motion
+from validate.scene import EXACT, PYMUNK, Scene, by_order, engine, ours
 
 T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -91,7 +91,7 @@ def reference(p):
     return lambda t: (run.y[:, -1] if t == T else run.sol(t))[:1]
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """The fastest rate is that of spring and gravity together; relative to θ(T), smaller than θ₀.
 
     pymunk moves the centre of the rod and rotates it, then pulls the end back to the hinge: symplectic Euler, order
@@ -100,8 +100,11 @@ def tolerance(p, dt):
     """
     rate = np.sqrt((p.kappa + 0.5 * p.m * abs(p.g) * p.length) / inertia(p))
     shrunk = abs(p.theta0 / truth(p, T)[0])
-    limits = {k: shrunk * limit + UNCERTAINTY for k, limit in by_order(rate, T, dt).items()}
-    return {**limits, "pymunk": limits[1]}
+    return {k: shrunk * limit + UNCERTAINTY for k, limit in by_order(rate, T, dt).items()}
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT] + 10.0 * UNCERTAINTY
 
 
 def law(p):
@@ -139,8 +142,7 @@ def pymunk_rod(p, h, steps, nudge):
     return [theta]
 
 
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT] + 10.0 * UNCERTAINTY
+MOTION = Motion(T, law, released, seen, truth, floor)
 
 
 def pymunk_make(p, dt):
@@ -155,7 +157,11 @@ def pymunk_make(p, dt):
     return pymunk_world(space, dt, lambda: np.array([body.angle]))
 
 
-ENGINES = (Engine(PYMUNK, "", pymunk_make, 1, "DampedRotarySpring and PivotJoint, error_bias = 0"),)
+RUNNERS = (
+    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
+    engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias = 0",
+           order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_rod))),
+)
 
 
 def points(observed, p):
@@ -183,15 +189,10 @@ def sanity_checks():
 SCENE = Scene(
     title="Angular spring", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    methods=INTEGRATORS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
-    predicted_error=predict_by_tables(T, law, released, seen, truth, floor, {"pymunk": Model(1, pymunk_rod)}),
-    engines=ENGINES,
-    slow_methods=LEFT_TO_FULL,
-    sanity_checks=sanity_checks,
-    points=points, links=links,
+    sanity_checks=sanity_checks, points=points, links=links,
     uses=("one angle", "the moment of its spring", "one step function"),
     ablations={"the hinge as a constraint": "lesson 8 builds it",
               "rotation in space": "the whole loop of lesson 10 has it, and is measured",

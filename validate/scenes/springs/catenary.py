@@ -9,24 +9,13 @@ from scipy.optimize import brentq
 from solutions.integrators import advance
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
-from validate.engines.springs import in_space, pymunk_net, start_of
-from validate.methods import EXPLICIT, IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.schemes import table_model
-from validate.reference.springs import (
-    ReferenceNetwork,
-    forces,
-    motion,
-    net_errors,
-    net_law,
-    net_limits,
-    rest_positions,
-)
-from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
+from validate.engines.springs import in_space, net_runners, start_of
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
+from validate.reference.springs import ReferenceNetwork, forces, motion, net_limits, net_steps, rest_positions
+from validate.scene import PYBULLET, EngineRun, Scene, engine
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-# Implicit methods build a dense matrix at every correction, and the network's own takes seconds to compile:
-# see spring_net.
 UNCERTAINTY = 1e-11
 
 
@@ -56,7 +45,8 @@ def hung(p, compliance):
     """Return (x (n, 2), H): the chain at rest, with links of that compliance, and its horizontal pull H [N].
 
     V_s = (N + 1 − 2s)/2 · m g,   T_s = √(H² + V_s²),   link s spans (rest + compliance T_s) (H, −V_s)/T_s;   H from
-    Σ = span *Source:* equilibrium of each point; the one unknown is bracketed and found by Brent's method.
+    Σ = span.
+    *Source:* equilibrium of each point; the one unknown is bracketed and found by Brent's method.
     """
     V = 0.5 * (p.links + 1 - 2.0 * np.arange(1, p.links + 1)) * p.m * p.g
 
@@ -71,19 +61,9 @@ def hung(p, compliance):
 
 def net(p):
     x, n = rigid_chain(p), np.arange(p.links + 1)
-    return ReferenceNetwork(
-        x,
-        0.0 * x,
-        (0, p.links),
-        np.stack((n[:-1], n[1:]), axis=1),
-        np.full(p.links, p.rest),
-        p.m,
-        p.k,
-        p.k_d,
-        p.k_v,
-        np.array([0.0, -p.g]),
-        np.array([p.wind, 0.0]),
-    )
+    pairs = np.stack((n[:-1], n[1:]), axis=1)
+    rest, gravity, wind = np.full(p.links, p.rest), np.array([0.0, -p.g]), np.array([p.wind, 0.0])
+    return ReferenceNetwork(x, 0.0 * x, (0, p.links), pairs, rest, p.m, p.k, p.k_d, p.k_v, gravity, wind)
 
 
 start = start_of(net, ("links", "m", "k", "rest", "span"))
@@ -112,10 +92,8 @@ def truth(p, t):
     return reference(p)(t).ravel()
 
 
-def tolerance(p, dt):
-    """Each mode on its own, with a margin for large motion; both engines are symplectic Euler, order 1."""
-    limits = net_limits(net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
-    return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
+limits = net_limits(net, T, truth, UNCERTAINTY)
+MOTION = net_steps(net, T, truth, UNCERTAINTY)
 
 
 def pybullet_make(p, dt):
@@ -138,12 +116,11 @@ def pybullet_make(p, dt):
     return EngineRun(step, lambda: x[:, :2].ravel(), bullet.close)
 
 
-# all forces from the state before a step, then the new velocity moves the points
-MODELS = {"pybullet": table_model("new velocity, old force", net_law(net), lambda p: (net(p).x, net(p).v),
-                                  lambda x, p: x.ravel())}
-ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
-    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; spring forces applied each step"),
+RUNNERS = (
+    *net_runners(net, MOTION, limits, finer_in_full=(20_000, 50_000), in_quick=False),
+    # all forces from the state before a step, then the new velocity moves the points
+    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; spring forces applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
 )
 
 
@@ -177,14 +154,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Discrete catenary", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(*INTEGRATORS, IMPLICIT_MESH),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
-    predicted_error=net_errors(net, T, truth, UNCERTAINTY, engines=MODELS),
-    engines=ENGINES,
-    compiled_in_quick=tuple(m.function for m in EXPLICIT if m in INTEGRATORS),
-    finer_in_full={"pymunk": (20_000, 50_000)},
-    slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),

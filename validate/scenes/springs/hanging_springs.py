@@ -7,14 +7,13 @@ import numpy as np
 from solutions.integrators import advance
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import in_space, pymunk_net, start_of
-from validate.methods import EXPLICIT, IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.schemes import Model, advance_modes, nudged, predict_by_tables, table_model
+from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.schemes import Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
-from validate.scene import EXACT, PYMUNK, Engine, Scene
+from validate.scene import EXACT, PYMUNK, Scene, engine, ours
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
-# the first two build a dense matrix at every correction, and the third takes seconds to compile: see spring_net
 UNCERTAINTY = 1e-13          # 200 radians of the fastest mode, each rounded to 2e-16
 
 
@@ -85,12 +84,15 @@ def truth(p, t):
     return static_extension(p) - shapes @ (shape * (shapes.T @ static_extension(p)))
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Each mode on its own, as the system is linear.  pymunk is symplectic Euler: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
-    limits = by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
-    return {**limits, "pymunk": limits[1]}
+    return by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT] + 10.0 * UNCERTAINTY
 
 
 def law(p):
@@ -109,29 +111,26 @@ def from_modes(q, p):
     return static_extension(p) + modes(p)[2] @ q
 
 
-def pymunk_chain(p, h, steps, nudge):
+def pymunk_model(p, h, steps, nudge):
     chain = net(p)
     return observe((pymunk_net_model(chain._replace(x=nudged(chain.x, nudge)), h, steps),), p)
 
 
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT] + 10.0 * UNCERTAINTY
+MOTION = Motion(T, law, released, from_modes, truth, floor, advance_modes)
 
 
-ENGINES = (
-    Engine(
-        PYMUNK,
-        "",
-        lambda p, dt: pymunk_net(net(p), dt, lambda x: observe((x,), p)),
-        1,
-        "DampedSpring between point masses",
-    ),
+def pymunk_make(p, dt):
+    return pymunk_net(net(p), dt, lambda x: observe((x,), p))
+
+
+RUNNERS = (
+    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER,
+           compiled_in_quick=m in EXPLICIT) for m in INTEGRATORS),
+    # in one coordinate springs are linear: one Newton step of the implicit mesh is all of implicit Euler
+    ours(IMPLICIT_MESH, limit=limits, predicted=MOTION.predict(IMPLICIT_EULER.table), in_quick=False),
+    engine(PYMUNK, "", pymunk_make, "DampedSpring between point masses", finer_in_full=(50_000,),
+           order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_model))),
 )
-
-
-# in one coordinate springs are linear: one Newton step of the implicit mesh is all of implicit Euler
-MODELS = {"pymunk": Model(1, pymunk_chain),
-          "implicit mesh": table_model("implicit Euler", law, released, from_modes, march=advance_modes)}
 
 
 def points(observed, p):
@@ -156,14 +155,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Hanging springs", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(*INTEGRATORS, IMPLICIT_MESH),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
-    predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, MODELS, march=advance_modes),
-    engines=ENGINES,
-    compiled_in_quick=tuple(m.function for m in EXPLICIT if m in INTEGRATORS),
-    finer_in_full={"pymunk": (50_000,)},
-    slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),

@@ -7,16 +7,14 @@ import numpy as np
 
 from solutions.integrators import advance, amplification_matrix, average_velocity_step
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import NET, net_points, observe_net, start_net
-from validate.methods import EXPLICIT, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.springs import SquareNet, modes, net_motion, net_truth, square_net
+from validate.engines.springs import NET, net_points, net_runners, observe_net, start_net
+from validate.reference.springs import SquareNet, modes, net_limits, net_steps, net_truth, square_net
 from validate.scene import Scene
 
 FRAMES_PER_SECOND = 24
 SAMPLES = (1, 4, 16, 64, 256)              # steps per frame [-]
 T = 1.0                                    # [s]
 STEPS = tuple(FRAMES_PER_SECOND * samples for samples in SAMPLES)
-# the first two build a dense matrix at every correction, and the third takes seconds to compile: see spring_net
 UNCERTAINTY = 1e-12
 
 # The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6 ms.
@@ -27,6 +25,12 @@ CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
     return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+
+
+truth = net_truth(T)
+RUNNERS = net_runners(
+    square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
+    in_quick=False)
 
 
 def sanity_checks():
@@ -42,7 +46,7 @@ def sanity_checks():
         A = amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt)
         expected = 1.0 - c * dt + 0.5 * (omega * dt) ** 2
         claims.append((f"det A, {samples} samples per frame [-]", np.linalg.det(A), expected, 1e-12))
-    p, end = CASES["net"], net_motion(CASES["net"], T)(T).ravel()
+    p, end = CASES["net"], truth(CASES["net"], T)
     for samples, said, digit in ((4, 0.03, 0.005), (16, 0.008, 0.0005)):  # of the docstring, rounded to one digit
         steps = round(FRAMES_PER_SECOND * samples * T)
         off = observe_net(run(average_velocity_step, acceleration, start_net(p), p, T / steps, steps), p) - end
@@ -54,10 +58,9 @@ def sanity_checks():
 SCENE = Scene(
     title="1, 4, 16 samples per frame",
     **NET,
-    **net_truth(T, UNCERTAINTY),
-    cases=CASES, steps=STEPS,
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
     acceleration=acceleration, run=run,
-    compiled_in_quick=tuple(m.function for m in EXPLICIT if m in INTEGRATORS),
-    slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
 )

@@ -8,9 +8,17 @@ import numpy as np
 from solutions.integrators import advance
 from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import NET, start_net
-from validate.methods import EXPLICIT, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.springs import SquareNet, modes, motion, net_truth, rest_positions, square_net
+from validate.engines.springs import NET, net_runners, start_net
+from validate.reference.springs import (
+    SquareNet,
+    modes,
+    motion,
+    net_limits,
+    net_steps,
+    net_truth,
+    rest_positions,
+    square_net,
+)
 from validate.scene import Scene
 
 T = 0.6                      # [s]: two bounces, and half an oscillation of the threads alone
@@ -22,6 +30,12 @@ CASES = {"structural": SquareNet(), "with shear": SquareNet(shear=1), "with shea
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
     return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+
+
+truth = net_truth(T)
+RUNNERS = net_runners(
+    square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
+    finer_in_full=(10_000, 20_000), slow_cases=tuple(CASES)[1:], most_in_quick=200)
 
 
 def sanity_checks():
@@ -53,13 +67,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Spring net",
     **NET,
-    **net_truth(T, UNCERTAINTY),
-    cases=CASES, steps=STEPS,
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
     acceleration=acceleration, run=run,
-    compiled_in_quick=tuple(m.function for m in EXPLICIT if m in INTEGRATORS),
-    finer_in_full={"pymunk": (10_000, 20_000)},
-    slow_methods=LEFT_TO_FULL,          # of these the implicit ones build a dense matrix at every correction
-    slow_runs=dict.fromkeys(list(CASES)[1:], ("implicit_spring_network_step",)),
-    shorter_in_quick={"implicit_spring_network_step": 200},
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
 )

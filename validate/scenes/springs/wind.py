@@ -9,9 +9,9 @@ from solutions.integrators import advance
 from solutions.springs import air_force
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space
-from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.reference.schemes import predict_by_tables, table_model
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_OLD_FORCE, Motion
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
 
 T = 2.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -66,12 +66,15 @@ def truth(p, t):
     return u * t - (np.array([p.vx, p.vy]) - u) * np.expm1(-k * t) / k
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Only the term that decays has an error, of the length |v₀ − u|/k and with the rate k."""
     k = p.k_v / p.m
     size = np.linalg.norm(np.array([p.vx, p.vy]) - drift(p)) / k / np.linalg.norm(truth(p, T))
-    limits = {order: size * limit for order, limit in by_order(k, T, dt).items()}
-    return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
+    return {order: size * limit for order, limit in by_order(k, T, dt).items()}
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT]
 
 
 def law(p):
@@ -87,12 +90,7 @@ def seen(x, p):
     return [x.real, x.imag]
 
 
-MODELS = {"pymunk": table_model("old velocity, old force", law, thrown, seen),
-          "pybullet": table_model("new velocity, old force", law, thrown, seen)}
-
-
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT]
+MOTION = Motion(T, law, thrown, seen, truth, floor)
 
 
 def pymunk_make(p, dt):
@@ -122,6 +120,15 @@ def pybullet_make(p, dt):
     return EngineRun(step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
 
 
+RUNNERS = (
+    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
+    engine(PYMUNK, "", pymunk_make, "force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(OLD_VELOCITY_OLD_FORCE)),
+    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
+)
+
+
 def points(observed, p):
     return observed[None, :]
 
@@ -138,13 +145,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Against the wind", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    methods=INTEGRATORS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14, tolerance=tolerance,
-    engines=(Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
-             Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step")),
-    predicted_error=predict_by_tables(T, law, thrown, seen, truth, floor, MODELS),
-    slow_methods=LEFT_TO_FULL,
+    truth=truth, truth_uncertainty=1e-14,
     sanity_checks=sanity_checks, points=points,
     uses=("one point in the plane", "the force of the air", "one step function"),
     ablations={
