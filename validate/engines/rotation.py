@@ -53,15 +53,7 @@ def rolling_ball(ball, v, maximal, dt):
     """Make an EngineRun of a ball bowled along x on a horizontal floor; read: distance, speed and rim speed."""
     bullet = Rigid(dt, ball.gravity, iterations=100)
     bullet.floor()
-    body = bullet.body(
-        ball.m,
-        ball.I_body,
-        (0.0, 0.0, ball.radius),
-        np.zeros(3),
-        maximal,
-        v=v,
-        shape=bullet.ball(ball.radius),
-        mu=ball.mu,
-    )
+    body = bullet.body(ball.m, ball.I_body, (0.0, 0.0, ball.radius), np.zeros(3), maximal,
+                       v=v, shape=bullet.ball(ball.radius), mu=ball.mu)
     read = lambda: np.array([bullet.position(body)[0], bullet.velocity(body)[0], ball.radius * bullet.omega(body)[1]])
     return EngineRun(bullet.step, read, bullet.close)

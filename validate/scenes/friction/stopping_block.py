@@ -86,7 +86,7 @@ def limits(p, dt):
 
 
 def pyramid_limit(p, dt):
-    """With the pyramid the same holds for each component, relative to a shorter distance."""
+    """With the pyramid this limit holds for each component, relative to a shorter distance."""
     bias = np.linalg.norm(0.5 * thrown(p)[:2] * dt + p.mu * p.g * dt * dt / 8.0) / np.linalg.norm(pyramid(p, T))
     return bias + round_off(p, dt)
 
@@ -101,7 +101,7 @@ old_velocity = partial(new_velocity, new=False)
 
 
 def new_velocities(p, dt):
-    """With the pyramid the same holds for each component."""
+    """With the pyramid the rectangle rule holds for each component."""
     velocities = lambda t: np.maximum(0.0, thrown(p)[:2] - p.mu * p.g * t[:, None])
     return Prediction(summed(velocities, T, dt, True) - pyramid(p, T), round_off(p, dt))
 
