@@ -91,7 +91,7 @@ def new_velocity(p, dt, share=1.0, more=0.0):
 
     The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
     """
-    # share: of the new velocity in the way of a step; more: what the first step adds to m v₀ + I ω/R, over m [m/s]
+    # share: of the new velocity in the way of a step; more: what the first step adds to v + I ω/mR [m/s]
     rolling = (p.v0 + more) / (1.0 + p.shape)
     velocity = lambda t: np.maximum(p.v0 - p.mu * p.g * t, rolling)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
