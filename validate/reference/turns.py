@@ -244,7 +244,7 @@ class Turn(NamedTuple):
     """One of these steps."""
     order: int
     step: Callable
-    powers: tuple | None = None          # the first three powers of the step in its error; order, order + 1, order + 2
+    powers: tuple | None = None          # the first three powers of h in its error; without them order, order + 1, …
 
 
 MATRIX = Turn(1, kept_L(by_columns))
