@@ -4,7 +4,7 @@ A new method is one line here.  Colours are those of Okabe and Ito 2008, which c
 and a few more.  Every curve has a marker, too.
 """
 
-from .reference import kinematics, schemes
+from .reference import kinematics, schemes, turns
 from .scene import Method
 
 # integrators
@@ -39,16 +39,19 @@ POINTS = Method("point_mass_inertia", "points", 1, "inertia_tensors", "#E69F00",
 PARTS = Method("combine", "parts", 2, "inertia_tensors", "#009E73", "s")
 
 # rotation
-MATRIX = Method("matrix_step", "ω*R, renormalised", 1, "rotation", "#8C6D31", "<")
-AXIS_ANGLE = Method("axis_angle_step", "axis–angle", 1, "rotation", "#E69F00", "o")
-QUATERNION = Method("quaternion_step", "quaternion", 1, "rotation", "#CC79A7", "v")
-GYROSCOPIC = Method("gyroscopic_step", "gyroscopic term", 1, "rotation", "#D55E00", "D")
-IMPLICIT_GYROSCOPIC = Method("implicit_gyroscopic_step", "gyroscopic, implicit", 1, "rotation", "#7F7F7F", "h")
-RUNGE_KUTTA = Method("runge_kutta_step", "Runge–Kutta 4", 4, "rotation", "#009E73", "s")
-MIDPOINT_TURN = Method("midpoint_step", "midpoint turn", 2, "rotation", "#6A51A3", ">")
-SPLITTING = Method("splitting_step", "splitting", 2, "rotation", "#56B4E9", "^")
-COMPOSED_SPLITTING = Method("composed_splitting_step", "splitting, composed", 4, "rotation", "#0072B2", "P")
-COMPOSED_MIDPOINT = Method("composed_midpoint_step", "midpoint, composed", 4, "rotation", "#B07CC6", "d")
+MATRIX = Method("matrix_step", "ω*R, renormalised", 1, "rotation", "#8C6D31", "<", turns.MATRIX)
+AXIS_ANGLE = Method("axis_angle_step", "axis–angle", 1, "rotation", "#E69F00", "o", turns.AXIS_ANGLE)
+QUATERNION = Method("quaternion_step", "quaternion", 1, "rotation", "#CC79A7", "v", turns.QUATERNION)
+GYROSCOPIC = Method("gyroscopic_step", "gyroscopic term", 1, "rotation", "#D55E00", "D", turns.GYROSCOPIC)
+IMPLICIT_GYROSCOPIC = Method("implicit_gyroscopic_step", "gyroscopic, implicit", 1, "rotation", "#7F7F7F", "h",
+                             turns.IMPLICIT_GYROSCOPIC)
+RUNGE_KUTTA = Method("runge_kutta_step", "Runge–Kutta 4", 4, "rotation", "#009E73", "s", turns.RUNGE_KUTTA)
+MIDPOINT_TURN = Method("midpoint_step", "midpoint turn", 2, "rotation", "#6A51A3", ">", turns.MIDPOINT_TURN)
+SPLITTING = Method("splitting_step", "splitting", 2, "rotation", "#56B4E9", "^", turns.SPLITTING)
+COMPOSED_SPLITTING = Method("composed_splitting_step", "splitting, composed", 4, "rotation", "#0072B2", "P",
+                            turns.COMPOSED_SPLITTING)
+COMPOSED_MIDPOINT = Method("composed_midpoint_step", "midpoint, composed", 4, "rotation", "#B07CC6", "d",
+                           turns.COMPOSED_MIDPOINT)
 ROLLING = Method("rolling_step", "the lecture's loop", 1, "rotation", "#0072B2", "P")
 AVERAGE_ROLLING = Method("average_rolling_step", "mean velocities", 2, "rotation", "#009E73", "s")
 

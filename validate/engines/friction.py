@@ -4,11 +4,11 @@ Both engines hold a resting block by impulses, as our sliding_step does, and dif
 pybullet moves with the new velocity, pymunk with the old one.  The contact exists from the first step if the block
 begins with the overlap that its engine tolerates.  Otherwise it first falls that far, and friction comes late.
 """
+
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import EVENT, SLIDING
 from validate.reference.friction import HALF, block_in_space
-from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun
+from validate.scene import EngineRun
 
 # half its height [m]: friction acts that far below the centre, and moves the load forward by μ LOW.  With a cube and
 # μ = 0.8 nearly all load is on its front edge, and pybullet's friction is up to 0.7 % too strong
@@ -51,30 +51,15 @@ def bullet_block(gravity, mu, v, fastest, dt, read, push=None, pyramid=False):
     reach = (2.0 * HALF**2 + LOW**2) ** 0.5      # the breaking threshold is relative to it; no step may exceed it
     pb.setPhysicsEngineParameter(numSolverIterations=SWEEPS, enableConeFriction=0 if pyramid else 1,
                                  contactBreakingThreshold=max(0.02, 1.2 * fastest * dt / reach))
-    ground = pb.createMultiBody(
-        0.0,
-        pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[20.0, 20.0, 1.0]),
-        basePosition=[0.0, 0.0, -1.0],
-        useMaximalCoordinates=0 if pyramid else 1,
-    )
-    slab = pb.createMultiBody(
-        MASS,
-        pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[HALF, HALF, LOW]),
-        basePosition=[0.0, 0.0, LOW - SLOP],
-        useMaximalCoordinates=0 if pyramid else 1,
-    )
+    box = lambda m, half, z: pb.createMultiBody(
+        m, pb.createCollisionShape(pb.GEOM_BOX, halfExtents=half), basePosition=[0.0, 0.0, z],
+        useMaximalCoordinates=0 if pyramid else 1)
+    ground = box(0.0, [20.0, 20.0, 1.0], -1.0)
+    slab = box(MASS, [HALF, HALF, LOW], LOW - SLOP)
     # the engine multiplies the two coefficients
     pb.changeDynamics(ground, -1, lateralFriction=1.0)
-    pb.changeDynamics(
-        slab,
-        -1,
-        lateralFriction=mu,
-        linearDamping=0,
-        angularDamping=0,
-        rollingFriction=0,
-        spinningFriction=0,
-        **({"maxJointVelocity": 1e9} if pyramid else {}),
-    )
+    pb.changeDynamics(slab, -1, lateralFriction=mu, linearDamping=0, angularDamping=0, rollingFriction=0,
+                      spinningFriction=0, **({"maxJointVelocity": 1e9} if pyramid else {}))
     pb.resetBaseVelocity(slab, list(map(float, v)))
     step = bullet.step
     if push is not None:
@@ -91,7 +76,6 @@ def block_on(ground, start):
     """Return the fields that the scenes of a block share; ground: "floor" or "slope", start: that of the scene."""
     return {
         "lesson": "friction",
-        "methods": (SLIDING, EVENT),
         "start": start,
         "observe": along_the_plane,
         "links": lambda p: [(0, 1)],
@@ -104,12 +88,15 @@ def block_on(ground, start):
     }
 
 
-def slab_on_line_and_box(pymunk_make, pybullet_make, before="", after=""):
-    """Return both engines with their slab; the words before and after it say what a scene does with it."""
-    line = f"{before}a slab of 2 m on a line{after}; {SWEEPS} iterations, collision_slop 1e-5"
-    box = (f"{before}a slab of 2 m on a box{after}; maximal coordinates, solverResidualThreshold 0, "
-           f"{SWEEPS} iterations")
-    return Engine(PYMUNK, "", pymunk_make, 1, line), Engine(PYBULLET, "", pybullet_make, 1, box)
+def slab_on_line(before="", after=""):
+    """Return pymunk's settings; the words before and after the slab say what a scene does with it."""
+    return f"{before}a slab of 2 m on a line{after}; {SWEEPS} iterations, collision_slop 1e-5"
+
+
+def slab_on_box(before="", after=""):
+    """Return pybullet's settings likewise."""
+    return (f"{before}a slab of 2 m on a box{after}; maximal coordinates, solverResidualThreshold 0, "
+            f"{SWEEPS} iterations")
 
 
 def pushed(step, dt, apply, push):
@@ -135,25 +122,11 @@ def bullet_in_hollow(gravity, mu, x, v, fastest, wall, dt):
     pb.setPhysicsEngineParameter(numSolverIterations=SWEEPS, enableConeFriction=1, contactSlop=0,
                                  contactBreakingThreshold=max(0.02, 1.2 * fastest * dt / radius))
     ground = pb.createMultiBody(0.0, pb.createCollisionShape(pb.GEOM_PLANE), useMaximalCoordinates=0)
-    ball = pb.createMultiBody(
-        MASS,
-        pb.createCollisionShape(pb.GEOM_SPHERE, radius=radius),
-        basePosition=list(map(float, x)),
-        useMaximalCoordinates=0,
-    )
+    ball = pb.createMultiBody(MASS, pb.createCollisionShape(pb.GEOM_SPHERE, radius=radius),
+                              basePosition=list(map(float, x)), useMaximalCoordinates=0)
     pb.changeDynamics(ground, -1, lateralFriction=1.0)
-    pb.changeDynamics(
-        ball,
-        -1,
-        mass=MASS,
-        localInertiaDiagonal=[1e9] * 3,
-        lateralFriction=mu,
-        linearDamping=0,
-        angularDamping=0,
-        rollingFriction=0,
-        spinningFriction=0,
-        maxJointVelocity=1e9,
-    )
+    pb.changeDynamics(ball, -1, mass=MASS, localInertiaDiagonal=[1e9] * 3, lateralFriction=mu, linearDamping=0,
+                      angularDamping=0, rollingFriction=0, spinningFriction=0, maxJointVelocity=1e9)
     pb.resetBaseVelocity(ball, list(map(float, v)))
 
     def step():

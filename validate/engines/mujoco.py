@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..reference.orientation import quaternion
-from ..scene import MUJOCO, Engine, EngineRun
+from ..scene import EngineRun
 from . import quiet_import
 
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
@@ -67,19 +67,11 @@ def rotation_of(q):
     return R.reshape(3, 3)
 
 
-def free_body(integrator):
-    """Return make(p, dt) of a free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
-    def make(p, dt):
-        model, data = world(dt, f"<body><freejoint/>{inertial(1.0, p.moments())}</body>", integrator=integrator)
-        data.qvel[3:] = p.omega()                        # in the body
-        return running(model, data, lambda: rotation_of(data.qpos[3:7]).ravel())
-    return make
-
-
-FREE_WITNESS = (
-    Engine(MUJOCO, "", free_body("RK4"), 4, "freejoint; Runge–Kutta 4", 5000),
-    Engine(MUJOCO, "default", free_body("Euler"), 1, "freejoint; the semi-implicit Euler step", 5000),
-)
+def free_body(p, dt, integrator="RK4"):
+    """Make the EngineRun of a free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
+    model, data = world(dt, f"<body><freejoint/>{inertial(1.0, p.moments())}</body>", integrator=integrator)
+    data.qvel[3:] = p.omega()                            # in the body
+    return running(model, data, lambda: rotation_of(data.qpos[3:7]).ravel())
 
 
 def top(m, moments, length, R, spin, g, dt):

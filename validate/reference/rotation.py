@@ -160,7 +160,8 @@ class HeavyTop:
 
 # ---------------------------------------------------------------------- what a step may get wrong
 
-FIRST_ORDER = ("L kept", "L kept, by columns", "gyroscopic", "gyroscopic, implicit")
+FIRST_ORDER = L_KEPT, BY_COLUMNS, EXPLICIT, IMPLICIT = ("L kept", "L kept, by columns", "gyroscopic",
+                                                        "gyroscopic, implicit")
 
 
 @cache
@@ -208,25 +209,22 @@ def growth_of_errors(I, omega, T):
     return float(rate), float(total), dict(zip(FIRST_ORDER, map(float, first)))
 
 
-def free_limits(p, T, dt, kinds=FIRST_ORDER):
-    """Return {order k: largest relative error of R at T} on the free body of p; what engines do, by name.
+def free_limits(T, kinds=FIRST_ORDER):
+    """Return function(p, dt) → {order k: largest relative error of R at T} on the free body of p.
 
-    First order: the worst of these kinds, χ = C dt, as χ e^χ where the expansion is no longer exact, plus the limit
-    of second order.  Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by
-    (rate dt)ᵏ⁺¹ in its angle, which accumulates.  Round-off, an error of 1e-16 per step, grows like the former.
+    kinds: what steps of first order may get wrong.
     """
-    rate, grown, first = growth_of_errors(tuple(p.moments()), tuple(p.omega()), T)
-    noise, plain = (1.0 + grown / (rate * T)) * T / dt * ROUND_OFF, by_order(rate, T, dt)
+    def limits(p, dt):
+        """Errors grow as neighbouring motions separate, by the propagator Φ of the linearised motion.
 
-    def of_kind(C):
-        chi = min(C * dt, 500.0)                                         # e⁵⁰⁰ is large enough, and finite
-        return chi * np.exp(chi) + higher[2]
-    higher = {k: plain[k] + grown * (rate * dt) ** k + noise for k in (2, 4)}
-    return {
-        **higher,
-        1: of_kind(max(first[kind] for kind in kinds)),
-        EXACT: plain[EXACT],
-        "pybullet, reduced coordinates": of_kind(first["gyroscopic"]),
-        "mujoco, default": of_kind(first["gyroscopic"]),
-        "pybullet": of_kind(first["gyroscopic, implicit"]),
-    }
+        First order: the worst of its kinds of step, χ = C dt, as χ e^χ where the expansion is no longer exact, plus the
+        limit of second order.  The constants C follow from that motion, too; two kinds are pybullet's two kinds of
+        body.  Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by (rate dt)ᵏ⁺¹
+        in its angle, which accumulates.  Round-off, an error of 1e-16 per step, grows like the former.
+        """
+        rate, grown, first = growth_of_errors(tuple(p.moments()), tuple(p.omega()), T)
+        noise, plain = (1.0 + grown / (rate * T)) * T / dt * ROUND_OFF, by_order(rate, T, dt)
+        higher = {k: plain[k] + grown * (rate * dt) ** k + noise for k in (2, 4)}
+        chi = min(max(first[kind] for kind in kinds) * dt, 500.0)        # e⁵⁰⁰ is large enough, and finite
+        return {**higher, 1: chi * np.exp(chi) + higher[2], EXACT: plain[EXACT]}
+    return limits

@@ -5,8 +5,10 @@ w = Re α, z = −Im α, y = −Re β, x = −Im β.  A step is step(torque, R, 
 tuples in world coordinates.  Plain numbers, because arrays of three cost ten times as much.
 """
 
+from collections.abc import Callable
 from functools import cache
 from math import cos, sin, sqrt, tan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,10 +17,7 @@ from .orientation import quaternion
 from .schemes import ErrorLaw
 
 GAMMA = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))                # Suzuki 1990
-ORDERS = {"Runge–Kutta 4": 4, "midpoint turn": 2, "splitting": 2, "splitting, composed": 4, "midpoint, composed": 4,
-          "mujoco": 4}
-EVEN = {"midpoint turn": (2, 4, 6), "splitting": (2, 4, 6), "splitting, composed": (4, 6, 8),
-        "midpoint, composed": (4, 6, 8)}                # each is its own inverse: even powers of the step only
+EVEN = {2: (2, 4, 6), 4: (4, 6, 8)}  # powers of the step in the error of a step that is its own inverse, by its order
 FINEST = {1: 1000, 2: 800, 4: 400}
 DOUBLINGS = {1: 4, 2: 3, 4: 3}
 NEWTON = 12                  # iterations at most; from a near guess each doubles the digits
@@ -239,57 +238,73 @@ def composed(step):
     return five
 
 
-STEPS = {
-    "ω*R, renormalised": kept_L(by_columns), "axis–angle": kept_L(exactly), "quaternion": kept_L(nearly),
-    "gyroscopic term": kept_omega(False, nearly), "gyroscopic, implicit": kept_omega(True, nearly),
-    "Runge–Kutta 4": classical, "midpoint turn": kicked(free_midpoint), "splitting": kicked(free_splitting),
-    "splitting, composed": composed(kicked(free_splitting)), "midpoint, composed": composed(kicked(free_midpoint)),
-    # Bullet: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω
-    "pybullet, reduced coordinates": kept_omega(False, exactly), "pybullet": kept_omega(True, exactly),
-    # MuJoCo: Runge–Kutta 4, and the same as the former by its default
-    "mujoco": munthe_kaas, "mujoco, default": kept_omega(False, exactly)}
-ENGINES = tuple(label for label in STEPS if label.startswith(("pybullet", "mujoco")))
+# ---------------------------------------------------------------------------------------------- all of them
+
+class Turn(NamedTuple):
+    """One of these steps."""
+    order: int
+    step: Callable
+    powers: tuple | None = None          # the first three powers of h in its error; without them order, order + 1, …
+
+
+MATRIX = Turn(1, kept_L(by_columns))
+AXIS_ANGLE = Turn(1, kept_L(exactly))
+QUATERNION = Turn(1, kept_L(nearly))
+GYROSCOPIC = Turn(1, kept_omega(False, nearly))
+IMPLICIT_GYROSCOPIC = Turn(1, kept_omega(True, nearly))
+RUNGE_KUTTA = Turn(4, classical)
+MIDPOINT_TURN = Turn(2, kicked(free_midpoint), EVEN[2])
+SPLITTING = Turn(2, kicked(free_splitting), EVEN[2])
+COMPOSED_SPLITTING = Turn(4, composed(SPLITTING.step), EVEN[4])
+COMPOSED_MIDPOINT = Turn(4, composed(MIDPOINT_TURN.step), EVEN[4])
+# what engines do: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω; Runge–Kutta 4
+EXPLICIT_TERM = Turn(1, kept_omega(False, exactly))
+IMPLICIT_TERM = Turn(1, kept_omega(True, exactly))
+MUNTHE_KAAS = Turn(4, munthe_kaas)
 
 
 def no_torque(M):
     return 0.0, 0.0, 0.0
 
 
-def predict_turns(T, moments, begin, torque, seen, truth, floor, engines=(), doublings=DOUBLINGS):
-    """Return the field `predicted_error` of a scene with one turning body.
+class TurningBody(NamedTuple):
+    """What a scene tells of its one turning body."""
+    T: float                 # the output time [s]
+    moments: Callable        # p → I
+    begin: Callable          # p → (pair, L) at the start
+    torque: Callable         # p → (rows of R → torque)
+    seen: Callable           # rows of R → what the scene observes
+    truth: Callable          # (p, t) → the same
+    floor: Callable          # (p, dt) → round-off, relative
+    doublings: dict = DOUBLINGS          # {order: as in ErrorLaw}
 
-    moments(p) → I;    begin(p) → (pair, L) at the start;    torque(p) → rows of R → torque;    seen(rows of R) → array;
-    floor(p, dt) → round-off;    engines: labels of STEPS that are engines here;    doublings: {order: as in ErrorLaw}.
-    """
-    @cache
-    def error_law(label, p):
-        I, step = tuple(map(float, moments(p))), STEPS[label]
+    def predict(self, turn):
+        """Return the field `predicted` of a Runner that does what a Turn does."""
+        @cache
+        def error_law(p):
+            I = tuple(map(float, self.moments(p)))
 
-        def run(steps, nudge):
-            (q, L), moment = begin(p), torque(p)
-            L = tuple(one + nudge * share for one, share in zip(L, (0.5, -0.3, 0.8)))
-            for _ in range(steps):
-                q, L = step(moment, q, L, I, T / steps)
-            return seen(matrix(q))
-        order = ORDERS.get(label, 1)
-        return ErrorLaw(run, np.array(truth(p, T), dtype=float), EVEN.get(label, order), T,
-                        FINEST[order], doublings[order])
+            def run(steps, nudge):
+                (q, L), moment = self.begin(p), self.torque(p)
+                L = tuple(one + nudge * share for one, share in zip(L, (0.5, -0.3, 0.8)))
+                for _ in range(steps):
+                    q, L = turn.step(moment, q, L, I, self.T / steps)
+                return self.seen(matrix(q))
+            return ErrorLaw(run, np.array(self.truth(p, self.T), dtype=float), turn.powers or turn.order, self.T,
+                            FINEST[turn.order], self.doublings[turn.order])
 
-    def predicted_error(label, p, dt):
-        """The error, with its sign, of the same step written once more in complex numbers: at the same step where that
-        is coarse, else by its expansion in powers of dt.  pybullet turns its bodies by the gyroscopic term, explicit
-        in reduced coordinates and implicit in maximal ones; MuJoCo by Runge–Kutta 4 in the form of Munthe-Kaas, and by
-        default like pybullet in reduced coordinates.
-        """
-        if label not in STEPS or (label in ENGINES and label not in engines):
-            return None
-        return error_law(label, p).prediction(dt, floor(p, dt))
-
-    return predicted_error
+        def predicted_error(p, dt):
+            """The error, with its sign, of the same step written once more in complex numbers: at the same step where
+            that is coarse, else by its expansion in powers of dt.  pybullet turns its bodies by the gyroscopic term,
+            explicit in reduced coordinates and implicit in maximal ones; MuJoCo by Runge–Kutta 4 in the form of
+            Munthe-Kaas, and by default like pybullet in reduced coordinates.
+            """
+            return error_law(p).prediction(dt, self.floor(p, dt))
+        return predicted_error
 
 
-def free_turns(T, truth, uncertainty):
-    """Return the field `predicted_error` of a free body that starts at R = 1, with p.moments() and p.omega().
+def free_turning(T, truth, uncertainty):
+    """Return the TurningBody of a free body that starts at R = 1, with p.moments() and p.omega().
 
     The floor is round-off, u = 1.1e-16.  A step rounds the orientation by about u in each direction.  A rounding about
     L or about the axis of symmetry stays what it is.  One that tilts the axis by δ at t also changes the rate of spin,
@@ -307,5 +322,5 @@ def free_turns(T, truth, uncertainty):
         return (1.0 + 0j, 0j), tuple(map(float, p.moments() * p.omega()))
     # roundings as derived above, 1e-12 of Newton's method, and what the truth leaves open
     floor = lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty
-    return predict_turns(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
-                         ENGINES, {**DOUBLINGS, 1: 0})
+    return TurningBody(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
+                       {**DOUBLINGS, 1: 0})

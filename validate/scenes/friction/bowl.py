@@ -1,6 +1,6 @@
 """A particle slides inside a round bowl: without friction it keeps oscillating, with friction it comes to rest."""
 
-from functools import cache
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from validate.engines.bullet import CONTACT_ERP
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
 from validate.reference.schemes import ErrorLaw
-from validate.scene import PYBULLET, Engine, Scene, by_order
+from validate.scene import PYBULLET, Scene, by_order, engine, ours
 
 T = 2.0                      # [s]: one oscillation; with friction it has come to rest
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -96,16 +96,8 @@ def reference(p):
             if np.linalg.norm(down) <= p.mu * n[2]:
                 return pieces, x
             v = 1.0001 * AT_REST * down / np.linalg.norm(down)
-        piece = solve_ivp(
-            law,
-            (t, T),
-            np.concatenate((x, v)),
-            method="DOP853",
-            rtol=1e-12,
-            atol=1e-13,
-            dense_output=True,
-            events=slow if p.mu else None,
-        )
+        piece = solve_ivp(law, (t, T), np.concatenate((x, v)), method="DOP853", rtol=1e-12, atol=1e-13,
+                          dense_output=True, events=slow if p.mu else None)
         pieces.append((t, piece.sol))
         # The root of `slow` may be rounded to a speed above AT_REST, so the event says that the mass has stopped.
         t, x, v, stopped = piece.t[-1], piece.y[:3, -1], piece.y[3:, -1], piece.status == 1
@@ -129,13 +121,12 @@ def fastest(p):
     return np.sqrt(p.v0**2 + 2.0 * p.g * (p.radius + place(p)[0][2]))
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Nothing changes faster than the rate √(g/R) and the rotation v/R; pybullet is of order 1, like our steps."""
-    limits = by_order(np.sqrt(p.g / p.radius) + fastest(p) / p.radius, T, dt)
-    return {**limits, "pybullet": limits[1]}
+    return by_order(np.sqrt(p.g / p.radius) + fastest(p) / p.radius, T, dt)
 
 
-def in_steps(p, steps, gripping, nudge):
+def in_steps(p, steps, nudge, gripping=False):
     """Return x at T: fall, move with the new velocity, go back to the wall; stop what goes into it, and friction.
 
     Friction takes at most μ times what the wall stops of the velocity along it.  With `gripping` it takes at most μ
@@ -191,20 +182,19 @@ def in_bullet(p, steps, nudge):
     return x
 
 
-@cache
-def error_law(label, p):
-    run = lambda steps, nudge: in_steps(p, steps, label == "gripping", nudge)
-    if label == "pybullet":
-        run = lambda steps, nudge: in_bullet(p, steps, nudge)
-    return ErrorLaw(run, np.array(truth(p, T)), 1, T, 800)
+def errors_of(march):
+    """Return the field `predicted` of a Runner that ends where march(p, steps, nudge) ends."""
+    @cache
+    def error_law(p):
+        return ErrorLaw(partial(march, p), np.array(truth(p, T)), 1, T, 800)
 
-
-def predicted_error(label, p, dt):
-    """The error, with its sign, of the same rule in plain numbers: the fall, the way back to the wall, the friction.
-
-    At the same step where that is coarse, else by its expansion in powers of dt.  pybullet's own step likewise.
-    """
-    return error_law(label, p).prediction(dt, 1e-10) if label in ("contact", "gripping", "pybullet") else None
+    def predicted_error(p, dt):
+        """The error, with its sign, of the same rule in plain numbers: the fall, the way back to the wall, the
+        friction.  At the same step where that is coarse, else by its expansion in powers of dt.  pybullet's own step
+        likewise.
+        """
+        return error_law(p).prediction(dt, 1e-10)
+    return predicted_error
 
 
 def pybullet_make(p, dt):
@@ -219,15 +209,14 @@ def pybullet_make(p, dt):
     return world._replace(read=lambda: np.array(world.read()))
 
 
-ENGINES = (
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        1,
-        "a ball that cannot turn, on the tangent plane of the bowl, placed anew before each step; contactSlop 0, "
-        f"solverResidualThreshold 0, {SWEEPS} iterations",
-    ),
+RUNNERS = (
+    # in a full run, until its error is as small as that of pybullet at 20,000 steps
+    ours(CONTACT, limit=limits, predicted=errors_of(in_steps), finer_in_full=(50_000, 150_000)),
+    ours(GRIPPING, limit=limits, predicted=errors_of(partial(in_steps, gripping=True))),
+    engine(PYBULLET, "", pybullet_make,
+           "a ball that cannot turn, on the tangent plane of the bowl, placed anew before each step; contactSlop 0, "
+           f"solverResidualThreshold 0, {SWEEPS} iterations",
+           order=1, limit=limits, predicted=errors_of(in_bullet)),
 )
 
 
@@ -253,11 +242,8 @@ def sanity_checks():
     begin = np.concatenate(place(smooth))
     energy = [0.5 * y[3:] @ y[3:] + smooth.g * y[2] for y in (begin, end)]
     spin = [y[0] * y[4] - y[1] * y[3] for y in (begin, end)]
-    far = [
-        np.arctan(np.hypot(x[0], 0.0 if q.trough else x[1]) / -x[2])
-        for q in (CASES["rough bowl"], p)
-        for x in [truth(q, T)]
-    ]
+    far = [np.arctan(np.hypot(x[0], 0.0 if q.trough else x[1]) / -x[2])
+           for q in (CASES["rough bowl"], p) for x in [truth(q, T)]]
     return (("rest angle in the rough trough [rad]", np.arctan2(x[0], -x[2]), rest, 1e-9),
             ("slope at the rest positions, over μ [-]: at most 1", np.tan(far) / p.mu, 0.5, 0.5),
             ("energy without friction after 2 s [J/kg]", energy[1], energy[0], 1e-9),
@@ -278,13 +264,11 @@ def links(p):
 SCENE = Scene(
     title="Particle in a bowl", lesson="friction",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(CONTACT, GRIPPING),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-9, tolerance=tolerance, predicted_error=predicted_error,
-    engines=ENGINES,
+    truth=truth, truth_uncertainty=1e-9,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),
-    finer_in_full={"contact_step": (50_000, 150_000)},       # there its error is as small as that of pybullet at 20,000
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("three coordinates", "an implicit surface", "one impulse for each contact"),

@@ -1,5 +1,6 @@
 """A block on a slope of 30°: released on a rough and on a smoother slope, and launched up one that can hold it."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -8,12 +9,13 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block
-from validate.engines.friction import block_on, bullet_block, pymunk_block, slab_on_line_and_box
+from validate.engines.friction import block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
-from validate.reference.friction import CLOSE, SoftBlock
+from validate.methods import EVENT, SLIDING
+from validate.reference.friction import CLOSE, NOTHING_LEFT, SoftBlock
 from validate.reference.schemes import summed
-from validate.scene import EXACT, MUJOCO, Departure, Engine, Prediction, Scene, by_order
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -70,7 +72,11 @@ def truth(p, t):
     return np.array([s + v * later + 0.5 * a * later * later])
 
 
-def tolerance(p, dt):
+def round_off(p, dt):
+    return by_order(0.0, T, dt)[EXACT]
+
+
+def limits(p, dt):
     """The velocity is exact at every step.  Positions sum it at one end of each: off by at most ½ dt times its change.
 
     In a block that slides for the time T the velocity changes by a T.  In one that stops on the way it changes by v₀,
@@ -78,37 +84,36 @@ def tolerance(p, dt):
     pymunk with the old one: the same bound.  On two or four contacts, a slab of 2 m settles within an engine's
     iterations.  It begins with the overlap that the engine tolerates.
     """
-    limits = by_order(0.0, T, dt)
     along, across = tilted(p)
     size = abs(truth(p, T)[0])
     change = abs(along + p.mu * across) * T if p.v0 == 0.0 else abs(p.v0)
     last = 0.0 if p.v0 == 0.0 else (along - p.mu * across) * dt * dt / 8.0
-    bias = (0.5 * dt * change + last) / (size or 1.0) + limits[EXACT]
-    return {**limits, 1: bias, "pymunk": bias, "pybullet": bias}
+    return {1: (0.5 * dt * change + last) / (size or 1.0) + round_off(p, dt), EXACT: round_off(p, dt)}
 
 
-NEW_VELOCITY = {"sliding": True, "pybullet": True, "pymunk": False}
-
-
-def predicted_error(label, p, dt):
+def new_velocity(p, dt, new=True):
     """Velocities are exact at every step, but the block moves with the new one (pymunk: the old one) all step long.
 
     So it ends where the rectangle rule ends: too low on the slope with the new velocity, too high with the old one.
-
-    MuJoCo's block hops on its contact: the same contact law, solved in closed form, predicts every hop.  Runs that
-    begin a nanometre apart show how far that can be trusted: the band is four times half of their range.
     """
     along, across = tilted(p)
-    if label == "mujoco":
-        middle, half = soft(p).hopping(p.v0, dt, round(T / dt))
-        law = held(p, T)[0]
-        return Prediction(np.array([middle - law]), 4.0 * half / (abs(law) or 1.0) + CLOSE)
     brake, a = along - p.mu * across, along + p.mu * across
-    if label not in NEW_VELOCITY or (p.v0 < 0.0 and a > 0.0) or p.v0 > 0.0:
+    if (p.v0 < 0.0 and a > 0.0) or p.v0 > 0.0:
         return None
     velocity = (lambda t: np.minimum(p.v0 + brake * t, 0.0)) if p.v0 < 0.0 else (lambda t: max(a, 0.0) * t)
-    error = np.array([summed(velocity, T, dt, NEW_VELOCITY[label])]) - truth(p, T)
-    return Prediction(error, by_order(0.0, T, dt)[EXACT])
+    return Prediction(np.array([summed(velocity, T, dt, new)]) - truth(p, T), round_off(p, dt))
+
+
+old_velocity = partial(new_velocity, new=False)
+
+
+def hops(p, dt):
+    """MuJoCo's block hops on its contact: the same contact law, solved in closed form, predicts every hop.  Runs that
+    begin a nanometre apart show how far that can be trusted: the band is four times half of their range.
+    """
+    middle, half = soft(p).hopping(p.v0, dt, round(T / dt))
+    law = held(p, T)[0]
+    return Prediction(np.array([middle - law]), 4.0 * half / (abs(law) or 1.0) + CLOSE)
 
 
 def soft(p):
@@ -140,9 +145,17 @@ def mujoco_make(p, dt):
     return mujoco_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array(x[:1]))
 
 
-ENGINES = (
-    *slab_on_line_and_box(pymunk_make, pybullet_make, before="gravity tilted, "),
-    Engine(MUJOCO, "", mujoco_make, 1, f"gravity tilted, a ball that cannot turn; {SOFT}"),
+TILTED = "gravity tilted, "
+RUNNERS = (
+    ours(SLIDING, limit=limits, predicted=new_velocity),
+    # nothing changes between two events, and a midpoint step is then exact
+    ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
+    engine(PYMUNK, "", pymunk_make, slab_on_line(TILTED), order=1, limit=limits, predicted=old_velocity),
+    engine(PYBULLET, "", pybullet_make, slab_on_box(TILTED), order=1, limit=limits, predicted=new_velocity),
+    engine(MUJOCO, "", mujoco_make, f"{TILTED}a ball that cannot turn; {SOFT}",
+           order=1, limit=limits, predicted=hops,
+           departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
+                               "slope that can hold it, a block creeps", held)),
 )
 
 
@@ -167,13 +180,8 @@ def points(observed, p):
 SCENE = Scene(
     title="Block on an incline",
     **block_on("slope", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
-    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
-    engines=ENGINES,
-    expected_departures={
-        "mujoco": Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
-                            "slope that can hold it, a block creeps", held)},
-    # Nothing changes between two events, and a midpoint step is then exact.
-    orders={"event_step": EXACT},
+    runners=RUNNERS,
+    truth=truth, truth_uncertainty=1e-15,
     omitted_methods=("the integrators of lesson 1 have no stopping condition; the stability case "
                      "regularised-friction-creeps shows the effect"),
     sanity_checks=sanity_checks,

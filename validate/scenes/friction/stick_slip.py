@@ -6,9 +6,21 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
-from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_line_and_box
-from validate.reference.friction import DrivenBlock, T, pushed_in_steps, slip_errors, slip_limits, slip_position, slips
-from validate.scene import Scene
+from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.methods import EVENT, SLIDING
+from validate.reference.friction import (
+    DrivenBlock,
+    T,
+    carried_limit,
+    carried_slip_error,
+    old_velocity_slip_error,
+    pushed_in_steps,
+    slip_error,
+    slip_limits,
+    slip_position,
+    slips,
+)
+from validate.scene import PYBULLET, PYMUNK, Scene, engine, ours
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
 CASES = {"F = 8 cos t": DrivenBlock(), "F = 16 cos 2t, turns without a rest": DrivenBlock(force=16.0, omega=2.0)}
@@ -41,7 +53,16 @@ def pybullet_make(p, dt):
     return bullet_block((0.0, 0.0, -p.g), p.mu, still, fastest, dt, lambda x: np.array(x[:1]), push(p, 3))
 
 
-ENGINES = slab_on_line_and_box(pymunk_make, pybullet_make, after=", the force applied each step")
+PUSHED = ", the force applied each step"
+RUNNERS = (
+    ours(SLIDING, limit=slip_limits, predicted=slip_error),
+    ours(EVENT, limit=slip_limits,
+         predicted="it cuts its steps where slips begin and end, so that its error is no smooth function of dt"),
+    engine(PYMUNK, "", pymunk_make, slab_on_line(after=PUSHED),
+           order=1, limit=slip_limits, predicted=old_velocity_slip_error),
+    engine(PYBULLET, "", pybullet_make, slab_on_box(after=PUSHED),
+           order=1, limit=carried_limit, predicted=carried_slip_error),
+)
 
 
 def sanity_checks():
@@ -70,8 +91,8 @@ def points(observed, p):
 SCENE = Scene(
     title="Stick and slip",
     **block_on("floor", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
-    truth=slip_position, truth_uncertainty=1e-13, tolerance=slip_limits, predicted_error=slip_errors,
-    engines=ENGINES,
+    runners=RUNNERS,
+    truth=slip_position, truth_uncertainty=1e-13,
     sanity_checks=sanity_checks,
     points=points,
 )

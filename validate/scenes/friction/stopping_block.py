@@ -1,5 +1,6 @@
 """A block launched over the floor stops after v²/2μg in every direction; with a friction pyramid it would not."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -8,10 +9,11 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block
-from validate.engines.friction import SWEEPS, bullet_block, pymunk_block
+from validate.engines.friction import bullet_block, pymunk_block, slab_on_box, slab_on_line
 from validate.methods import EVENT, PYRAMID, SLIDING
+from validate.reference.friction import NOTHING_LEFT
 from validate.reference.schemes import summed
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, Prediction, Scene, by_order
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -69,34 +71,42 @@ def pyramid(p, t):
     return braked(thrown(p)[:2], t, p.mu * p.g)
 
 
-def tolerance(p, dt):
+def round_off(p, dt):
+    return by_order(0.0, T, dt)[EXACT]
+
+
+def limits(p, dt):
     """The velocity is exact at every step until it is zero.  Positions sum it at the wrong end of each step: ½ v₀ dt.
 
-    The last step is shorter, which adds up to ⅛ μg dt² (see the incline).  With the pyramid the same holds for each
-    component, relative to a shorter distance.
+    The last step is shorter, which adds up to ⅛ μg dt² (see the incline).  Where the stop is found, only round-off is
+    left.
     """
-    limits = by_order(0.0, T, dt)
-    v, a = thrown(p)[:2], p.mu * p.g
-    bias = (0.5 * p.v0 * dt + a * dt * dt / 8.0) / np.linalg.norm(truth(p, T)) + limits[EXACT]
-    square = np.linalg.norm(0.5 * v * dt + a * dt * dt / 8.0) / np.linalg.norm(pyramid(p, T)) + limits[EXACT]
-    return {**limits, 1: bias, "pymunk": bias, "pybullet": bias, "pyramid": square, "pybullet, pyramid": square}
+    bias = (0.5 * p.v0 * dt + p.mu * p.g * dt * dt / 8.0) / np.linalg.norm(truth(p, T))
+    return {1: bias + round_off(p, dt), EXACT: round_off(p, dt)}
 
 
-NEW_VELOCITY = {"sliding": True, "pybullet": True, "pymunk": False, "pyramid": True, "pybullet, pyramid": True}
+def pyramid_limit(p, dt):
+    """With the pyramid this limit holds for each component, relative to a shorter distance."""
+    bias = np.linalg.norm(0.5 * thrown(p)[:2] * dt + p.mu * p.g * dt * dt / 8.0) / np.linalg.norm(pyramid(p, T))
+    return bias + round_off(p, dt)
 
 
-def predicted_error(label, p, dt):
-    """The rectangle rule, as on the incline: too short with the new velocity, too long with pymunk's old one.
+def new_velocity(p, dt, new=True):
+    """The rectangle rule, as on the incline: too short with the new velocity, too long with pymunk's old one."""
+    velocity = lambda t: np.maximum(0.0, 1.0 - p.mu * p.g / p.v0 * t[:, None]) * thrown(p)[:2]
+    return Prediction(summed(velocity, T, dt, new) - truth(p, T), round_off(p, dt))
 
-    With the pyramid the same holds for each component.
-    """
-    if label not in NEW_VELOCITY:
-        return None
-    v, a, square = thrown(p)[:2], p.mu * p.g, "pyramid" in label
-    share = (lambda t: v * 0.0 + np.maximum(0.0, v - a * t[:, None])) if square else (
-        lambda t: np.maximum(0.0, 1.0 - a / p.v0 * t[:, None]) * v)
-    error = summed(share, T, dt, NEW_VELOCITY[label]) - (pyramid if square else truth)(p, T)
-    return Prediction(error, by_order(0.0, T, dt)[EXACT])
+
+old_velocity = partial(new_velocity, new=False)
+
+
+def new_velocities(p, dt):
+    """With the pyramid the rectangle rule holds for each component."""
+    velocities = lambda t: np.maximum(0.0, thrown(p)[:2] - p.mu * p.g * t[:, None])
+    return Prediction(summed(velocities, T, dt, True) - pyramid(p, T), round_off(p, dt))
+
+
+BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid)
 
 
 def pymunk_make(p, dt):
@@ -109,30 +119,18 @@ def pybullet_make(p, dt, pyramid=False):
     return bullet_block((0.0, 0.0, -p.g), p.mu, thrown(p), p.v0, dt, lambda x: np.array(x[:2]), pyramid=pyramid)
 
 
-ENGINES = (
-    Engine(
-        PYMUNK,
-        "",
-        pymunk_make,
-        1,
-        f"the vertical plane of the throw, a slab of 2 m on a line; {SWEEPS} iterations, collision_slop 1e-5",
-    ),
-    Engine(
-        PYBULLET,
-        "pyramid",
-        lambda p, dt: pybullet_make(p, dt, pyramid=True),
-        1,
-        "reduced coordinates, enableConeFriction 0; otherwise as in pybullet",
-    ),
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        1,
-        f"a slab of 2 m on a box; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations",
-    ),
+RUNNERS = (
+    ours(SLIDING, limit=limits, predicted=new_velocity),
+    ours(PYRAMID, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
+    # the deceleration is constant, and the stop is found
+    ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
+    engine(PYMUNK, "", pymunk_make, slab_on_line("the vertical plane of the throw, "),
+           order=1, limit=limits, predicted=old_velocity),
+    engine(PYBULLET, "pyramid", partial(pybullet_make, pyramid=True),
+           "reduced coordinates, enableConeFriction 0; otherwise as in pybullet",
+           order=1, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
+    engine(PYBULLET, "", pybullet_make, slab_on_box(), order=1, limit=limits, predicted=new_velocity),
 )
-BOX = "it clamps friction along x and y separately, each to μ F_N"
 
 
 def sanity_checks():
@@ -162,13 +160,9 @@ def links(p):
 SCENE = Scene(
     title="Stopping block", lesson="friction",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(SLIDING, PYRAMID, EVENT),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
-    engines=ENGINES,
-    expected_departures={"pyramid": Departure(BOX, pyramid), "pybullet, pyramid": Departure(BOX, pyramid)},
-    # The deceleration is constant, and the stop is found.
-    orders={"event_step": EXACT},
+    truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),

@@ -8,7 +8,7 @@ import numpy as np
 from solutions.checks import check_positive
 from validate.engines.bullet import Bullet
 from validate.methods import POINTS, TRIANGLES
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Prediction, Scene
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, EngineRun, Prediction, Scene, engine, ours
 
 T = 1.0
 STEPS = (1, 2, 5, 10, 20, 50, 100)
@@ -77,23 +77,25 @@ def truth(p, t):
     return np.ravel(8.0 / 15.0 * np.pi * p.density * p.radius**5 * np.eye(3))
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """A body that contains one ball and lies inside another has a moment between theirs, which grow with R⁵.
 
     Triangles: on an octahedron, 1/√3 away, an equilateral triangle of edge √2/n has its corners √2/(n √3) from its
-    centre. Moved onto the sphere, and seen from its middle, they are at most √3 times as far apart: within α = √2/n of
-    the direction of the triangle's centre.  So the triangle does not come nearer to the middle than R cos α:  0 ≤
-    error ≤ 1 − cos⁵α, of second order. Points: a cell that the sphere cuts is within its half diagonal, √3 R/n, of the
-    sphere.  Each cell also lacks its own moment, m h²/6, h = 2R/n, compared with ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 +
-    5/(3n²), at worst of first order.  pybullet's own rule does not depend on n: round-off.
+    centre.  Moved onto the sphere, and seen from its middle, they are at most √3 times as far apart: within α = √2/n
+    of the direction of the triangle's centre.  So the triangle does not come nearer to the middle than R cos α:
+    0 ≤ error ≤ 1 − cos⁵α, of second order.
+
+    Points: a cell that the sphere cuts is within its half diagonal, √3 R/n, of the sphere.  Each cell also lacks its
+    own moment, m h²/6, h = 2R/n, compared with ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), at worst of first order.
     """
     n = 1.0 / dt
     alpha = min(np.sqrt(2.0) / n, 0.5 * np.pi)
-    return {
-        2: 1.0 - np.cos(alpha) ** 5 + 1e-12,
-        1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n),
-        "pybullet, hull": 1e-12,
-    }
+    return {2: 1.0 - np.cos(alpha) ** 5 + 1e-12, 1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n)}
+
+
+def round_off(p, dt):
+    """pybullet's own rule does not depend on n: round-off."""
+    return 1e-12
 
 
 def of_triangles(n, p):
@@ -123,16 +125,28 @@ def of_points(n, p):
     return 2.0 * p.density * h**3 * np.sum(squares * in_layer)
 
 
-def predicted_error(label, p, dt):
-    """Both bodies are known exactly: the one of triangles by Gauss's theorem and a cubic rule, the one of points by
-    counting them in layers.  Neither has products of inertia, because they have the symmetry of a cube.  What is left
-    is a spacing of floats for each triangle or point.
+def from_ball(moment, p, many):
+    """Return the Prediction of a body with this moment about each axis [kg m²], summed from so many terms."""
+    return Prediction(np.ravel(moment * np.eye(3)) - truth(p, T), (many + 30) * ROUND_OFF)
+
+
+def triangles_from_ball(p, dt):
+    """The body of triangles is known exactly, by Gauss's theorem and a cubic rule.
+
+    It has no products of inertia, because it has the symmetry of a cube.  What is left is a spacing of floats for each
+    triangle.
     """
     n = round(1.0 / dt)
-    exact, many = {"triangles": (of_triangles, 8 * n**2), "points": (of_points, n**3)}.get(label, (None, 0))
-    if exact is None:
-        return None
-    return Prediction(np.ravel(exact(n, p) * np.eye(3)) - truth(p, T), (many + 30) * ROUND_OFF)
+    return from_ball(of_triangles(n, p), p, 8 * n**2)
+
+
+def points_from_ball(p, dt):
+    """The body of points is known exactly, too, by counting them in layers; it has the same symmetry.
+
+    What is left is a spacing of floats for each point.
+    """
+    n = round(1.0 / dt)
+    return from_ball(of_points(n, p), p, n**3)
 
 
 def by_fat_box(p, t):
@@ -161,15 +175,14 @@ def bullet_make(p, dt):
     return EngineRun(step, read, bullet.close)
 
 
-ENGINES = (
-    Engine(
-        PYBULLET,
-        "hull",
-        bullet_make,
-        EXACT,
-        "GEOM_MESH from corners, createMultiBody with the mass of the ball",
-        most_steps=20,
-    ),
+RUNNERS = (
+    ours(TRIANGLES, limit=limits, predicted=triangles_from_ball),
+    ours(POINTS, limit=limits, predicted=points_from_ball),
+    engine(PYBULLET, "hull", bullet_make, "GEOM_MESH from corners, createMultiBody with the mass of the ball",
+           order=EXACT, limit=round_off, predicted="it follows its own rule to round-off, and the limit bounds that",
+           departure=Departure("it uses the cube around the hull in place of the hull, and makes that cube 6 mm larger",
+                               by_fat_box),
+           most_steps=20),
 )
 
 
@@ -185,30 +198,14 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Ball of triangles",
-    lesson="inertia_tensors",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(TRIANGLES, POINTS),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    expected_departures={
-        "pybullet, hull": Departure(
-            "it uses the cube around the hull in place of the hull, and makes that cube 6 mm larger", by_fat_box
-        )
-    },
-    # Plain Python finishes before numba has compiled it.
+    title="Ball of triangles", lesson="inertia_tensors",
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15,
     moves=False,
     refinement="fineness 1/n [-]: n triangles per quarter of the equator, n points per diameter",
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("corners and triangles", "or points with masses"),
     full_loop="nothing moves here, so there is no loop",
     ablations={

@@ -6,6 +6,7 @@ of a dumbbell is 34 % too small across its axis and 67 % too large about it.  Th
 pymunk is right, except for the round ends of its Segment.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -22,8 +23,7 @@ from solutions.inertia_tensors import (
 )
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
-from validate.products import PYBULLET as ENGINE
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -85,11 +85,6 @@ def run(step, acceleration, state, p, dt, steps):
 
 def observe(state, p):
     return state[0][2, 2:] if p.shape in FLAT else six(state[0])
-
-
-def supports(name, p):
-    """Only bodies with flat faces have triangles; each engine label says for which shapes it is."""
-    return p.shape in SHAPES_OF[name]
 
 
 def parts(p):
@@ -256,13 +251,13 @@ def sanity_checks():
     """Return ((claim, found, expected, tolerance), …): the numbers of the docstring, and pybullet's centre of mass."""
     capsule, dumbbell, uneven = CASES["capsule"], CASES["dumbbell"], CASES["uneven dumbbell"]
     too_much = lambda p, k: by_bounding_box(p, T)[k] / truth(p, T)[k] - 1.0
-    claims = ((("relative excess of a capsule's moment across "
-                "its axis in pybullet [-]"), too_much(capsule, 0), 0.28, 0.005),
+    claims = (("relative excess of a capsule's moment across its axis in pybullet [-]", too_much(capsule, 0), 0.28,
+               0.005),
               ("and along [-]", too_much(capsule, 2), 0.41, 0.005),
               ("the same of a dumbbell [-]", too_much(dumbbell, 0), -0.34, 0.005),
               ("and along [-]", too_much(dumbbell, 2), 0.67, 0.005),
               ("centre of an uneven dumbbell, by the lesson [m]", combine(*parts(uneven)).x, centre(uneven), 1e-15))
-    if not ENGINE.installed():
+    if not PYBULLET.installed():
         return claims
     bullet = Bullet(1.0)
     body = bullet.pb.createMultiBody(uneven.m, shape_of(bullet.pb, uneven))
@@ -271,11 +266,9 @@ def sanity_checks():
     return (*claims, ("the same in pybullet: the origin of the shape [m]", believed, np.zeros(3), 0.0))
 
 
-
-
-def tolerance(p, dt):
+def round_off(p, dt):
     """A few dozen operations on numbers of one sign, each rounded by 1.1e-16: 1e-13, for us and for the engines."""
-    return {EXACT: 1e-13, **{engine.label: 1e-13 for engine in ENGINES}}
+    return 1e-13
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -328,9 +321,8 @@ def by_flat_box(p, t):
 def shape_of(pb, p, concave=False):
     """Make the collision shape, as a user would write it."""
     make = lambda kind, **how: pb.createCollisionShape(kind, **how)
-    several = lambda kind, at, **how: pb.createCollisionShapeArray(
-        shapeTypes=[kind] * len(at), collisionFramePositions=at, **how
-    )
+    several = lambda kind, at, **how: pb.createCollisionShapeArray(shapeTypes=[kind] * len(at),
+                                                                   collisionFramePositions=at, **how)
     if p.shape == "ball":
         return make(pb.GEOM_SPHERE, radius=p.a)
     if p.shape == "box":
@@ -361,10 +353,8 @@ def bullet_make(p, dt, concave=False, told=False):
     if told:
         moments, R = np.linalg.eigh(tensor_of(truth(p, 1.0)))
         R[:, 2] *= np.linalg.det(R)  # right-handed
-        frame = {
-            "baseInertialFrameOrientation": quaternion(R).tolist(),
-            "baseInertialFramePosition": centre(p).tolist(),
-        }
+        frame = {"baseInertialFrameOrientation": quaternion(R).tolist(),
+                 "baseInertialFramePosition": centre(p).tolist()}
     body = pb.createMultiBody(p.m, shape_of(pb, p, concave), **frame)
     if told:
         pb.changeDynamics(body, -1, mass=p.m, localInertiaDiagonal=moments.tolist())
@@ -423,51 +413,40 @@ def pymunk_make(p, dt):
     return EngineRun(lambda: None, lambda: np.array([moment]), lambda: None)
 
 
-ENGINES = (
-    Engine(PYBULLET, "", bullet_make, EXACT, "createMultiBody with the shape and a mass; read by getDynamicsInfo"),
-    Engine(PYBULLET, "automatic", bullet_make, EXACT, "createMultiBody as it comes"),
-    Engine(PYBULLET, "hull", bullet_make, EXACT, "GEOM_MESH from corners"),
-    Engine(
-        PYBULLET,
-        "concave mesh",
-        lambda p, dt: bullet_make(p, dt, concave=True),
-        EXACT,
-        "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH",
-    ),
-    Engine(
-        PYBULLET,
-        "told",
-        lambda p, dt: bullet_make(p, dt, told=True),
-        EXACT,
-        ("localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre "
-         "and principal axes"),
-    ),
-    Engine(PYMUNK, "", pymunk_make, EXACT, "moment_for_circle, moment_for_poly, or shapes with a density"),
-    Engine(PYMUNK, "Segment", pymunk_make, EXACT, "moment_for_segment"),
+def only(*shapes):
+    """Return the field `supports` of a Runner that can do these bodies."""
+    return lambda p: p.shape in shapes
+
+
+PARTS_KNOWN = ("ball", "box", "cylinder", "capsule", "dumbbell", "turned bar", "angle", "ring", "two discs",
+               "round bar")
+FLAT_FACES = ("box", "angle", "corner", "triangle")            # only they have triangles
+BOXED = ("capsule", "dumbbell", "turned bar", "angle")         # for which pybullet uses the surrounding box
+EXACTLY = {"order": EXACT, "limit": round_off,
+           "predicted": "nothing is refined: only round-off is left, and the limit bounds it"}
+RUNNERS = (
+    ours(PARTS, supports=only(*PARTS_KNOWN), **EXACTLY),
+    ours(TRIANGLES, supports=only(*FLAT_FACES), **EXACTLY),
+    engine(PYBULLET, "", bullet_make, "createMultiBody with the shape and a mass; read by getDynamicsInfo",
+           supports=only("ball", "box", "cylinder"), **EXACTLY),
+    engine(PYBULLET, "automatic", bullet_make, "createMultiBody as it comes", supports=only(*BOXED), **EXACTLY,
+           departure=Departure("it uses the box around the shape, along the axes of the shape, instead of the shape",
+                               by_bounding_box)),
+    engine(PYBULLET, "hull", bullet_make, "GEOM_MESH from corners", supports=only("corner"), **EXACTLY,
+           departure=Departure("it uses the box around the hull instead of the hull, and makes it 6 mm larger",
+                               by_fat_box)),
+    engine(PYBULLET, "concave mesh", partial(bullet_make, concave=True), "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH",
+           supports=only("corner"), **EXACTLY,
+           departure=Departure("it gives triangle meshes no inertia, so that no torque rotates them", by_nothing)),
+    engine(PYBULLET, "told", partial(bullet_make, told=True),
+           "localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre "
+           "and principal axes",
+           supports=only(*BOXED, "corner"), **EXACTLY),
+    engine(PYMUNK, "", pymunk_make, "moment_for_circle, moment_for_poly, or shapes with a density",
+           supports=only("ring", "triangle", "two discs"), **EXACTLY),
+    engine(PYMUNK, "Segment", pymunk_make, "moment_for_segment", supports=only("round bar"), **EXACTLY,
+           departure=Departure("it uses the box around the bar instead of the bar", by_flat_box)),
 )
-# {method or engine: the bodies that it supports}
-SHAPES_OF = {
-    "combine": (
-        "ball",
-        "box",
-        "cylinder",
-        "capsule",
-        "dumbbell",
-        "turned bar",
-        "angle",
-        "ring",
-        "two discs",
-        "round bar",
-    ),
-    "mesh_body": ("box", "angle", "corner", "triangle"),
-    "pybullet": ("ball", "box", "cylinder"),
-    "pybullet, automatic": ("capsule", "dumbbell", "turned bar", "angle"),
-    "pybullet, hull": ("corner",),
-    "pybullet, concave mesh": ("corner",),
-    "pybullet, told": ("capsule", "dumbbell", "turned bar", "angle", "corner"),
-    "pymunk": ("ring", "triangle", "two discs"),
-    "pymunk, Segment": ("round bar",),
-}
 
 
 # ---------------------------------------------------------------------------------------------- picture
@@ -519,40 +498,18 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Inertia tensors",
-    lesson="inertia_tensors",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(PARTS, TRIANGLES),
-    start=start,
-    run=run,
-    observe=observe,
+    title="Inertia tensors", lesson="inertia_tensors",
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
+    start=start, run=run, observe=observe,
     truth=truth,
     truth_uncertainty=1e-14,  # of sums and quadratures of at most a hundred terms, each rounded by 1.1e-16
-    tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures={
-        "pybullet, automatic": Departure(
-            "it uses the box around the shape, along the axes of the shape, instead of the shape", by_bounding_box
-        ),
-        "pybullet, hull": Departure(
-            "it uses the box around the hull instead of the hull, and makes it 6 mm larger", by_fat_box
-        ),
-        "pybullet, concave mesh": Departure(
-            "it gives triangle meshes no inertia, so that no torque rotates them", by_nothing
-        ),
-        "pymunk, Segment": Departure("it uses the box around the bar instead of the bar", by_flat_box),
-    },
-    orders={"combine": EXACT, "mesh_body": EXACT},
-    supports=supports,
     moves=False,
     refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (0.072, 0.072, 0.072, 0.0, 0.0, 0.0), 1e-14),),  # ⅖ m R² of the ball
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("masses and positions of the parts", "or corners and triangles"),
     full_loop="nothing moves here, so there is no loop",
     ablations={

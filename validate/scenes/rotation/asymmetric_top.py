@@ -9,18 +9,28 @@ from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.drawing import omega_and_L
-from validate.engines.mujoco import FREE_WITNESS
-from validate.engines.rotation import FREE_BODY, FREE_ENGINES
-from validate.methods import TURNS
+from validate.engines.rotation import FREE_BODY, free_engines, mujoco_default, turn_runners
+from validate.methods import (
+    AXIS_ANGLE,
+    COMPOSED_SPLITTING,
+    GYROSCOPIC,
+    IMPLICIT_GYROSCOPIC,
+    MATRIX,
+    MIDPOINT_TURN,
+    QUATERNION,
+    RUNGE_KUTTA,
+    SPLITTING,
+    TURNS,
+)
 from validate.reference.rotation import FreeTop, free_limits, freely
-from validate.reference.turns import free_turns
+from validate.reference.turns import free_turning
 from validate.scene import Scene
 
 T = 10.0                     # [s]: it flips at 6.06 s, and is about to start the next flip
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
-IN_QUICK = {                 # {function: its most steps in a quick validation}
-    "matrix_step": 5000, "axis_angle_step": 5000, "quaternion_step": 5000, "gyroscopic_step": 5000,
-    "implicit_gyroscopic_step": 2000, "runge_kutta_step": 2000, "midpoint_step": 2000, "composed_splitting_step": 2000,
+IN_QUICK = {                 # {method: its most steps in a quick run}
+    MATRIX: 5000, AXIS_ANGLE: 5000, QUATERNION: 5000, GYROSCOPIC: 5000, IMPLICIT_GYROSCOPIC: 2000, RUNGE_KUTTA: 2000,
+    MIDPOINT_TURN: 2000, SPLITTING: None, COMPOSED_SPLITTING: 2000,
 }
 
 
@@ -64,12 +74,10 @@ def truth(p, t):
     return (freely(np.eye(3), p.omega(), p.moments(), t)[0] if t > 0.0 else np.eye(3)).ravel()
 
 
-def tolerance(p, dt):
-    """Errors grow as neighbouring motions separate; first-order constants are closed forms."""
-    return free_limits(p, T, dt)
-
-
-ENGINES = FREE_ENGINES + FREE_WITNESS
+# 1 − k² = 5e-5 is known to 2e-16/5e-5, and the time of the flip varies as its logarithm
+UNCERTAINTY = 1e-11
+BODY = free_turning(T, truth, UNCERTAINTY)
+RUNNERS = (*turn_runners(BODY, TURNS, free_limits(T), IN_QUICK), *free_engines(BODY), mujoco_default(BODY))
 
 
 def bodies(p):
@@ -99,14 +107,9 @@ SCENE = Scene(
     title="Asymmetric top",
     **FREE_BODY,
     cases=CASES, duration=T, steps=STEPS,
-    methods=TURNS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run,
-    truth=truth,
-    # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the time of the flip varies as its logarithm
-    truth_uncertainty=1e-11, tolerance=tolerance, predicted_error=free_turns(T, truth, 1e-11),
-    engines=ENGINES,
-    slow_methods=("composed_midpoint_step",),
-    shorter_in_quick=IN_QUICK,
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
     bodies=bodies, arrows=arrows,
 )

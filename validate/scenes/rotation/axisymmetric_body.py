@@ -11,17 +11,17 @@ from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.drawing import omega_and_L
 from validate.engines.bullet import Rigid
-from validate.engines.mujoco import FREE_WITNESS
-from validate.engines.rotation import FREE_BODY, FREE_ENGINES
-from validate.methods import MATRIX, TURNS
-from validate.products import PYBULLET as ENGINE
+from validate.engines.rotation import FREE_BODY, free_engines, turn_runners
+from validate.methods import COMPOSED_SPLITTING, MATRIX, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
 from validate.reference.orientation import quaternion_matrix
-from validate.reference.rotation import FIRST_ORDER, free_limits, freely, symmetric_top
-from validate.reference.turns import free_turns
-from validate.scene import EXACT, Scene
+from validate.reference.rotation import EXPLICIT, IMPLICIT, L_KEPT, free_limits, freely, symmetric_top
+from validate.reference.turns import free_turning
+from validate.scene import PYBULLET, Scene
 
 T = 10.0                     # [s]: eight and a half revolutions about L
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000, 100000)
+# {method: its most steps in a quick run}; the asymmetric top has the others
+IN_QUICK = {QUATERNION: 50000, RUNGE_KUTTA: 2000, SPLITTING: None, COMPOSED_SPLITTING: 2000}
 
 
 class Params(NamedTuple):
@@ -62,12 +62,14 @@ def truth(p, t):
     return symmetric_top(p.moments(), p.omega(), t).ravel()
 
 
-def tolerance(p, dt):
-    """The error constants of first-order steps in closed form; two are pybullet's two kinds of body."""
-    return free_limits(p, T, dt, [kind for kind in FIRST_ORDER if kind != "L kept, by columns"])
-
-
-ENGINES = FREE_ENGINES + FREE_WITNESS[:1]               # its default would need 10⁵ steps here
+UNCERTAINTY = 1e-14          # 54 radians about L, each rounded to 2e-16
+BODY = free_turning(T, truth, UNCERTAINTY)
+RUNNERS = (
+    # with two equal moments all but two turns of the splitting vanish, and these commute
+    *turn_runners(BODY, [m for m in TURNS if m is not MATRIX], free_limits(T, (L_KEPT, EXPLICIT, IMPLICIT)), IN_QUICK,
+                  exact=(SPLITTING, COMPOSED_SPLITTING)),
+    *free_engines(BODY),                                # MuJoCo's default would need 10⁵ steps here
+)
 
 
 def bodies(p):
@@ -98,7 +100,7 @@ def engines_energy(p, dt=1e-3, steps=10000):
 
     ω_⊥² is multiplied by 1 + (Ω dt)² per step, or divided by it; Ω = (I₃/I₁ − 1) ω₃.
     """
-    if not ENGINE.installed():
+    if not PYBULLET.installed():
         return
     I, w = p.moments(), p.omega()
     for sign, maximal, kind in ((1, False, "reduced"), (-1, True, "maximal")):
@@ -111,39 +113,19 @@ def engines_energy(p, dt=1e-3, steps=10000):
         grown = (1.0 + ((p.I3 / p.I1 - 1.0) * p.w3 * dt) ** 2) ** (sign * steps)
         law = (p.I1 * (p.w1**2 + p.w2**2) * grown + p.I3 * p.w3**2) / (I @ w**2)
         # a step rounds the energy by a few 1e-16
-        yield (
-            f"energy of pybullet, {kind} coordinates, after 10 s at 1 ms, over the initial one",
-            I @ after**2 / (I @ w**2),
-            law,
-            steps * 2e-15,
-        )
+        yield (f"energy of pybullet, {kind} coordinates, after 10 s at 1 ms, over the initial one",
+               I @ after**2 / (I @ w**2), law, steps * 2e-15)
 
 
 SCENE = Scene(
     title="Axisymmetric body",
     **FREE_BODY,
     cases=CASES, duration=T, steps=STEPS,
-    methods=tuple(m for m in TURNS if m is not MATRIX),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run,
-    truth=truth,
-    truth_uncertainty=1e-14,  # 54 radians about L, each rounded to 2e-16
-    tolerance=tolerance, predicted_error=free_turns(T, truth, 1e-14),
-    engines=ENGINES,
-    orders={
-        "splitting_step": EXACT,
-        "composed_splitting_step": EXACT,
-    # With two equal moments all but two turns vanish, and these commute.
-    },
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     omitted_methods=("by theory ω*R with renormalised columns has the error 3,700 dt here, three times that of the "
                      "worst of the others; the asymmetric top has it"),
-    slow_methods=(
-        "axis_angle_step",
-        "gyroscopic_step",
-        "implicit_gyroscopic_step",
-        "midpoint_step",
-        "composed_midpoint_step",
-    ),  # the asymmetric top has them
-    shorter_in_quick={"quaternion_step": 50000, "runge_kutta_step": 2000, "composed_splitting_step": 2000},
     sanity_checks=sanity_checks,
     bodies=bodies, arrows=arrows,
 )

@@ -1,5 +1,6 @@
 """A fast top is tilted slightly and released: its tip draws small arches, which meet in cusps, around the vertical."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -11,14 +12,17 @@ from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import top as mujoco_top
-from validate.methods import TURNS
+from validate.engines.rotation import turn_runners
+from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
-from validate.reference.turns import predict_turns, rotation
-from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, Engine, EngineRun, Scene, by_order
+from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
+from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
+# {method: its most steps in a quick run}; the asymmetric top has the others
+IN_QUICK = {QUATERNION: None, GYROSCOPIC: 5000, RUNGE_KUTTA: 2000, SPLITTING: None, COMPOSED_SPLITTING: 2000}
 
 
 class Params(NamedTuple):
@@ -67,19 +71,22 @@ def truth(p, t):
     return HeavyTop(p.I1, p.I3, p.mgl, p.tilt, p.spin).tip(t)
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """The fastest rate is the spin.
 
     Near the vertical the tip obeys a linear equation, so its error is proportional to its distance.  Round-off is
-    that of q, 1e-16 per step relative to a tip at sin θ₀ at least.  pybullet takes the gyroscopic term at the end
-    of the step (maximal coordinates) or at its beginning (reduced), about the centre of mass instead of the pivot:
-    I = I₁ − ml².  In body coordinates its tip turns at Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by
-    ½(Ω dt)² per step.
+    that of q, 1e-16 per step relative to a tip at sin θ₀ at least.
     """
-    limits = {k: limit + T / dt * ROUND_OFF / np.sin(p.tilt) for k, limit in by_order(p.spin, T, dt).items()}
+    return {k: limit + T / dt * ROUND_OFF / np.sin(p.tilt) for k, limit in by_order(p.spin, T, dt).items()}
+
+
+def pybullet_limit(p, dt):
+    """pybullet takes the gyroscopic term at the end of the step (maximal coordinates) or at its beginning (reduced),
+    about the centre of mass instead of the pivot: I = I₁ − ml².  In body coordinates its tip turns at
+    Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by ½(Ω dt)² per step.
+    """
     turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
-    witness = limits[1] + 0.5 * turning**2 * dt * T
-    return {**limits, "pybullet": witness, "pybullet, reduced coordinates": witness}
+    return limits(p, dt)[1] + 0.5 * turning**2 * dt * T
 
 
 def released(p):
@@ -98,24 +105,22 @@ def seen(R):
 
 
 def floor(p, dt):
-    return tolerance(p, dt)[EXACT] + 1e-11
+    return limits(p, dt)[EXACT] + 1e-11
 
 
 def mass(p):
     return p.mgl / (G * LENGTH)
 
 
-def pybullet_make(maximal):
-    def make(p, dt):
-        """Hold a body at its pivot by a point-to-point constraint; moments are about the centre of mass: I₁ − ml²."""
-        across = p.I1 - mass(p) * LENGTH**2
-        R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
-        axis = R[:, 2]
-        bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
-        body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
-        bullet.pivot(body, (0.0, 0.0, -LENGTH), maximal)
-        return EngineRun(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
-    return make
+def pybullet_make(p, dt, maximal=False):
+    """Hold a body at its pivot by a point-to-point constraint; moments are about the centre of mass: I₁ − ml²."""
+    across = p.I1 - mass(p) * LENGTH**2
+    R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
+    axis = R[:, 2]
+    bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
+    body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
+    bullet.pivot(body, (0.0, 0.0, -LENGTH), maximal)
+    return EngineRun(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
 
 
 def mujoco_make(p, dt):
@@ -124,13 +129,17 @@ def mujoco_make(p, dt):
     return mujoco_top(mass(p), (across, across, p.I3), LENGTH, R, p.spin, G, dt)
 
 
+BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor)
+SWEPT = "its pivot is a constraint, and the sweeps that hold it are not modelled"
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
-ENGINES = (
-    Engine(
-        PYBULLET, "reduced coordinates", pybullet_make(False), 1, f"createMultiBody, no clamp of velocity; {SETTINGS}"
-    ),
-    Engine(PYBULLET, "", pybullet_make(True), 1, f"useMaximalCoordinates=1; {SETTINGS}"),
-    Engine(MUJOCO, "", mujoco_make, 4, "ball joint; Runge–Kutta 4", 5000),
+RUNNERS = (
+    *turn_runners(BODY, TURNS, limits, IN_QUICK),
+    engine(PYBULLET, "reduced coordinates", pybullet_make, f"createMultiBody, no clamp of velocity; {SETTINGS}",
+           order=1, limit=pybullet_limit, predicted=SWEPT),
+    engine(PYBULLET, "", partial(pybullet_make, maximal=True), f"useMaximalCoordinates=1; {SETTINGS}",
+           order=1, limit=pybullet_limit, predicted=SWEPT),
+    engine(MUJOCO, "", mujoco_make, "ball joint; Runge–Kutta 4",
+           order=4, limit=limits, predicted=BODY.predict(MUNTHE_KAAS), most_steps=5000),
 )
 
 
@@ -171,9 +180,8 @@ def arrows(observed, p):
 def sanity_checks():
     p = Params()
     top, R = HeavyTop(*p), about(np.array([1.0, 0.0, 0.0]), p.tilt)
-    tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl]))[0][
-        :2, 2
-    ]
+    torque = lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl])
+    tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, torque)[0][:2, 2]
     return (("energy [J]", 0.5 * p.I3 * p.spin**2 + p.mgl * np.cos(p.tilt), 1269.975, 5e-4),
             ("smallest and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582), 5e-7),
             ("nutation [s]", top.nutation(), 0.685458497, 5e-10), ("the tip at T, by DOP853", truth(p, T), tip, 1e-12))
@@ -182,19 +190,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Heavy top", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
-    methods=TURNS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-12, tolerance=tolerance,
-    predicted_error=predict_turns(T, Params.moments, released, weight, seen, truth, floor, ("mujoco",)),
-    engines=ENGINES,
-    slow_methods=(
-        "matrix_step",
-        "axis_angle_step",
-        "implicit_gyroscopic_step",
-        "midpoint_step",
-        "composed_midpoint_step",
-    ),  # the asymmetric top has them
-    shorter_in_quick={"gyroscopic_step": 5000, "runge_kutta_step": 2000, "composed_splitting_step": 2000},
+    truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,

@@ -1,5 +1,6 @@
 """A ball is released on a slope and rolls: two sevenths of gravity's pull along the slope go into rotation."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from validate.drawing import pose
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
-from validate.scene import PYBULLET, ROUND_OFF, Engine, Prediction, Scene
+from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -32,13 +33,8 @@ CASES = {"15°": Params(), "hardly rough enough": Params(mu=0.077)}
 
 def ball(p):
     slope = np.radians(p.slope)
-    return RollingBall(
-        p.m,
-        np.full(3, 0.4 * p.m * p.radius**2),
-        p.radius,
-        p.mu,
-        p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)]),
-    )
+    gravity = p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)])
+    return RollingBall(p.m, np.full(3, 0.4 * p.m * p.radius**2), p.radius, p.mu, gravity)
 
 
 def start(p):
@@ -72,39 +68,43 @@ def acceleration_down(p):
     return 5.0 / 7.0 * p.g * np.sin(np.radians(p.slope))
 
 
-def tolerance(p, dt):
+def round_off(dt):
+    return 1e-12 + T / dt * ROUND_OFF
+
+
+def limits(p, dt):
     """A step that moves with the new velocity ends ½ a dt T too far, in the engine too; v and ω are exact.
 
     With the mean velocity the distance is exact, too.
     """
-    rounded = 1e-12 + T / dt * ROUND_OFF
-    limit = 0.5 * acceleration_down(p) * dt * T / np.linalg.norm(truth(p, T)) + rounded
-    return {1: limit, 2: rounded, "pybullet": limit, "pybullet, reduced coordinates": limit}
+    late = 0.5 * acceleration_down(p) * dt * T / np.linalg.norm(truth(p, T))
+    return {1: late + round_off(dt), 2: round_off(dt)}
 
 
-def predicted_error(label, p, dt):
+def new_velocity(p, dt, share=1.0):
     """The new velocity moves the ball for all of a step: ½ a dt T too far, in pybullet too.
 
     v and rω are exact.  Mean velocities make no error.
     """
-    late = 0.0 if label == "mean velocities" else 0.5 * acceleration_down(p) * dt * T
-    rounded = 1e-12 + T / dt * ROUND_OFF
-    return Prediction(np.array([late, 0.0, 0.0]), rounded)
+    return Prediction(np.array([share * 0.5 * acceleration_down(p) * dt * T, 0.0, 0.0]), round_off(dt))
 
 
-def pybullet_make(maximal):
-    return lambda p, dt: rolling_ball(ball(p), np.zeros(3), maximal, dt)
+mean_velocity = partial(new_velocity, share=0.0)
 
 
-ENGINES = (
-    Engine(
-        PYBULLET,
-        "reduced coordinates",
-        pybullet_make(False),
-        1,
-        "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, no damping",
-    ),
-    Engine(PYBULLET, "", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
+def pybullet_make(p, dt, maximal=False):
+    return rolling_ball(ball(p), np.zeros(3), maximal, dt)
+
+
+RUNNERS = (
+    ours(ROLLING, limit=limits, predicted=new_velocity),
+    ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
+    engine(PYBULLET, "reduced coordinates", pybullet_make,
+           "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, "
+           "no damping",
+           order=1, limit=limits, predicted=new_velocity),
+    engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+           order=1, limit=limits, predicted=new_velocity),
 )
 
 
@@ -130,20 +130,15 @@ def bodies(p):
 def axes(p):
     """Return unit vectors (3,) down the slope, along it, and out of it."""
     slope = np.radians(p.slope)
-    return (
-        np.array([np.cos(slope), 0.0, -np.sin(slope)]),
-        np.array([0.0, 1.0, 0.0]),
-        np.array([np.sin(slope), 0.0, np.cos(slope)]),
-    )
+    return (np.array([np.cos(slope), 0.0, -np.sin(slope)]), np.array([0.0, 1.0, 0.0]),
+            np.array([np.sin(slope), 0.0, np.cos(slope)]))
 
 
 def poses(observed, p):
     down, along, out = axes(p)
     s = observed[0]
-    return [
-        pose(s * down + p.radius * out, about(along, s / p.radius)),
-        pose(0.5 * down - 0.005 * out, about(along, np.radians(p.slope))),
-    ]
+    return [pose(s * down + p.radius * out, about(along, s / p.radius)),
+            pose(0.5 * down - 0.005 * out, about(along, np.radians(p.slope)))]
 
 
 def arrows(observed, p):
@@ -162,14 +157,15 @@ def sanity_checks():
 SCENE = Scene(
     title="Rolling down", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(ROLLING, AVERAGE_ROLLING),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
-    engines=ENGINES,
+    truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,
     uses=("one ball", "one force at one point", "the lecture's loop"),
-    ablations={"detection of the contact": "the whole loop of lesson 10 has it, and is measured",
-              "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured"},
+    ablations={
+        "detection of the contact": "the whole loop of lesson 10 has it, and is measured",
+        "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured",
+    },
 )

@@ -1,5 +1,6 @@
 """A ball bowled without spin first slides; friction slows and rotates it until it rolls."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Prediction, Scene
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
 
 T = 1.5                      # [s]
 STEPS = (60, 120, 300, 600, 1200, 3000, 6000)
@@ -69,39 +70,44 @@ def truth(p, t):
     return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v, brake * sliding / p.shape])
 
 
-def tolerance(p, dt):
+def round_off(dt):
+    return 1e-12 + T / dt * ROUND_OFF
+
+
+def limits(p, dt):
     """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
 
     In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
     exact, though pymunk's friction may act for one step more or less: another μg dt².
     With mean velocities only that one step is inexact: at most ⅛ μg dt², if rolling begins in its middle.
     """
-    brake = p.mu * p.g
-    bias = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / np.linalg.norm(truth(p, T))
-    rounded = 1e-12 + T / dt * ROUND_OFF
-    limit = bias + rounded
-    mean = 0.125 * brake * dt * dt / np.linalg.norm(truth(p, T)) + rounded
-    return {1: limit, 2: mean, "pymunk": limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
+    brake, size = p.mu * p.g, np.linalg.norm(truth(p, T))
+    bias = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / size
+    return {1: bias + round_off(dt), 2: 0.125 * brake * dt * dt / size + round_off(dt)}
 
 
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
-SHARES = {"the lecture's loop": 1.0, "pybullet": 1.0, "pybullet, reduced coordinates": 1.0, "pymunk": 0.0,
-          "mean velocities": 0.5}                        # of the new velocity in the way of a step
-
-
-def predicted_error(label, p, dt):
+def new_velocity(p, dt, share=1.0, more=0.0):
     """Both velocities are exact at every step, but the ball moves with the new one, the old one or their mean.
 
-    The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.  In its
-    first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on the one
-    that it is given.
+    The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
     """
-    more = p.mu * p.g * dt * (p.shape / SPHERE - 1.0) if label == "pybullet" else 0.0
+    # share: of the new velocity in the way of a step; more: what the first step adds to v + I ω/mR [m/s]
     rolling = (p.v0 + more) / (1.0 + p.shape)
     velocity = lambda t: np.maximum(p.v0 - p.mu * p.g * t, rolling)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
-    reached = SHARES[label] * new + (1.0 - SHARES[label]) * old
-    return Prediction(np.array([reached, rolling, rolling]) - truth(p, T), 1e-12 + T / dt * ROUND_OFF)
+    reached = share * new + (1.0 - share) * old
+    return Prediction(np.array([reached, rolling, rolling]) - truth(p, T), round_off(dt))
+
+
+old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velocity, share=0.5)
+SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
+
+
+def new_velocity_of_a_sphere(p, dt):
+    """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on
+    the one that it is given.
+    """
+    return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / SPHERE - 1.0))
 
 
 def pymunk_make(p, dt):
@@ -117,20 +123,20 @@ def pymunk_make(p, dt):
     return pymunk_world(space, dt, lambda: np.array([body.position.x, body.velocity.x, -p.R * body.angular_velocity]))
 
 
-def pybullet_make(maximal):
-    return lambda p, dt: rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), maximal, dt)
+def pybullet_make(p, dt, maximal=False):
+    return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), maximal, dt)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, "50 iterations; the circle starts 1e-6 m inside the floor"),
-    Engine(
-        PYBULLET,
-        "reduced coordinates",
-        pybullet_make(False),
-        1,
-        "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
-    ),
-    Engine(PYBULLET, "", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
+RUNNERS = (
+    ours(ROLLING, limit=limits, predicted=new_velocity),
+    ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
+    engine(PYMUNK, "", pymunk_make, "50 iterations; the circle starts 1e-6 m inside the floor",
+           order=1, limit=limits, predicted=old_velocity),
+    engine(PYBULLET, "reduced coordinates", pybullet_make,
+           "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
+           order=1, limit=limits, predicted=new_velocity),
+    engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+           order=1, limit=limits, predicted=new_velocity_of_a_sphere),
 )
 
 
@@ -164,10 +170,8 @@ def arrows(observed, p):
     """Return v, and ω as long as the speed of the rim; they are equal as soon as it rolls."""
     x, v, rim = observed
     centre = np.array([x, 0.0, p.R])
-    return {
-        "v": (centre, centre + np.array([0.2 * v, 0.0, 0.0])),
-        "ω": (centre, centre + np.array([0.0, 0.2 * rim, 0.0])),
-    }
+    return {"v": (centre, centre + np.array([0.2 * v, 0.0, 0.0])),
+            "ω": (centre, centre + np.array([0.0, 0.2 * rim, 0.0]))}
 
 
 def sanity_checks():
@@ -183,15 +187,16 @@ def sanity_checks():
 SCENE = Scene(
     title="Slide, then roll", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(ROLLING, AVERAGE_ROLLING),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
-    engines=ENGINES,
+    truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,
     ground=True,
     uses=("one ball", "one force at one point", "the lecture's loop"),
-    ablations={"detection of the contact": "the whole loop of lesson 10 has it, and is measured",
-              "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured"},
+    ablations={
+        "detection of the contact": "the whole loop of lesson 10 has it, and is measured",
+        "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured",
+    },
 )
