@@ -6,7 +6,6 @@ A scene is a file in `validate/scenes/<lesson>/` that ends with one `SCENE = Sce
 
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields
-from functools import partial
 from typing import NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -120,7 +119,7 @@ def engine(product, variant, make, settings, *, most_steps=None, **about):
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """One physical situation: its truth, our methods, the engines, and the tolerance derived for each.
+    """One physical situation: its truth, and the runners that are compared with it.
 
     p is one of the `cases`: a NamedTuple of parameters, whose fields are annotated with their meaning and unit.
     """
@@ -134,26 +133,14 @@ class Scene:
     observe: Callable        # (state, p) → flat array that is compared with the truth at T
     truth: Callable          # (p, t) → the same quantities
     truth_uncertainty: float  # of the truth, relative [-]
+    runners: tuple           # of Runner: ours first
     points: Callable         # (observed, p) → (n, 2) drawing coordinates [m]
-    runners: tuple = ()      # of Runner: ours first
-    methods: tuple = ()      # of Method
-    tolerance: Callable | None = None    # (p, dt) → {order, or label of a method or an engine: largest relative error}
-    engines: tuple = ()      # of Engine
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
     full_loop: str = ""      # why the whole loop of lesson 10 cannot stand for a method here; else it is measured
     acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
-    expected_departures: dict = field(default_factory=dict)      # {label: Departure}
-    orders: dict = field(default_factory=dict)  # {method's function: order here}, where it is not the usual one
-    predicted_error: Callable | None = None  # (label, p, dt) → Prediction; None where `tolerance` is all that is known
-    supports: Callable | None = None  # (method's function or engine's label, p) → bool; without it all support all
     omitted_methods: str = ""                # why methods or engines that a reader expects are missing
-    slow_methods: tuple = ()                 # functions of methods that only --full runs
     slow_cases: tuple = ()                   # names of cases that only --full runs
-    slow_runs: dict = field(default_factory=dict)        # {case: functions of methods that only --full runs in it}
-    compiled_in_quick: tuple = ()            # functions of methods that take longer in plain Python than numba does
-    shorter_in_quick: dict = field(default_factory=dict)     # {method's function: its most steps in a quick validation}
-    finer_in_full: dict = field(default_factory=dict)  # {function or engine's label: further steps of the first case}
     moves: bool = True                       # False: nothing moves; no start is compared with the truth
     refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
     quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers
@@ -175,8 +162,6 @@ class Scene:
     def __post_init__(self):
         for f in fields(self):
             check_type(f"field {f.name!r} of scene {self.title!r}", getattr(self, f.name), f.type)
-        if not self.runners:
-            object.__setattr__(self, "runners", runners_of(self))
         for runner in self.runners:
             check_known(f"a case of {runner.label!r} in scene {self.title!r}", runner.slow_cases, self.cases)
         check_known(f"a slow case of scene {self.title!r}", self.slow_cases, self.cases)
@@ -202,36 +187,6 @@ class Scene:
     def refined(self):
         """Whether anything can be refined, so that there is an error over dt."""
         return bool(self.refinement)
-
-
-def runners_of(scene):
-    """Return the Runners of a scene that keeps what concerns them in fields of its own."""
-    functions, labels = {m.function for m in scene.methods}, {e.label for e in scene.engines}
-    known = {"orders": functions, "slow_methods": functions, "compiled_in_quick": functions,
-             "shorter_in_quick": functions, "finer_in_full": functions | labels,
-             "expected_departures": {m.label for m in scene.methods} | labels}
-    for name, keys in known.items():
-        check_known(f"a name in field {name!r} of scene {scene.title!r}", getattr(scene, name), keys)
-    check_known(f"a case in field 'slow_runs' of scene {scene.title!r}", scene.slow_runs, scene.cases)
-    return tuple(runner_of(scene, who) for who in (*scene.methods, *scene.engines))
-
-
-def runner_of(scene, who):
-    """Return the Runner of one of its methods or engines."""
-    mine = isinstance(who, Method)
-    name = who.function if mine else who.label
-
-    def limit(p, dt):
-        limits = scene.tolerance(p, dt)
-        return limits.get(who.label, limits)
-    predicted = partial(scene.predicted_error, who.label) if scene.predicted_error else "its scene predicts nothing"
-    return Runner(
-        who=who, order=scene.orders.get(name, who.order) if mine else who.order, limit=limit, predicted=predicted,
-        departure=scene.expected_departures.get(who.label), supports=scene.supports and partial(scene.supports, name),
-        in_quick=name not in scene.slow_methods,
-        slow_cases=tuple(case for case, names in scene.slow_runs.items() if name in names),
-        compiled_in_quick=name in scene.compiled_in_quick, most_in_quick=scene.shorter_in_quick.get(name),
-        finer_in_full=scene.finer_in_full.get(name, ()))
 
 
 def check_known(thing, names, known):

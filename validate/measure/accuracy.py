@@ -48,8 +48,6 @@ def errors(name, plan):
 
 def theory(scene):
     """What the scene says about its limits and predictions: the texts of their functions."""
-    if scene.tolerance:
-        return "\n\n".join(report_text(f) for f in (scene.tolerance, scene.predicted_error) if f)
     functions = [f for r in scene.runners for f in (r.limit, r.predicted) if callable(f)]
     return "\n\n".join(filter(None, dict.fromkeys(report_text(getattr(f, "func", f)) for f in functions)))
 
