@@ -55,7 +55,7 @@ def test_a_runner_without_a_meaning_is_refused(field, value, says):
         ours(VERLET, **{"limit": limit, "predicted": "of no theory", field: value})
 
 
-@pytest.mark.parametrize("misspelt", ["limits", "predict", "suports", "slow_case", "most_in_quik", "finer_in_ful",
+@pytest.mark.parametrize("misspelt", ["limits", "predict", "support", "slow_case", "most_in_quik", "finer_in_ful",
                                       "compiled_in_quik", "departures", "in_quik"])
 def test_a_misspelt_field_is_an_error(misspelt):
     with pytest.raises(TypeError, match=misspelt):
