@@ -6,7 +6,7 @@ truncation error worth naming.  *Source:* Squire and Trapp 1998 for that derivat
 
 import numpy as np
 
-from validate.stability.case import agreement, case, finding
+from validate.stability.case import case
 
 EARTH, RADIUS, GM = 5.9722e24, 6.371e6, 3.986004418e14    # mass [kg], mean radius [m], G times the mass [m³/s²]
 G_SI = 6.67430e-11                                        # CODATA 2018 [m³/(kg s²)]
@@ -28,9 +28,9 @@ def length(r):
 
 
 @case("forces", "Forces are derivatives of energies", compiled=False)
-def forces(lesson):
+def forces(lesson, check):
     """U = −G m_a m_b/r for gravity; U = ½k C² for a soft constraint, whose damper takes k_d Ċ² of power."""
-    rng, found = np.random.default_rng(21), []
+    rng = np.random.default_rng(21)
     errors = {name: [] for name in ("gravity", "soft", "power", "contact", "free")}
     for _ in range(CASES):
         x_a, x_b, (m_a, m_b, G) = rng.normal(size=3), 3.0 + rng.normal(size=3), rng.uniform(0.5, 2.0, 3)
@@ -60,16 +60,15 @@ def forces(lesson):
             ("power", "Its damper takes the power k_d Ċ²."),
             ("contact", "A soft contact pushes with −(k C + k_d Ċ) as long as that is a push."),
             ("free", "A soft contact neither pulls nor acts at a distance.")):
-        found.append(agreement(claim, f"{name}: largest error [-]", max(errors[name]), ROUNDED))
+        check.agree(claim, f"{name}: largest error [-]", max(errors[name]), ROUNDED)
     weight = lesson.universal_gravity(np.zeros(3), np.array([0.0, 0.0, -RADIUS]), 1.0, EARTH, G_SI)
     # G is known to 2.2e-5, and so is the mass of the Earth; their product is known to 2e-9.
-    found.append(agreement("Near the ground a kilogram weighs GM/R².", "weight of a kilogram: relative error [-]",
-                           length(weight - np.array([0.0, 0.0, -GM / RADIUS**2])) / (GM / RADIUS**2), 5e-5))
-    return found, None
+    check.agree("Near the ground a kilogram weighs GM/R².", "weight of a kilogram: relative error [-]",
+                length(weight - np.array([0.0, 0.0, -GM / RADIUS**2])) / (GM / RADIUS**2), 5e-5)
 
 
 @case("lecture-step", "The lecture's step of a mass-spring-damper system", compiled=False)
-def lecture_step(lesson):
+def lecture_step(lesson, check):
     """Two masses on a line and a fixed end, computed by hand: v += dt a,  x += dt (v_old + v_new)/2.
 
     a₁ = g + (wind − k_v v₁ − T₁ + T₂)/m₁,  a₂ = g + (wind − k_v v₂ − T₂)/m₂,  T = k (l − rest) + k_d l̇.
@@ -91,7 +90,7 @@ def lecture_step(lesson):
         got = np.concatenate((got_x[:, 1], got_v[:, 1]))
         worst = np.maximum(worst, np.max(np.abs(got - truth)) / np.max(np.abs(truth)))
     claim = "The lecture's step adds gravity, wind, drag, springs and dampers, and moves with the mean velocity."
-    return [agreement(claim, "state after a step: largest relative error [-]", worst, ROUNDED)], None
+    check.agree(claim, "state after a step: largest relative error [-]", worst, ROUNDED)
 
 
 def angle_between(r_a, r_c):
@@ -101,7 +100,7 @@ def angle_between(r_a, r_c):
 
 
 @case("angular-spring-forces", "An angular spring with unequal arms", compiled=False)
-def angular_spring(lesson):
+def angular_spring(lesson, check):
     """U = ½k(θ − rest)² for arms of any length, any angle and any rest angle; θ − rest within half a turn."""
     rng, worst, force, moment = np.random.default_rng(23), 0.0, 0.0, 0.0
     for _ in range(CASES):
@@ -119,14 +118,14 @@ def angular_spring(lesson):
             worst = np.maximum(worst, np.max(np.abs(F - truth)) / np.max(np.abs(truth)))
             force = np.maximum(force, np.max(np.abs(F.sum(axis=0))) / largest)
             moment = np.maximum(moment, abs(np.sum(x[::2] * F[:, 1] - x[1::2] * F[:, 0])) / largest)
-    return [agreement("The forces on both ends and on the hinge are the derivative of ½k(θ − rest)².",
-                      "forces: largest relative error [-]", worst, 1e-10),
-            agreement("They add up to nothing.", "sum of the forces over the largest [-]", force, ROUNDED),
-            agreement("They have no moment.", "sum of the moments over the largest force [m]", moment, ROUNDED)], None
+    check.agree("The forces on both ends and on the hinge are the derivative of ½k(θ − rest)².",
+                "forces: largest relative error [-]", worst, 1e-10)
+    check.agree("They add up to nothing.", "sum of the forces over the largest [-]", force, ROUNDED)
+    check.agree("They have no moment.", "sum of the moments over the largest force [m]", moment, ROUNDED)
 
 
 @case("large-step", "The linearly implicit step of a mesh", compiled=False)
-def large_step(lesson):
+def large_step(lesson, check):
     """(M + h k_v − h ∂F/∂v − h² ∂F/∂x) Δv = h (M a + h ∂F/∂x v), solved densely, with derivatives of energies.
 
     ∂F/∂x of a compressed spring has a sideways push, which the method leaves out: it keeps the positive part of K.
@@ -164,14 +163,14 @@ def large_step(lesson):
         truth = np.concatenate((x.ravel() + h * v_new, v_new))
         steps = np.maximum(steps, np.max(np.abs(np.concatenate((got_x.ravel(), got_v.ravel())) - truth)))
     # conjugate gradients end at 1e-10 of the right-hand side; A has a condition below 1e3
-    return [agreement("The stiffness of a spring is the positive part of the second derivative of its energy.",
-                      "blocks of K over k: largest error [-]", stiffness, 1e-10),
-            agreement("A large step solves the linearised equations of all points together.",
-                      "state after a step: largest error [m, m/s]", steps, 1e-6)], None
+    check.agree("The stiffness of a spring is the positive part of the second derivative of its energy.",
+                "blocks of K over k: largest error [-]", stiffness, 1e-10)
+    check.agree("A large step solves the linearised equations of all points together.",
+                "state after a step: largest error [m, m/s]", steps, 1e-6)
 
 
 @case("grids", "Springs of a grid", compiled=False)
-def grids(lesson):
+def grids(lesson, check):
     """Two nodes are joined if their rows and columns differ by an offset: counted over all pairs of nodes."""
     wrong = 0
     for rows, cols in ((1, 1), (1, 4), (3, 2), (4, 5)):
@@ -184,12 +183,12 @@ def grids(lesson):
     lengths = [np.hypot(*offset) for offset in lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND]
     found = abs(sum(lengths) - (2.0 + 2.0 * np.sqrt(2.0) + 4.0))           # 1, 1, √2, √2, 2, 2
     drawn = lesson.randomised(8.0, 0.25, np.array([0.0, 0.5, 1.0])) - np.array([6.0, 8.0, 10.0])
-    return [agreement("A grid joins the nodes whose rows and columns differ by an offset, and no others.",
-                      "grids with other pairs [of 20]", wrong, 0.0),
-            agreement("Threads are 1, diagonals √2 and every second node 2 apart.",
-                      "sum of the offsets: error [-]", found, ROUNDED),
-            agreement("A quantity that is drawn at random is spread evenly about its value.",
-                      "least, middle and largest draw: error [N/m]", np.max(np.abs(drawn)), ROUNDED)], None
+    check.agree("A grid joins the nodes whose rows and columns differ by an offset, and no others.",
+                "grids with other pairs [of 20]", wrong, 0.0)
+    check.agree("Threads are 1, diagonals √2 and every second node 2 apart.", "sum of the offsets: error [-]",
+                found, ROUNDED)
+    check.agree("A quantity that is drawn at random is spread evenly about its value.",
+                "least, middle and largest draw: error [N/m]", np.max(np.abs(drawn)), ROUNDED)
 
 
 # ---------------------------------------------------------------------------------------------- stiff cloth
@@ -228,7 +227,7 @@ def lengths(x, network):
 
 
 @case("stiff-cloth-on-a-slope", "A stiff cloth on a slope, in steps of a sixtieth of a second", compiled=False)
-def stiff_cloth_on_a_slope(lesson):
+def stiff_cloth_on_a_slope(lesson, check):
     """A cloth slides by ½ g sin θ t (t + dt), however stiff its threads are, and loses their strain.
 
     A translation strains no thread, so that it moves as one point does by symplectic Euler.  Implicit Euler multiplies
@@ -236,19 +235,18 @@ def stiff_cloth_on_a_slope(lesson):
     a row.  Symplectic Euler is stable for ω dt < 2 only.  The fastest ω² is above (2 + √2) k/m, which is too fast for
     all three cloths.  Conjugate gradients end at 1e-10 of the right-hand side.
     """
-    found, t = [], FRAME * FRAMES
+    t = FRAME * FRAMES
     way, exploded = 0.5 * G * np.sin(TILT) * t * (t + FRAME), 0
     for k in STIFF:
         x, _, strain = slid(lesson, lesson.implicit_spring_network_step, k)
         left = STRAIN * (1.0 + (2.0 - np.sqrt(2.0)) * k / MASS * FRAME**2) ** (-0.5 * FRAMES)
-        found += [agreement("A cloth slides like a point, however stiff it is.",
-                            f"way of the centre in 1 s less ½ g sin θ t (t + dt), k = {k:g} N/m [m]",
-                            abs(x[:, 0].mean() - way) + np.max(np.abs(x[:, 1])), 1e-10 * way),
-                  agreement("A large step takes the strain of stiff threads away.",
-                            f"largest strain after 1 s, k = {k:g} N/m [-]", np.max(np.abs(strain)), left + ROUNDED)]
+        check.agree("A cloth slides like a point, however stiff it is.",
+                    f"way of the centre in 1 s less ½ g sin θ t (t + dt), k = {k:g} N/m [m]",
+                    abs(x[:, 0].mean() - way) + np.max(np.abs(x[:, 1])), 1e-10 * way)
+        check.agree("A large step takes the strain of stiff threads away.",
+                    f"largest strain after 1 s, k = {k:g} N/m [-]", np.max(np.abs(strain)), left + ROUNDED)
         with np.errstate(all="ignore"):
             exploded += not np.max(np.abs(slid(lesson, explicit, k)[2])) < 1.0
-    found.append(finding(claim="An explicit step of this length tears every one of these cloths.",
-                         quantity="cloths that symplectic Euler strains by more than 1 [of 3]", predicted=len(STIFF),
-                         measured=exploded, tolerance=0.0, observation=f"It tears {exploded} of {len(STIFF)}."))
-    return found, None
+    check("An explicit step of this length tears every one of these cloths.",
+          "cloths that symplectic Euler strains by more than 1 [of 3]", law=len(STIFF), found=exploded, within=0.0,
+          saw=f"It tears {exploded} of {len(STIFF)}.")
