@@ -35,7 +35,6 @@ class Engine(NamedTuple):
     product: Product
     variant: str             # "" for the settings that match textbook physics, else their name
     make: Callable           # (p, dt) → EngineRun
-    order: int | str         # expected order of convergence
     settings: str            # what was set, and to what, for people
     most_steps: int | None = None            # the largest number of steps that is worth the engine's time
 
@@ -113,8 +112,7 @@ def ours(method, *, order=None, **about):
 
 def engine(product, variant, make, settings, *, most_steps=None, **about):
     """Return the Runner of an engine with these settings."""
-    order = about["order"]
-    return Runner(who=Engine(product, variant, make, order, settings, most_steps), **about)
+    return Runner(who=Engine(product, variant, make, settings, most_steps), **about)
 
 
 @dataclass(frozen=True, kw_only=True)
