@@ -4,6 +4,7 @@ import ast
 import json
 import re
 import symtable
+from dataclasses import fields
 from html import escape
 
 import nbformat
@@ -14,6 +15,7 @@ from validate import modules
 from validate.generate import exercises, stub
 from validate.modules import ROOT, SOLUTIONS, lesson_names
 from validate.notebook import figures
+from validate.scene import Scene
 
 from .kernels import kernel, ran
 
@@ -113,6 +115,15 @@ def test_a_lesson_is_told_in_the_same_way_everywhere(path):
     hidden = [cell for cell in code if "plt." in cell.source or cell is code[0]]
     assert all(cell.metadata.get("jupyter", {}).get("source_hidden") for cell in hidden)
     assert not any("plt.show()" in cell.source for cell in code)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_measures_scenes_with_fields_that_they_have(path):
+    known = {"most_steps", "without", *(field.name for field in fields(Scene))}
+    code = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    for node in (node for source in code if "measured(" in source for node in ast.walk(ast.parse(source))):
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "measured":
+            assert {keyword.arg for keyword in node.keywords} <= known, ast.unparse(node)
 
 
 @pytest.mark.parametrize(("path", "states"), [

@@ -10,6 +10,7 @@ import re
 import tempfile
 import uuid
 import warnings
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 
@@ -24,9 +25,10 @@ from solutions.checks import BadInput
 from .. import copies, failing_case, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
+from ..products import PRODUCTS
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..results import Role
-from ..scene import PRODUCTS
+from ..scene import check_known
 from . import cases, figures, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
@@ -533,13 +535,18 @@ def _scene_and_owner(name):
         return scene, False
 
 
-def measured(name, most_steps=1000, **changes):
+def measured(name, most_steps=1000, without=None, **changes):
     """Compare your methods, plain, with the truth and the engines on one scene; return what the report is made of.
 
-    changes replace fields of the Scene, such as steps=(50, 100, 200).  Where your lesson cannot be loaded a sentence
-    says so, and the engines run alone.
+    without   names of steps that take too long here; then all others run.  By default a quick run's choice is taken.
+    changes   replace fields of the Scene, such as steps=(50, 100, 200)
+    Where your lesson cannot be loaded a sentence says so, and the engines run alone.
     """
-    _, own = _scene_and_owner(name)
+    scene, own = _scene_and_owner(name)
+    if without is not None:
+        check_known(f"a step of scene {name!r}", without, [r.who.function for r in scene.our_runners])
+        changes["runners"] = tuple(replace(r, in_quick=r.is_engine or r.who.function not in without)
+                                   for r in scene.runners)
     plan = measure.Plan(of=str(folder()) if own else "solutions", speeds=("plain",) if own else (),
                         live=tuple(product for product in PRODUCTS if product.installed()), most_steps=most_steps,
                         changes=tuple(changes.items()))
