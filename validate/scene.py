@@ -27,7 +27,7 @@ class Method(NamedTuple):
     lesson: str
     colour: str
     marker: str
-    table: object = None     # its Tableau, or its step written once more, of validate/reference
+    table: object = None     # the same method in validate/reference: its Tableau, its Turn, or its step
 
 
 class Engine(NamedTuple):
