@@ -124,6 +124,9 @@ def test_the_front_page_answers_four_questions_and_says_what_each_verdict_means(
     ours = [c for s in data["scenes"] for case in s["cases"].values() for c in case["ours"]]
     assert found["right"]["runs"] == len(ours)
     assert f"{len(ours)} of {len(ours)} comparisons come out as theory says" in front.text
+    curves = {(s["scene"], c["label"]): any(row["predicted"] for row in c["rows"]) for s in data["scenes"]
+              for case in s["cases"].values() for c in case["ours"] + case["engines"]}
+    assert f"For {sum(curves.values())} of {len(curves)} curves, theory predicts the error itself" in front.text
     assert found["stable"]["hold"] == found["stable"]["findings"] > 0
     assert {line["engine"] for line in found["departures"]["lines"]} >= {"pybullet, default", "pymunk, Segment"}
     assert (folder / "index.html").stat().st_size < 100_000

@@ -25,10 +25,13 @@ def right(results):
     count = Counter(Verdict(c["verdict"]) for _, _, c in every)
     ordered = [c for _, _, c in every if c["order"] is not None and c["expected"] in (1, 2, 4)]
     wrong = {r["scene"]: r["title"] for r, _, c in every if Verdict(c["verdict"]) is Verdict.DEPARTS}
-    curves = {(r["scene"], c["label"]): not c["unpredicted"]
-              for role in ("ours", "engines") for r, _, c in curves_of(results, role)}
+    curves, predicted = set(), set()
+    for r, _, c in (*every, *curves_of(results, "engines")):
+        curves.add((r["scene"], c["label"]))
+        if any(row["predicted"] is not None for row in c["rows"]):
+            predicted.add((r["scene"], c["label"]))
     return {
-        "curves": len(curves), "curves_predicted": sum(curves.values()),
+        "curves": len(curves), "curves_predicted": len(predicted),
         "scenes": len(results), "runs": len(every), "agree": count[Verdict.AGREES],
         "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,

@@ -44,11 +44,6 @@ class Checks(list):
         """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
-    def count(self, claim, quantity, results, saw):
-        """Add a Finding that all results are true.  saw has {n} and {all} for the numbers that are, and of all."""
-        n, every = sum(map(bool, results)), len(results)
-        self(claim, quantity, law=every, found=n, within=0.0, saw=saw.format(n=n, all=every))
-
 
 class Picture(NamedTuple):
     """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS; or maps in their place."""
