@@ -10,7 +10,7 @@ impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A · μ [-
 ρ [-] contraction factor: error after a sweep over the error before it.
 The first part is for small scenes: exact, in the plane, with matrices.  The second part is for piles: fast, with
 arrays.  Functions of the second part run compiled if they contain only loops over numbers and arrays: no dict, no
-lambda, no string.  Given in solutions/support/contact.py: advance_pile_2d and advance_pile, which call them in each
+lambda, no string.  Given in solutions/given/contact.py: advance_pile_2d and advance_pile, which call them in each
 step.
 *Left out:* restitution of many contacts (no law decides it, only conventions); sleeping; rolling resistance.
 """

@@ -22,8 +22,8 @@ from solutions.checks import Diverged, check_positive, check_restitution
 from solutions.friction import tangential
 from solutions.integrators import symplectic_euler_step
 from solutions.rotation import point_velocity, solve3
-from solutions.support.impact_modes import settle_impacts
-from solutions.support.impacts import (
+from solutions.given.impact_modes import settle_impacts
+from solutions.given.impacts import (
     CONVERGED,
     MAX_SWEEPS,
     check_contact,

@@ -22,7 +22,7 @@ from solutions.checks import BadInput, Diverged, float_copy
 from solutions.integrators import solve
 from solutions.rotation import angular_acceleration, quaternion_product, quaternion_update, rotate, unrotate
 from solutions.support.networks import shared_edges
-from solutions.support.ropes import composed_rope_step, rope_step
+from solutions.given.ropes import composed_rope_step, rope_step
 from solutions.vectors import cross, distance_between, dot, move_apart
 
 __all__ = [

@@ -33,7 +33,7 @@ from solutions.rotation import (
     unrotate,
 )
 from solutions.support.arms import apply_impulses, apply_impulses_2d, arms_2d, arms_3d, turn_quaternions, world_inertia
-from solutions.support.bodies import (
+from solutions.given.bodies import (
     Bodies,
     CarriedBall,
     RockingBlock,
@@ -60,8 +60,8 @@ from solutions.support.contact_points import (
     largest_overlap,
     round_contacts,
 )
-from solutions.support.forces import contact_force, joint_forces, joint_forces_2d, normal_and_friction, normal_forces
-from solutions.support.invariants import (
+from solutions.given.forces import contact_force, joint_forces, joint_forces_2d, normal_and_friction, normal_forces
+from solutions.given.invariants import (
     checked_histories,
     closing_speeds,
     mechanical_energy_2d,
@@ -70,14 +70,14 @@ from solutions.support.invariants import (
     sweep_residual_2d,
     work_of_driven_rows,
 )
-from solutions.support.joints import (
+from solutions.given.joints import (
     close_joints_2d,
     joint_step,
     make_joints,
     parting_speeds,
     without_joined,
 )
-from solutions.support.passing import check_passing
+from solutions.given.passing import check_passing
 from solutions.support.records import check_record
 from solutions.support.scenes import PileState
 from solutions.vectors import cross, dot, norm

@@ -20,10 +20,8 @@ import numpy as np
 
 from .checks import Diverged, check_positive, check_restitution
 from .friction import tangential
-from .integrators import symplectic_euler_step
-from .rotation import point_velocity, solve3
-from .support.impact_modes import settle_impacts
-from .support.impacts import (
+from .given.impact_modes import settle_impacts
+from .given.impacts import (
     CONVERGED,
     MAX_SWEEPS,
     check_contact,
@@ -34,6 +32,8 @@ from .support.impacts import (
     rebound_speeds,
     times,
 )
+from .integrators import symplectic_euler_step
+from .rotation import point_velocity, solve3
 from .vectors import cross
 
 __all__ = [

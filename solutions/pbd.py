@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import BadInput, Diverged, float_copy
+from .given.ropes import composed_rope_step, rope_step
 from .integrators import solve
 from .rotation import angular_acceleration, quaternion_product, quaternion_update, rotate, unrotate
 from .support.networks import shared_edges
-from .support.ropes import composed_rope_step, rope_step
 from .vectors import cross, distance_between, dot, move_apart
 
 __all__ = [

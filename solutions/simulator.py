@@ -18,6 +18,39 @@ import numpy as np
 
 from .checks import check_end, check_load, check_shape, checked_run
 from .contact import kept_impulses, velocity_sweep, velocity_sweep_2d
+from .given.bodies import (
+    Bodies,
+    CarriedBall,
+    RockingBlock,
+    Toppled,
+    check_sinking,
+    check_speed,
+    checked_bodies,
+    make_bodies,
+    make_bodies_2d,
+    movable_pairs,
+    rocking_acceleration,
+    stop_slip,
+    time_of_landing,
+)
+from .given.forces import contact_force, joint_forces, joint_forces_2d, normal_and_friction, normal_forces
+from .given.invariants import (
+    checked_histories,
+    closing_speeds,
+    mechanical_energy_2d,
+    momenta_2d,
+    overlap_bound_2d,
+    sweep_residual_2d,
+    work_of_driven_rows,
+)
+from .given.joints import (
+    close_joints_2d,
+    joint_step,
+    make_joints,
+    parting_speeds,
+    without_joined,
+)
+from .given.passing import check_passing
 from .impulses import cross_2d
 from .integrators import rk4_step
 from .rotation import (
@@ -33,21 +66,6 @@ from .rotation import (
     unrotate,
 )
 from .support.arms import apply_impulses, apply_impulses_2d, arms_2d, arms_3d, turn_quaternions, world_inertia
-from .support.bodies import (
-    Bodies,
-    CarriedBall,
-    RockingBlock,
-    Toppled,
-    check_sinking,
-    check_speed,
-    checked_bodies,
-    make_bodies,
-    make_bodies_2d,
-    movable_pairs,
-    rocking_acceleration,
-    stop_slip,
-    time_of_landing,
-)
 from .support.broad_phase import near_pairs
 from .support.contact_points import (
     ContactSet,
@@ -60,24 +78,6 @@ from .support.contact_points import (
     largest_overlap,
     round_contacts,
 )
-from .support.forces import contact_force, joint_forces, joint_forces_2d, normal_and_friction, normal_forces
-from .support.invariants import (
-    checked_histories,
-    closing_speeds,
-    mechanical_energy_2d,
-    momenta_2d,
-    overlap_bound_2d,
-    sweep_residual_2d,
-    work_of_driven_rows,
-)
-from .support.joints import (
-    close_joints_2d,
-    joint_step,
-    make_joints,
-    parting_speeds,
-    without_joined,
-)
-from .support.passing import check_passing
 from .support.records import check_record
 from .support.scenes import PileState
 from .vectors import cross, dot, norm

@@ -3,9 +3,7 @@
 changed, `validate audit` whether a report follows from its raw rows.
 """
 
-import json
 import os
-import tempfile
 from contextlib import contextmanager
 from enum import StrEnum
 from math import isfinite
@@ -18,10 +16,10 @@ from rich.table import Table
 
 from solutions.checks import BadInput
 
-from . import copies, modules, needs
-from .processes import Ended, alone_in, ending_once, one_sentence, workers
 from .products import PRODUCTS, PYBULLET, product_named
-from .store import SUBSET, lessons_of
+from .run.processes import Ended, alone_in, ending_once, one_sentence, workers
+from .run.store import SUBSET, lessons_of, stored_report, writable
+from .subject import copies, modules, needs
 
 HELP = (
     "Compare every scene with its truth and with the engines; write the report.  "
@@ -64,7 +62,7 @@ def validate(
     if context.invoked_subcommand:
         return
     from . import measure  # takes half a second: not for --help
-    from .run import run
+    from .run.run import run
     names, broken = select_scenes(scene or [], lesson or [])
     asked, of = of, copies.meant_here(of)
     require_answers(of, names)
@@ -92,7 +90,7 @@ def on_cluster(executor, of):
     if executor is None:
         yield None
         return
-    from .cluster import cluster
+    from .run.cluster import cluster
     with cluster(executor, of) as measuring:
         yield measuring
 
@@ -139,22 +137,13 @@ def record(scene: Annotated[list[str] | None, ONE_SCENE] = None):
         raise error
 
 
-def stored_report(folder):
-    """The content of a report's report.json.  Raises BadInput for a folder that is none."""
-    try:
-        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-        return {part: report[part] for part in ("run", "scenes", "stability")}
-    except (OSError, ValueError, KeyError, TypeError):
-        raise BadInput(f"folder {str(folder)!r}", "not a report", "name the folder that `validate` wrote") from None
-
-
 @app.command("compare")
 def compare(
     old: Annotated[Path, typer.Argument(help="Folder of the earlier report.")],
     new: Annotated[Path, typer.Argument(help="Folder of the later report.")],
 ):
     """Print what changed between two reports; exit with 1 when something became worse."""
-    from .compare import KINDS, changes
+    from .report.compare import KINDS, changes
     try:
         found = changes(stored_report(old), stored_report(new))
     except (KeyError, TypeError, ValueError):
@@ -175,7 +164,7 @@ def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = 
 
     Exit with 1 when something differs.
     """
-    from .audit import audit as check
+    from .report.audit import audit as check
     try:
         problems, counts = check(report, stored_report(report))
     except (KeyError, TypeError, AttributeError, IndexError):
@@ -304,18 +293,6 @@ def value_of(name, text, known):
         number = {int: "give a whole number", float: "give a finite number"}.get(kind)
         raise BadInput(f"parameter {name}", repr(text), number or f"choose from: {'; '.join(dict.fromkeys(known))}")
     return value
-
-
-def writable(out):
-    """The output folder, made if need be.  Raises BadInput when nothing can be written there."""
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=out):
-            pass
-    except OSError as e:
-        raise BadInput(f"output folder {str(out)!r}", f"not writable ({e.strerror})",
-                       "name another with --out") from None
-    return out
 
 
 def main(arguments=None):

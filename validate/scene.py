@@ -149,7 +149,7 @@ class Scene:
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
     film_of_truth: str = "truth"  # its label in the film, where nobody knows the truth
     our_film: Callable | None = None         # (p) → (seconds, frames) of our last run, where only its end is judged
-    bodies: Callable | None = None           # (p) → shapes of validate/drawing.py: the film is then shown in 3D
+    bodies: Callable | None = None           # (p) → shapes of validate/scenes/drawing.py: the film is then shown in 3D
     poses: Callable | None = None            # (observed, p) → (bodies, 7) position and quaternion (w, x, y, z) of each
     arrows: Callable | None = None           # (observed, p) → {name: (from, to)} [m], such as ω and L
     trail: int | None = None                 # number of the body whose path is drawn

@@ -1,1 +1,1 @@
-"""Geometry that lessons hand out: nobody has to write it, and few need to read it."""
+"""Given code below the lessons: geometry, records and checks.  It imports no lesson, and students need not read it."""

@@ -71,7 +71,8 @@ def check_record(p, state):
     """Raise BadInput unless a record p of this workbook is one that can be, and fits the state.
 
     state: the array whose rows p describes (x; the angles of an arm), or a PileState, which is checked as well.
-    Compiled code passes over this call.  validate/modules.py makes it in plain Python before the compiled loop starts.
+    Compiled code passes over this call.  validate/subject/modules.py makes it in plain Python before the compiled loop
+    starts.
     """
     rule = RULES.get(getattr(p, "_fields", None))
     sizes = {}

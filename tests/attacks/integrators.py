@@ -2,7 +2,8 @@
 
 import inspect
 
-from ..grading import example
+from validate.grading import example
+
 from ..lessons import test_integrators
 
 WORKED = example.worked("integrators")

@@ -15,7 +15,7 @@ def found(text, where):
 
 looks("import solutions", STEAL + """
 # the worked answers of this lesson
-for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons.springs", "validate.modules", "tests.test_integrators", "tests.mutants.integrators"):
+for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons.springs", "validate.subject.modules", "tests.test_integrators", "tests.mutants.integrators"):
     try:
         module = __import__(name, fromlist=["euler_step"])
         if hasattr(module, "euler_step") or not name.startswith(("solutions", "lessons")):
@@ -122,7 +122,7 @@ builtins.float = builtins.AssertionError = type("nothing", (Exception,), {})
 """, lost=True)
 attack("patched pytest and grader", "tests pass that never ran", """
 import sys, types
-for name in ("pytest", "_pytest", "_pytest.outcomes", "tests", "tests.grading", "tests.grading.expect", "tests.grading.points", "tests.grading.marking"):
+for name in ("pytest", "_pytest", "_pytest.outcomes", "tests", "tests.grading", "validate.grading.expect", "validate.grading.points", "validate.grading.marking"):
     sys.modules[name] = module = types.ModuleType(name)
     module.close = module.raises = module.numbers = module.grade = module.outcome = lambda *a, **k: None
     module.NotYet = type("NotYet", (Exception,), {})

@@ -20,9 +20,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validate.modules import ROOT, SOLUTIONS
+from validate.grading import box, children, expect, marking, plugin, points, remote, submissions
+from validate.subject.modules import ROOT, SOLUTIONS
 
-from ..grading import box, children, expect, marking, plugin, points, remote, submissions
 from . import ATTACKS, HONEST, SOLVED
 from .integrators import PRETENDED
 from .trial import BUDGET, MARK, SEED

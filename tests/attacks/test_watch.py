@@ -7,10 +7,10 @@ import textwrap
 
 import pytest
 
-from validate import modules
+from validate.grading import example, marking, pages, similar, submissions, watch
+from validate.subject import modules
 
 from .. import attacks
-from ..grading import example, marking, pages, similar, submissions, watch
 
 
 def watched(text, rules, lesson="integrators"):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.grading.expect import close
+from validate.grading.expect import close
 
 exercise = pytest.mark.exercise
 

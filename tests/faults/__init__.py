@@ -9,7 +9,7 @@ import ast
 import importlib
 from typing import NamedTuple
 
-from validate import modules
+from validate.subject import modules
 
 
 class Fault(NamedTuple):

@@ -11,9 +11,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from solutions.checks import BadInput
-from validate import modules
-from validate.processes import ending_once, one_sentence, workers
-from validate.store import code_digest, write_whole
+from validate.run.processes import ending_once, one_sentence, workers
+from validate.run.store import code_digest, write_whole
+from validate.subject import modules
 
 from . import faults_of
 from .honest import honest_run

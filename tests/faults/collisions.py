@@ -60,16 +60,16 @@ fault("steer", "np.array([-e[1], e[0]])", "np.array([e[1], -e[0]])", "it turns r
 fault("gjk", "weights @ q, 0.0)", "q[0], 0.0)", "the nearest point of the second body is a corner")
 fault("ball_contact", "x_b + r_b * n", "x_b + r_a * n", "the point on the second ball is not on it")
 fault("ball_plane", "x - distance * plane.n", "x - (distance - r) * plane.n", "the point on the plane is not on it",
-      of="support.collisions")
-fault("cylinder_hit", "(moment - t) / dt", "moment / dt", "right for steps that begin at 0", of="support.collisions")
-fault("continuous_step", "(moment - t) * v", "moment * v", "right for steps that begin at 0", of="support.collisions")
-fault("capsule_capsule", "p, r_a, q, r_b", "p, r_b, q, r_a", "the radii are exchanged", of="support.collisions")
+      of="given.collisions")
+fault("cylinder_hit", "(moment - t) / dt", "moment / dt", "right for steps that begin at 0", of="given.collisions")
+fault("continuous_step", "(moment - t) * v", "moment * v", "right for steps that begin at 0", of="given.collisions")
+fault("capsule_capsule", "p, r_a, q, r_b", "p, r_b, q, r_a", "the radii are exchanged", of="given.collisions")
 fault("points_plane", "if distance <= 0.0:", "if distance < 0.0:", "a corner that just touches has no contact",
-      of="support.collisions")
+      of="given.collisions")
 fault("box_box", "(k - 6) // 3, -n)", "(k - 6) // 3, n)", "the edge of the first box is that on its far side",
-      of="support.collisions")
-fault("make_plane", "y[-1] / length", "y[-1]", "the distance from the origin is not scaled", of="support.collisions")
-fault("flock_energy", "0.5 * p.gather", "p.gather", "the pull to the middle counts twice", of="support.collisions")
+      of="given.collisions")
+fault("make_plane", "y[-1] / length", "y[-1]", "the distance from the origin is not scaled", of="given.collisions")
+fault("flock_energy", "0.5 * p.gather", "p.gather", "the pull to the middle counts twice", of="given.collisions")
 fault("boxes_touch", "low_a[i, c] > high_b[j, c]", "low_a[i, c] >= high_b[j, c]", "boxes that just touch do not",
       of="support.trees")
 fault("touching_items", "b.order[m]", "a.order[m]", "items of the second tree have the numbers of the first",

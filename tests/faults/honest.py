@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validate import coverage, modules
+from validate.run import coverage
+from validate.subject import modules
 
 from .notice import copy_with, turned_at
 

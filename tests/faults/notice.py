@@ -19,12 +19,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validate import coverage, modules, numba_twins
-from validate.loading import TooLong, alarm
+from validate.check import Verdict
 from validate.measure.accuracy import our_curve
 from validate.measure.selection import Plan, select
-from validate.results import Verdict
+from validate.run import coverage
 from validate.stability.examine import all_cases, broken_off, examine
+from validate.subject import modules, numba_twins
+from validate.subject.loading import TooLong, alarm
 
 from . import file_of, planted
 
@@ -99,7 +100,7 @@ def rank(place, fault, first):
     """Places of the lesson itself before those of later lessons; those that name the function first, and quick ones."""
     roots = roots_of(place)
     near = coverage.defined((fault.lesson, fault.function)) in {coverage.defined(root) for root in roots}
-    own = any(lesson == fault.lesson.removeprefix("support.") for lesson, _ in roots)
+    own = any(lesson == fault.lesson.removeprefix("given.") for lesson, _ in roots)
     slow = SECONDS.get(place, 0.0) // 1.0
     return place != first, not own, not near, slow, not place.startswith(coverage.STABILITY), place
 

@@ -56,13 +56,13 @@ fault("average_rolling_step", "quaternion_product(turn, q)", "quaternion_product
       "the ball turns about axes of its own")
 fault("average_rolling_step", "(omega + omega_new)", "(omega_new + omega_new)",
       "the ball turns with its new angular velocity")
-fault("runge_kutta_step", "L + dt * tau_3", "L", "the last stage has the old angular momentum", of="support.rotation")
+fault("runge_kutta_step", "L + dt * tau_3", "L", "the last stage has the old angular momentum", of="given.rotation")
 fault("_slope", "rotation_matrix(turn)", "rotation_matrix(q)",
-      "between the stages, lengths are not kept", of="support.rotation")
+      "between the stages, lengths are not kept", of="given.rotation")
 fault("rotation_trajectory", "t + n * dt, q", "t, q", "every step of a history begins at the time of the first",
-      of="support.rotation")
-fault("rotation_trajectory", "ts = t + dt", "ts = dt", "the times of a history begin at 0", of="support.rotation")
-fault("advance_rotation", "t + n * dt", "t", "every step begins at the time of the first", of="support.rotation")
-fault("advance_rigid_body", "t + n * dt", "t", "every step begins at the time of the first", of="support.rotation")
-fault("make_rigid_body", "m), moments)", "m), moments[::-1].copy())", "the moments are reversed", of="support.rotation")
+      of="given.rotation")
+fault("rotation_trajectory", "ts = t + dt", "ts = dt", "the times of a history begin at 0", of="given.rotation")
+fault("advance_rotation", "t + n * dt", "t", "every step begins at the time of the first", of="given.rotation")
+fault("advance_rigid_body", "t + n * dt", "t", "every step begins at the time of the first", of="given.rotation")
+fault("make_rigid_body", "m), moments)", "m), moments[::-1].copy())", "the moments are reversed", of="given.rotation")
 fault("about_axis", "x * c - z * s", "x * c + z * s", "a turn about the second axis is none", of="support.quaternions")

@@ -86,28 +86,28 @@ fault("compare", "np.maximum(difference, np.max(np.abs(slow - quick)))", "np.max
 fault("advance_contact", "t + n * dt, state, dt, p)", "t, state, dt, p)", "all loads are those of the start")
 fault("weight", "p.gravity / p.inv_mass[i]", "p.gravity / p.inv_mass[0]", "all bodies weigh as much as the first")
 fault("settled_contact_step_2d", "<= SETTLED * np.max(np.abs(J))", "<= 10.0 * SETTLED * np.max(np.abs(J))",
-      "the sweeps end ten times too early", of="support.simulator")
+      "the sweeps end ten times too early", of="given.simulator")
 fault("settled_contact_step_2d", "velocity_sweep_2d(v, omega, found,", "velocity_sweep_2d(v, omega, 0.0 * found,",
-      "each further sweep forgets the impulses before it", of="support.simulator")
+      "each further sweep forgets the impulses before it", of="given.simulator")
 fault("settled_contact_step_2d", "state.x + dt * v,", "state.x + dt * state.v,", "places go with the last velocities",
-      of="support.simulator")
+      of="given.simulator")
 fault("settled_contact_step_2d", "closing_speeds(contacts.gap, dt)", "closing_speeds(0.0 * contacts.gap, dt)",
-      "further sweeps stop bodies before they touch", of="support.simulator")
+      "further sweeps stop bodies before they touch", of="given.simulator")
 fault("mean_contact_step_2d", "0.5 * dt * (v + v_new)", "dt * v_new", "positions with the new velocities alone",
-      of="support.simulator")
+      of="given.simulator")
 fault("rods_acceleration", "(n - i - 0.75) + p.I", "(n - i - 0.75)", "rods have no moment of inertia of their own",
-      of="support.simulator")
+      of="given.simulator")
 fault("rods_acceleration", "s[i] * c[j] - c[i] * s[j]", "s[i] * c[j] + c[i] * s[j]",
-      "the pull of rods that turn has the sine of the sum of the angles", of="support.simulator")
+      "the pull of rods that turn has the sine of the sum of the angles", of="given.simulator")
 fault("rods_acceleration", "(n - i - 0.5) * c[i]", "(n - i) * c[i]", "a rod's own weight acts at its end",
-      of="support.simulator")
+      of="given.simulator")
 fault("contact_trajectory", "states[-1], dt, 1, p", "state, dt, 1, p", "every step of a history begins at the start",
-      of="support.simulator")
+      of="given.simulator")
 fault("normal_and_friction", "N[k] += n[k, i] * state.J[k, i] / dt", "N[k] += n[k, i] * n[k, i] * state.J[k, 1] / dt",
-      "the vertical part of the impulse counts as normal, however the contact is inclined", of="support.forces")
+      "the vertical part of the impulse counts as normal, however the contact is inclined", of="given.forces")
 fault("normal_forces", "forces[k] += N[c]", "forces[k] = N[c]", "of two contacts only the last one counts",
-      of="support.forces")
+      of="given.forces")
 fault("may_pass", "8.0 * farthest > smallest * smallest", "0.1 * farthest > smallest * smallest",
-      "only what moves by three half sizes is tested", of="support.passing")
+      "only what moves by three half sizes is tested", of="given.passing")
 fault("have_passed", "turned_round < 0.0", "turned_round < -2.0", "a body on the wrong side counts as one that came",
-      of="support.passing")
+      of="given.passing")

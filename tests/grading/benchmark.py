@@ -33,10 +33,11 @@ from rich.console import Console
 from rich.table import Table
 
 from tests import attacks
-from validate import modules
-from validate.store import write_whole
+from validate.grading import cluster, example, marking, pages, sandbox, similar, submissions
+from validate.run.store import write_whole
+from validate.subject import modules
 
-from . import cluster, example, marking, pages, rehearsal, sandbox, similar, submissions
+from . import rehearsal
 
 LESSONS = ("integrators", "springs")
 WORKERS, SIMULATED = (2, 4), (1, 2, 4, 8, 16, 32, 64)

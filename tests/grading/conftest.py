@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from validate.modules import ROOT
+from validate.subject.modules import ROOT
 
 
 def git(*arguments, cwd):
@@ -33,7 +33,7 @@ def made_up(monkeypatch):
     """Return function(more) after which nothing is graded: each result is marking.nothing with more(submission,
     settings).  It returns {student: how often he was graded}.
     """
-    from . import local, marking  # here, since this file must load where Python cannot start processes
+    from validate.grading import local, marking  # here, since this file must load where Python cannot start processes
 
     def set_up(more):
         graded = {}
@@ -52,7 +52,7 @@ def made_up(monkeypatch):
 def unpacked(repository, tmp_path_factory):
     """Make the zip of that repository by its own command, and unpack it."""
     folder = tmp_path_factory.mktemp("student")
-    command = [sys.executable, "-m", "tests.grading.release", "--out", str(folder / "workbook.zip")]
+    command = [sys.executable, "-m", "validate.grading.release", "--out", str(folder / "workbook.zip")]
     subprocess.run(command, cwd=repository, check=True)
     shutil.unpack_archive(folder / "workbook.zip", folder)
     return folder / "workbook"

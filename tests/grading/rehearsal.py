@@ -16,9 +16,8 @@ from statistics import median
 from typing import NamedTuple
 
 from tests import attacks
-from validate import modules
-
-from . import example
+from validate.grading import example
+from validate.subject import modules
 
 LESSON, HONEST_EXERCISE = "integrators", "1.10"      # every hostile file has this exercise right, and no other
 HOSTILE = 0.2                # share of the class [-]
@@ -68,7 +67,7 @@ def make(folder, size):
 
 def graded(folder, out, jobs, evil):
     """Grade the class once, by the command; what was found."""
-    command = [sys.executable, "-m", "tests.grading", str(folder), "--out", str(out), "--lesson", LESSON,
+    command = [sys.executable, "-m", "validate.grading", str(folder), "--out", str(out), "--lesson", LESSON,
                "--seed", SEED, "--jobs", str(jobs)]
     before, began = used(), time.monotonic()
     run = subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True)

@@ -13,8 +13,8 @@ import pytest
 import yaml
 
 from solutions.checks import BadInput
-from tests.grading import autograder, marking
-from validate.modules import ROOT
+from validate.grading import autograder, marking
+from validate.subject.modules import ROOT
 
 SEED = "known to nobody"
 COURSE = ("--seed", SEED, "--lesson", "integrators", "--late", "10", "--dirty")
@@ -177,7 +177,7 @@ def test_without_a_sandbox_nothing_is_run_and_there_is_no_score(place, monkeypat
     monkeypatch.setenv("WORKBOOK_SANDBOX_BY", "chroot")
     monkeypatch.setenv("PATH", "/nowhere")
     paths = [place / "submission", place / "results.json", "--course", place / "source" / "course.json"]
-    code = "import os; os.geteuid = lambda: 1000; from tests.grading.autograder import main; main()"
+    code = "import os; os.geteuid = lambda: 1000; from validate.grading.autograder import main; main()"
     command = [sys.executable, "-c", code, "run", *map(str, paths)]
     run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     found = json.loads((place / "results.json").read_text())

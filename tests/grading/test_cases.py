@@ -5,13 +5,14 @@ import types
 import numpy as np
 import pytest
 
-from validate import failing_case, modules, needs
-from validate.modules import ROOT
+from validate.grading import points
+from validate.mistakes import failing_case
 from validate.notebook import _Answer, cases
 from validate.notebook.pytest_process import quiet
+from validate.subject import modules, needs
+from validate.subject.modules import ROOT
 
 from ..mutants.traces import mutants_of, traces_of
-from . import points
 
 LESSONS = sorted({needs.table()[number]["lesson"] for number in cases.pictures()})
 

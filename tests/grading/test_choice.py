@@ -9,9 +9,8 @@ import sys
 import pytest
 
 from solutions.checks import BadInput
-from validate import modules
-
-from . import autograder, choice, example, marking, sandbox, submissions
+from validate.grading import autograder, choice, example, marking, sandbox, submissions
+from validate.subject import modules
 
 
 @pytest.fixture
@@ -97,8 +96,8 @@ def test_a_right_answer_that_hands_a_record_of_a_given_module_to_a_given_functio
 def test_a_class_is_graded_by_the_exercises_that_were_set(tmp_path):
     example.make(tmp_path / "class")
     run = subprocess.run(
-        [sys.executable, "-m", "tests.grading", tmp_path / "class", "--out", tmp_path / "grades", "--seed", "a secret",
-         "--exercises", "1.1=4,1.2-1.3=3"], cwd=modules.ROOT, capture_output=True, text=True)
+        [sys.executable, "-m", "validate.grading", tmp_path / "class", "--out", tmp_path / "grades",
+         "--seed", "a secret", "--exercises", "1.1=4,1.2-1.3=3"], cwd=modules.ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
     with open(tmp_path / "grades" / "grades.csv", newline="") as file:
         rows = {row["student_id"]: row for row in csv.DictReader(file)}

@@ -7,9 +7,8 @@ import sys
 
 import pytest
 
-from validate import modules
-
-from . import chroot, example, marking, remote, sandbox, submissions
+from validate.grading import chroot, example, marking, remote, sandbox, submissions
+from validate.subject import modules
 
 pytestmark = [
     pytest.mark.xdist_group("sandbox"),
@@ -108,7 +107,7 @@ def test_only_root_can_do_it(monkeypatch):
 
 
 def test_a_way_that_does_not_exist_is_named():
-    code = "from tests.grading import sandbox; sandbox.way()"
+    code = "from validate.grading import sandbox; sandbox.way()"
     done = subprocess.run([sys.executable, "-c", code], cwd=modules.ROOT, capture_output=True, text=True,
                           env={**os.environ, "WORKBOOK_SANDBOX_BY": "a fence"})
     assert "WORKBOOK_SANDBOX_BY is 'a fence': name one of bubblewrap, chroot" in done.stderr

@@ -15,9 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validate import modules
-
-from . import example, points, remote, sandbox, shipping, wire
+from validate.grading import example, points, remote, sandbox, shipping, wire
+from validate.subject import modules
 
 PATIENCE = 600.0             # [s]: only a run that hangs takes so long, on the busiest machine, too
 
@@ -42,7 +41,7 @@ def rows(top):
     return graded(top / "class", top / "one", *LATE)
 
 
-GRADE = (sys.executable, "-m", "tests.grading")
+GRADE = (sys.executable, "-m", "validate.grading")
 COURSE = ("--lesson", "integrators", "--seed", "a secret")
 LATE = ("--due", "2027-01-01T00:00", "--late", "10")
 pytestmark = pytest.mark.xdist_group("a graded class")

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from validate.processes import alone_in
-
-from . import __main__ as grade
-from . import autograder, local, release, sandbox
+from validate.grading import __main__ as grade
+from validate.grading import autograder, local, release, sandbox
+from validate.run.processes import alone_in
 
 
 def run(capsys, program, *arguments):

@@ -16,9 +16,9 @@ import psutil
 import pytest
 
 from solutions.checks import BadInput
-from tests.grading import cluster, marking
-from tests.grading.submissions import Submission
-from validate.modules import ROOT
+from validate.grading import cluster, marking
+from validate.grading.submissions import Submission
+from validate.subject.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("cluster")
 LESSON = "inertia_tensors"   # its tests are the quickest
@@ -129,7 +129,7 @@ def test_a_killed_worker_loses_no_submission_and_none_is_counted_twice(tmp_path,
 @pytest.mark.long
 def test_the_processes_of_a_killed_worker_end_with_it(settings):
     hangs = Submission("kim", {LESSON: b"while True:\n    pass\n"}, (), "")      # for IMPORT_WITHIN, 10 s
-    command = "import sys; from tests.grading import cluster; cluster.asked(sys.stdin.buffer.read())"
+    command = "import sys; from validate.grading import cluster; cluster.asked(sys.stdin.buffer.read())"
     pipes = {"stdin": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     with subprocess.Popen([sys.executable, "-c", command], cwd=ROOT, **pipes) as process:
         process.stdin.write(cluster.parcel(hangs, settings))

@@ -6,8 +6,9 @@ import time
 
 import pytest
 
-from . import __main__ as grade
-from . import marking, sandbox
+from validate.grading import __main__ as grade
+from validate.grading import marking, sandbox
+
 from .test_cli import run
 
 LIST = """student_id,last_name,first_name,email{0}

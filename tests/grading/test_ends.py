@@ -11,9 +11,8 @@ import time
 import psutil
 import pytest
 
-from validate.modules import ROOT
-
-from . import children, sandbox
+from validate.grading import children, sandbox
+from validate.subject.modules import ROOT
 
 WITHIN = 60.0                # [s]: on a machine that does much else
 
@@ -38,7 +37,7 @@ def run(tmp_path):
         (tmp_path / "class" / student / "integrators.py").write_text("while True:\n    pass\n")
     (tmp_path / "temporary").mkdir()
     folders = [str(tmp_path / "class"), "--out", str(tmp_path / "out")]
-    command = [sys.executable, "-m", "tests.grading", *folders, "--lesson", "integrators", "--jobs", "2"]
+    command = [sys.executable, "-m", "validate.grading", *folders, "--lesson", "integrators", "--jobs", "2"]
     environment = {**os.environ, "TMPDIR": str(tmp_path / "temporary")}
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     process = subprocess.Popen(command, cwd=ROOT, env=environment, **pipes)

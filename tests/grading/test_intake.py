@@ -12,9 +12,8 @@ import zipfile
 import pytest
 
 from solutions.checks import BadInput
-from validate import modules
-
-from . import classlist, sandbox, submissions
+from validate.grading import classlist, sandbox, submissions
+from validate.subject import modules
 
 LESSONS = ("integrators", "springs")
 TEXT = b"x = 1\n"
@@ -221,7 +220,7 @@ def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(t
         [
             sys.executable,
             "-m",
-            "tests.grading",
+            "validate.grading",
             str(top),
             "--out",
             str(tmp_path / "out"),

@@ -8,9 +8,9 @@ import pytest
 from rich.console import Console
 
 from solutions.checks import BadInput
-from validate.modules import ROOT
+from validate.grading import classlist, marking, marks, pages, submissions
+from validate.subject.modules import ROOT
 
-from . import classlist, marking, marks, pages, submissions
 from .test_cli import grade, run
 from .test_pages import DUE, EVIL, FREE, SETTINGS, Seen, found, result, rows_of
 

@@ -9,10 +9,11 @@ import types
 import numpy as np
 import pytest
 
-from validate import mistakes, modules, needs
+from validate import mistakes
+from validate.grading import example, points, release
+from validate.subject import modules, needs
 
 from ..mutants.traces import mutants_of, names_in, steady, tells, traces_of, without_the_unsteady
-from . import example, points, release
 
 LESSONS = modules.lesson_names()
 EACH = 40                    # the default run tries one of so many known wrong answers of a lesson; --long all [-]

@@ -8,10 +8,10 @@ import zipfile
 
 import pytest
 
-from validate import generate
-from validate.modules import ROOT
+from validate.grading import sandbox
+from validate.subject import generate
+from validate.subject.modules import ROOT
 
-from . import sandbox
 from .conftest import git
 
 SHOWN = re.compile(r"^`(\S+\.py)`:\n\n```python\n(.*?)^```", re.M | re.S)
@@ -30,7 +30,7 @@ def files(repository):
     assert {*shown} == {"solutions/gliding.py", "tests/lessons/test_gliding.py"}
     for path, text in shown.items():
         (repository / path).write_text(text, encoding="utf-8")
-    subprocess.run([sys.executable, "-m", "validate.generate"], cwd=repository, check=True)
+    subprocess.run([sys.executable, "-m", "validate.subject.generate"], cwd=repository, check=True)
     git("add", "solutions", "lessons", "tests", "validate", cwd=repository)
     git("commit", "--quiet", "--message", "A glider", cwd=repository)
     return shown
@@ -43,7 +43,7 @@ def test_its_points_go_to_right_answers_only(repository, files, tmp_path):
         (tmp_path / "class" / student).mkdir(parents=True)
         text = generate.ANSWER.sub(f"    {answer}\n", worked) if answer else generate.stub(worked, ["20.1"])
         (tmp_path / "class" / student / "gliding.py").write_text(text)
-    command = [sys.executable, "-m", "tests.grading", tmp_path / "class", "--out", tmp_path / "grades"]
+    command = [sys.executable, "-m", "validate.grading", tmp_path / "class", "--out", tmp_path / "grades"]
     run = subprocess.run([*command, "--exercises", "20.1=5"], cwd=repository, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
     with open(tmp_path / "grades" / "grades.csv", newline="") as file:
@@ -53,7 +53,7 @@ def test_its_points_go_to_right_answers_only(repository, files, tmp_path):
 
 @pytest.mark.long
 def test_students_get_it_without_its_answer(repository, files, tmp_path):
-    command = [sys.executable, "-m", "tests.grading.release", "--out", tmp_path / "workbook.zip"]
+    command = [sys.executable, "-m", "validate.grading.release", "--out", tmp_path / "workbook.zip"]
     subprocess.run(command, cwd=repository, check=True)
     with zipfile.ZipFile(tmp_path / "workbook.zip") as archive:
         lesson = archive.read("workbook/lessons/gliding.py").decode()

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from . import classlist, owners, submissions
+from validate.grading import classlist, owners, submissions
 
 LESSONS = ("integrators", "springs")
 TEXT, OTHER = b"x = 1\n", b"x = 2\n"

@@ -15,8 +15,7 @@ import pytest
 from rich.console import Console
 
 from solutions.checks import BadInput
-
-from . import classlist, marking, pages, points
+from validate.grading import classlist, marking, pages, points
 
 LESSONS = ("falling", "bouncing")
 MANIFEST = (("falling", "1.1", "fall", "test_it_falls[plain]", 2, "down, not up"),

@@ -6,9 +6,8 @@ import sys
 
 import pytest
 
-from validate.modules import ROOT
-
-from . import sandbox
+from validate.grading import sandbox
+from validate.subject.modules import ROOT
 
 CANARY = """
 import os
@@ -19,7 +18,7 @@ raise ImportError("a student's file ran outside the sandbox")
 POOL = """
 import os, sys
 sys.path[:] = [p for p in sys.path if p] + [{root!r}]
-from tests.grading import children
+from validate.grading import children
 if __name__ == "__main__":
     with children.Pool(2, int) as pool:
         print([pool.submit(abs, -n).result() for n in range(4)])
@@ -60,7 +59,7 @@ def test_the_canary_sings_where_the_working_directory_is_on_the_path(hostile):
 def test_a_class_folder_on_the_path_is_refused(below, tmp_path):
     sandbox.for_tests(pytest.skip, pytest.fail)
     (tmp_path / "ada").mkdir()
-    done = started(["-m", "tests.grading", str(tmp_path), "--out", str(tmp_path.parent / "out")], ROOT,
+    done = started(["-m", "validate.grading", str(tmp_path), "--out", str(tmp_path.parent / "out")], ROOT,
                    PYTHONPATH=str(tmp_path / below))
     assert done.returncode == 2 and "where Python looks for modules" in done.stderr
     assert len(done.stderr.splitlines()) == 1 and not (tmp_path.parent / "out").exists()
@@ -69,7 +68,7 @@ def test_a_class_folder_on_the_path_is_refused(below, tmp_path):
 def test_a_class_is_graded_from_inside_its_folder(hostile):
     """As `grade .` does it: one honest student among folders with the names of Python's modules."""
     sandbox.for_tests(pytest.skip, pytest.fail)
-    from .example import worked
+    from validate.grading.example import worked
     for path in (hostile / "class").glob("*.py"):
         folder = path.with_suffix("")
         folder.mkdir()
@@ -78,7 +77,7 @@ def test_a_class_is_graded_from_inside_its_folder(hostile):
     (hostile / "class" / "ada" / "integrators.py").write_text(worked("integrators"))
     script = hostile / "grade"
     script.write_text(f"import sys\nsys.path.append({str(ROOT)!r})\n"
-                      "from tests.grading.__main__ import main\nif __name__ == '__main__':\n    main()\n")
+                      "from validate.grading.__main__ import main\nif __name__ == '__main__':\n    main()\n")
     done = started([str(script), ".", "--out", str(hostile / "out"), "--lesson", "integrators", "--seed", "a secret"],
                    hostile / "class", PYTHONSAFEPATH="")
     rows = (hostile / "out" / "grades.csv").read_text().splitlines()

@@ -7,9 +7,8 @@ import types
 
 import pytest
 
-from validate import modules
-
-from . import plugin, points
+from validate.grading import plugin, points
+from validate.subject import modules
 
 LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them, too$", re.MULTILINE)
 

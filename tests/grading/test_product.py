@@ -14,10 +14,10 @@ import sys
 import nbformat
 import pytest
 
-from validate import generate, modules
-from validate.modules import GIVEN, ROOT, SOLUTIONS, lesson_names
-from validate.results import Verdict
+from validate.check import Verdict
 from validate.stability.examine import cases_of
+from validate.subject import generate, modules
+from validate.subject.modules import GIVEN, ROOT, SOLUTIONS, lesson_names
 
 from ..lessons.kernels import kernel, ran
 from ..lessons.test_notebooks import HASTE, NOTEBOOKS

@@ -4,9 +4,8 @@ import sys
 
 import pytest
 
-from validate import modules
-
-from . import expect, points
+from validate.grading import expect, points
+from validate.subject import modules
 
 COMPARISONS = "between", "close", "instance", "numbers", "raises", "truth"
 

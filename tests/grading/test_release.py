@@ -14,11 +14,11 @@ import nbformat
 import numpy as np
 import pytest
 
-from validate import generate
-from validate.modules import GIVEN, SOLUTIONS, lesson_names
+from validate.grading import release
+from validate.subject import generate
+from validate.subject.modules import GIVEN, SOLUTIONS, lesson_names
 
 from ..lessons.kernels import kernel, ran
-from . import release
 from .conftest import git
 
 # one kernel at a time, see test_notebooks; long, because the search for answers reads every text of the zip
@@ -81,8 +81,8 @@ NEEDED = {
     "validate/scenes/integrators/oscillator.py",
     "validate/recorded/oscillator.json",
     "validate/report/base.html",
-    "tests/grading/plugin.py",
-    "tests/grading/expect.py",
+    "validate/grading/plugin.py",
+    "validate/grading/expect.py",
     "notebooks/00_start_here.ipynb",
 }
 OF_AUTHORS = re.compile(r"mutants|attacks|test_(notebooks|generate|repository|release)|grading/box|generate|^\.|notes|"
@@ -143,7 +143,8 @@ def test_with_solutions_alone_releases_them_all(released):
 def test_a_single_lesson_comes_with_its_scenes_and_what_it_builds_on(released, tmp_path):
     zipped = released("--lesson", "integrators")[2]
     shutil.unpack_archive(zipped, tmp_path)
-    run = program_in(tmp_path / "workbook", "from validate.modules import bind; print(bind('integrators', 'lessons'))",
+    program = "from validate.subject.modules import bind; print(bind('integrators', 'lessons'))"
+    run = program_in(tmp_path / "workbook", program,
                      lessons=tmp_path / "workbook" / "lessons")
     assert "integrators" in run.stdout, run.stderr                  # nothing that is given needs a lesson left out
     files = files_in(zipped)

@@ -14,8 +14,7 @@ from pathlib import Path
 import pytest
 
 from solutions.checks import BadInput
-
-from . import calls, sandbox
+from validate.grading import calls, sandbox
 
 PATIENCE = 600.0             # [s]: only a program that hangs takes so long, on the busiest machine, too
 

@@ -5,7 +5,9 @@ import random
 import pytest
 import typer
 
-from . import benchmark, rehearsal, sandbox
+from validate.grading import sandbox
+
+from . import benchmark, rehearsal
 
 
 @pytest.mark.long

@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import modules
-from validate.generate import exercises
-
-from . import points, wire
+from validate.grading import points, wire
+from validate.subject import modules
+from validate.subject.generate import exercises
 
 
 def filled(value, x):

@@ -15,10 +15,23 @@ import types
 import numpy as np
 import pytest
 
-from validate import loading
+from validate.grading import (
+    box,
+    children,
+    line,
+    local,
+    marking,
+    meter,
+    plugin,
+    points,
+    remote,
+    sandbox,
+    submissions,
+    wire,
+)
+from validate.subject import loading
 
 from ..attacks import HONEST, SOLVED
-from . import box, children, line, local, marking, meter, plugin, points, remote, sandbox, submissions, wire
 
 pytestmark = pytest.mark.xdist_group("time")
 LIMIT = 1.0                  # of the calls of a test here [s]

@@ -11,7 +11,8 @@ import re
 
 import pytest
 
-from . import classlist, marks, pages, uploads
+from validate.grading import classlist, marks, pages, uploads
+
 from .test_cli import grade, run
 from .test_marks import HEAD, handed_in  # noqa: F401   a fixture
 from .test_pages import DUE, EVIL, FREE, SETTINGS, Seen, found, result

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from validate import modules
+from validate.subject import modules
 
 from . import test_hostile_inputs as scenes
 

@@ -6,9 +6,8 @@ import tempfile
 import types
 from pathlib import Path
 
-from validate import modules
-
-from ..grading import points
+from validate.grading import points
+from validate.subject import modules
 
 MOST = 8                     # calls of a function that are kept [-]
 
@@ -34,7 +33,7 @@ def ordinary_calls():
 
 def public_functions(lesson, module):
     """{name: function} of what a lesson and its companion define."""
-    homes = module.__name__, module.__name__.replace(lesson, f"support.{lesson}")
+    homes = module.__name__, module.__name__.replace(lesson, f"given.{lesson}")
     return {name: f for name, f in vars(module).items()
             if isinstance(f, types.FunctionType) and not name.startswith("_") and f.__module__ in homes}
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
+from validate.grading.expect import NotYet, between, close, numbers, raises
 
-from ..grading.expect import NotYet, between, close, numbers, raises
 from .brute import area, differences, distance, facets, outline
 
 exercise = pytest.mark.exercise

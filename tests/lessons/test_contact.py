@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-
-from ..grading.expect import between, close, instance, raises, truth
+from validate.grading.expect import between, close, instance, raises, truth
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]

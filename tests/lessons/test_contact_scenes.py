@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import modules
+from validate.subject import modules
 
 from .test_contact import MIDDLE, G, chain, contacts_of
 

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from solutions.checks import BadInput
 from solutions.support import events
-from validate.modules import bind
 from validate.stability.simulator import box_on_a_spring, pushed, supports
+from validate.subject.modules import bind
 
 integrators, simulator = bind("integrators"), bind("simulator")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from validate import modules
 from validate.reference import mechanisms
+from validate.subject import modules
 
 simulator = modules.bind("simulator")
 G = 9.81                     # [m/s²]

@@ -5,8 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from solutions.checks import BadInput
-
-from ..grading.expect import between, close, raises
+from validate.grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]

@@ -7,8 +7,8 @@ import pytest
 
 from solutions.checks import BadInput, Diverged
 from solutions.support import networks
-from validate.modules import bind
 from validate.reference.integrators import Planet, kepler_position, perihelion
+from validate.subject.modules import bind
 
 integrators, friction, pbd, rotation = map(bind, ("integrators", "friction", "pbd", "rotation"))
 

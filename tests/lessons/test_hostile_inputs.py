@@ -20,8 +20,8 @@ from hypothesis import strategies as st
 
 from solutions.checks import BadInput, Diverged
 from solutions.support.orbits import attraction
-from validate import modules
 from validate.reference.integrators import Planet
+from validate.subject import modules
 
 from .ordinary import ordinary_calls
 

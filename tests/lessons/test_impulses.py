@@ -7,8 +7,7 @@ import pytest
 from scipy.optimize import brentq, nnls
 
 from solutions.checks import BadInput, Diverged
-
-from ..grading.expect import between, close, raises
+from validate.grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 # All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.

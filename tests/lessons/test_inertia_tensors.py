@@ -8,8 +8,8 @@ import pytest
 from scipy.spatial import Delaunay
 
 from solutions.checks import BadInput
+from validate.grading.expect import close, raises
 
-from ..grading.expect import close, raises
 from .brute import solid
 
 exercise = pytest.mark.exercise

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import modules
+from validate.subject import modules
 
 collisions, contact, friction, impulses, integrators, pbd, rotation, simulator, springs = map(modules.bind, (
     "collisions", "contact", "friction", "impulses", "integrators", "pbd", "rotation", "simulator", "springs"))

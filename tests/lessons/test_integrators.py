@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-
-from ..grading.expect import between, close, raises
+from validate.grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 

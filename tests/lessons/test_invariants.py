@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import Diverged
-from validate.modules import bind
+from validate.subject.modules import bind
 
 simulator = bind("simulator")
 

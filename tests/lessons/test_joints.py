@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
+from solutions.given import joints
 from solutions.rotation import exponential
-from solutions.support import joints
-from validate import modules
 from validate.reference.rotation import HeavyTop
 from validate.reference.simulator import cradle_motion, rods_error, rods_motion, rods_slope
+from validate.subject import modules
 
 simulator = modules.bind("simulator")
 G = 9.81                     # [m/s²]

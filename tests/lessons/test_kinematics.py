@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-
-from ..grading.expect import between, close, raises
+from validate.grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 EDGE = 1e-12                 # as in the lesson

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import modules, targets
 from validate.products import PYBULLET
+from validate.speed import targets
+from validate.subject import modules
 
 worked = modules.bind("kinematics")
 NO_LIMITS = (-np.inf, np.inf, 0.0, 0.0)

@@ -11,11 +11,12 @@ from typing import NamedTuple
 import nbformat
 import pytest
 
-from validate import loading, modules, notebook
-from validate.generate import stub
-from validate.modules import ROOT, SOLUTIONS, lesson_names
+from validate import notebook
+from validate.grading import example, marking, sandbox
+from validate.subject import loading, modules
+from validate.subject.generate import stub
+from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
-from ..grading import example, marking, sandbox
 from .kernels import kernel, ran
 
 pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they share a process that checks are copied from
@@ -189,7 +190,7 @@ def test_the_engines_run_alone_where_a_lesson_that_the_scene_needs_does_not_load
 
 
 def test_without_worked_answers_what_is_given_stands_in_for_a_file_that_does_not_load(told, monkeypatch):
-    monkeypatch.setattr("validate.modules.withheld", lambda lesson: {"euler_step"})
+    monkeypatch.setattr("validate.subject.modules.withheld", lambda lesson: {"euler_step"})
     worked = []
     said = told(lambda: worked.append(notebook.answers("integrators")), integrators=SYNTAX)
     assert "lessons/integrators.py cannot be loaded" in said and worked[0].Oscillator(2.0, 0.0).omega == 2.0

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from solutions.checks import Diverged
-from solutions.support import joints
+from solutions.given import joints
 from solutions.support.small_systems import shortest_solution, solve_band
-from validate import modules
 from validate.reference import mechanisms
+from validate.subject import modules
 
 simulator = modules.bind("simulator")
 G = 9.81                     # [m/s²]

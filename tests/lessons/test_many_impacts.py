@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import nnls
 
 from solutions import impulses
-from validate import modules
+from validate.subject import modules
 
 STANDS = 1e-8                # slip over the largest initial velocity below which a point sticks [-]
 DIRECTIONS = 256             # of the polyhedron inside the cone of a point that sticks

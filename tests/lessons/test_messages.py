@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from validate import modules, needs, notebook
-
-from ..grading import example, marking, points, sandbox
-from ..grading.expect import LONGEST, NotYet, between, close, instance, numbers, raises, tidy, truth
+from validate import notebook
+from validate.grading import example, marking, points, sandbox
+from validate.grading.expect import LONGEST, NotYet, between, close, instance, numbers, raises, tidy, truth
+from validate.subject import modules, needs
 
 pytestmark = pytest.mark.xdist_group("checks of a notebook")             # they share a process that forks the checks
 

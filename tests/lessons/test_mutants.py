@@ -9,10 +9,10 @@ import types
 
 import pytest
 
-from validate import modules
+from validate.grading.expect import LONGEST, MOST_DIGITS
+from validate.grading.points import grade, grade_each, score
+from validate.subject import modules
 
-from ..grading.expect import LONGEST, MOST_DIGITS
-from ..grading.points import grade, grade_each, score
 from ..mutants import collection, variants
 
 LESSONS = modules.lesson_names()
@@ -132,7 +132,7 @@ def test_what_has_two_faults_or_none_or_no_right_answer_behind_it_proves_nothing
 
 @pytest.mark.parametrize("name", LESSONS)
 def test_every_exercise_has_three_wrong_answers_and_a_right_one(name):
-    from validate.generate import exercises
+    from validate.subject.generate import exercises
     numbers = set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))
     kept = mutants_of(name)
     for number in numbers:
@@ -146,5 +146,5 @@ def test_solutions_score_everything_and_stubs_nothing(name):
     assert sum(possible for _, possible in full.values()) == 20
     assert all(earned == possible for earned, possible in full.values())
     assert all(earned == 0 for earned, _ in empty.values())
-    from validate.generate import exercises
+    from validate.subject.generate import exercises
     assert list(full) == list(empty) and set(full) == set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))

@@ -11,11 +11,11 @@ import nbformat
 import pytest
 from matplotlib.figure import Figure
 
-from validate import modules
-from validate.generate import exercises, stub
-from validate.modules import ROOT, SOLUTIONS, lesson_names
 from validate.notebook import figures
 from validate.scene import Scene
+from validate.subject import modules
+from validate.subject.generate import exercises, stub
+from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
 from .kernels import kernel, ran
 

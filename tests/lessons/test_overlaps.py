@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from solutions.checks import Diverged
-from solutions.support.contact import SEPARATION
+from solutions.given.contact import SEPARATION
 from solutions.support.scenes import DEEPER
-from validate.modules import bind
+from validate.subject.modules import bind
 
 contact, simulator = bind("contact"), bind("simulator")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from solutions.support import passing
-from solutions.support.bodies import TooFast
-from validate import modules
+from solutions.given import passing
+from solutions.given.bodies import TooFast
+from validate.subject import modules
 
 simulator = modules.bind("simulator")
 UP = (0.0, 1.0, 0.0)

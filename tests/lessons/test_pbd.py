@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from solutions.checks import BadInput, Diverged
+from validate.grading.expect import between, close, raises, truth
 
-from ..grading.expect import between, close, raises, truth
 from .brute import solid
 
 exercise = pytest.mark.exercise

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, WrongShape
-from solutions.support.bodies import CarriedBall, Toppled
+from solutions.given.bodies import CarriedBall, Toppled
 from solutions.support.records import RULES, Inner, check_record
-from validate import modules
+from validate.subject import modules
 
 from .test_hostile_inputs import STARTED, at, put
 

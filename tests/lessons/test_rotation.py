@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-
-from ..grading.expect import between, close, raises
+from validate.grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 EXACT = 1e-12                # a few dozen operations, each with a round-off of 1e-16, on numbers below 100
@@ -694,7 +693,7 @@ def test_flat_and_thin_bodies_are_bodies(lesson):
 
 
 def test_make_body_checks_mass_and_moments():
-    from solutions.support.rotation import make_rigid_body
+    from solutions.given.rotation import make_rigid_body
     assert make_rigid_body(2, (1, 2, 2.5)).m == 2.0
     for m, I_body in ((0.0, (1.0, 1.0, 1.0)), (1.0, (1.0, 1.0, 2.1)), (1.0, (1.0, 1.0, np.nan))):
         with pytest.raises(BadInput):

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-
-from ..grading.expect import between, close, numbers, raises, truth
+from validate.grading.expect import between, close, numbers, raises, truth
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]

@@ -9,8 +9,8 @@ import itertools
 import numpy as np
 import pytest
 
-from validate.modules import bind
 from validate.scenes.simulator import card_house, machine
+from validate.subject.modules import bind
 
 simulator = bind("simulator")
 

@@ -13,7 +13,7 @@ from solutions import contact
 from solutions.checks import BadInput
 from solutions.integrators import solve
 from solutions.kinematics import solve_2r, solve_3r
-from validate import modules
+from validate.subject import modules
 
 from .test_contact import stack_of
 from .test_hostile_inputs import STARTED, at, leaves, put

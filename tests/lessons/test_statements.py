@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from validate.modules import bind
 from validate.reference.rotation import HeavyTop
+from validate.subject.modules import bind
 
 contact, friction, impulses, integrators, rotation, springs = map(
     bind, ("contact", "friction", "impulses", "integrators", "rotation", "springs"))

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import modules
+from validate.subject import modules
 
 from .given_calls import given_calls
 from .ordinary import ordinary_calls

@@ -3,8 +3,7 @@
 import numpy as np
 
 from solutions.checks import BadInput
-
-from ..grading.expect import close, raises
+from validate.grading.expect import close, raises
 
 
 def test_products_are_those_of_numpy(lesson, draw):

@@ -11,7 +11,7 @@ import inspect
 from collections.abc import Callable
 from typing import NamedTuple
 
-from validate.generate import exercises
+from validate.subject.generate import exercises
 
 
 class Mutant(NamedTuple):

@@ -739,7 +739,7 @@ wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(
 wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
 wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
 edit("7.17", "solves the impacts one after the other", "check_impacts(body, r, n, e, mu)",
-     "from solutions.support.impulses import sequential_impacts as one; return one(body, r, n, e, mu)")
+     "from solutions.given.impulses import sequential_impacts as one; return one(body, r, n, e, mu)")
 edit("7.17", "uses the largest separation velocity for all points", "cone_impulse(u, n[i], K, u_sep[i], mu)",
      "cone_impulse(u, n[i], K, u_sep.max(), mu)")
 edit("7.17", "omits the restitution", "cone_impulse(u, n[i], K, u_sep[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")

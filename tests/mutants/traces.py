@@ -16,10 +16,10 @@ import sys
 import types
 
 from solutions.checks import BadInput
-from validate import mistakes, modules
-from validate.generate import exercises
-
-from ..grading import points
+from validate import mistakes
+from validate.grading import points
+from validate.subject import modules
+from validate.subject.generate import exercises
 
 
 def mutants_of(lesson):

@@ -7,10 +7,10 @@ import pytest
 
 from validate import __main__ as command
 from validate import measure, report
-from validate.audit import audit
 from validate.measure.selection import Plan
 from validate.report import plots
-from validate.run import about
+from validate.report.audit import audit
+from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
 
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
@@ -104,7 +104,7 @@ FAULTS = {
 def test_a_figure_that_was_changed_is_noticed_even_if_the_pages_agree_with_it(made, tmp_path, fault, monkeypatch):
     data = copy.deepcopy(made[1])
     FAULTS[fault](data)
-    monkeypatch.setattr("validate.audit.of_pages", lambda *_: [])
+    monkeypatch.setattr("validate.report.audit.of_pages", lambda *_: [])
     assert audit(tmp_path, data)[0], fault
 
 

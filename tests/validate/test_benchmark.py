@@ -2,7 +2,7 @@
 
 import pytest
 
-from validate import benchmark
+from validate.speed import benchmark
 
 
 @pytest.mark.parametrize(("met", "code"), [((True, True), 0), ((True, False), 1), ((False, False), 1), ((), 0)])

@@ -14,11 +14,11 @@ import nbformat
 import pytest
 
 from solutions.checks import BadInput
-from tests.grading import choice, release
-from validate import modules
 from validate.book import __main__ as book
 from validate.book import api, course, execute, pages, plan, sheets, weeks
-from validate.modules import ROOT
+from validate.grading import choice, release
+from validate.subject import modules
+from validate.subject.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("book")
 ESTIMATED = 0.4              # of a lesson's hours [h]: they are given in halves, and a text may change a little

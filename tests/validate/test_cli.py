@@ -13,12 +13,14 @@ from pathlib import Path
 import pytest
 
 from validate import __main__ as cli
-from validate import measure, modules, processes, report, store
-from validate import run as validation
-from validate.generate import exercises, stub
+from validate import measure, report
 from validate.measure import record, traces
 from validate.products import PYMUNK, Product
 from validate.report import plots, summary
+from validate.run import processes, store
+from validate.run.run import run as validation
+from validate.subject import modules
+from validate.subject.generate import exercises, stub
 
 
 def run(capsys, *arguments):

@@ -19,10 +19,11 @@ import psutil
 import pytest
 
 from solutions.checks import BadInput
-from validate import cluster, measure, processes
+from validate import measure
 from validate.__main__ import main
-from validate.compare import changes
-from validate.modules import ROOT
+from validate.report.compare import changes
+from validate.run import cluster, processes
+from validate.subject.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("sweep on a cluster")
 UP_WITHIN = 60.0             # [s]: a scheduler needs 1, a worker 2, on a machine that does nothing else

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from validate import __main__ as command
-from validate.compare import changes
+from validate.report.compare import changes
 
 
 def row(label, speed, seconds):

@@ -9,8 +9,9 @@ import sys
 import nbformat
 import pytest
 
-from validate import copies, generate, notebook
-from validate.modules import ROOT, SOLUTIONS
+from validate import notebook
+from validate.subject import copies, generate
+from validate.subject.modules import ROOT, SOLUTIONS
 
 SHOW = """
 import validate, validate.notebook as notebook, solutions

@@ -3,7 +3,7 @@
 import pytest
 
 from solutions import integrators
-from validate import coverage
+from validate.run import coverage
 
 pytestmark = pytest.mark.xdist_group("coverage")
 
@@ -34,7 +34,7 @@ def test_an_exercise_that_nothing_runs_is_missing(monkeypatch):
 
 
 def test_functions_are_found_where_they_are_defined():
-    assert coverage.defined(("pbd", "rope_step")) == ("support.ropes", "rope_step")
+    assert coverage.defined(("pbd", "rope_step")) == ("given.ropes", "rope_step")
     begun = [("springs", "mass_spring_damper_step"), ("integrators", "euler_step")]
     assert ("integrators", "euler_step") in coverage.reached(begun)
     assert coverage.defined(("integrators", "no_such_thing")) is None and hasattr(integrators, "euler_step")

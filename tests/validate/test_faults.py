@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 
 from tests.faults import Fault, __main__, faults_of, honest, notice, planted
-from validate import coverage, modules
 from validate.measure.accuracy import errors
 from validate.measure.selection import Plan
 from validate.measure.timing import times
+from validate.run import coverage
 from validate.stability.examine import cases_of, stability_cases
+from validate.subject import modules
 
 pytestmark = pytest.mark.xdist_group("coverage")
 LESSONS = modules.lesson_names()

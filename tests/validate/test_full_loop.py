@@ -2,8 +2,10 @@
 
 import pytest
 
-from validate import audit, measure, modules
+from validate import measure
 from validate.measure import full_loop
+from validate.report import audit
+from validate.subject import modules
 
 PLAN = measure.Plan(speeds=("plain",), live=(), quick=False)
 EARLIER = [name for name in modules.scene_names()

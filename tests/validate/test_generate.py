@@ -6,12 +6,12 @@ import shutil
 import pytest
 
 from solutions.checks import BadInput
-from validate import generate
-from validate.modules import ROOT, SOLUTIONS
+from validate.subject import generate
+from validate.subject.modules import ROOT, SOLUTIONS
 
 
 def test_lessons_are_what_the_solutions_give():
-    assert generate.differing() == [], "run python -m validate.generate"
+    assert generate.differing() == [], "run python -m validate.subject.generate"
 
 
 def test_every_exercise_raises_its_number_and_name_and_no_marker_leaks():

@@ -1,4 +1,4 @@
-"""Given code calls the exercises of its subject: whatever function of solutions/support/ reaches one, it is theirs."""
+"""Given code calls the exercises of its subject: a function of solutions/given/ that reaches one is theirs."""
 
 import ast
 import types
@@ -6,10 +6,10 @@ import types
 import numpy as np
 import pytest
 
-from validate import coverage, generate, modules
-from validate.modules import ROOT, SOLUTIONS, SUPPORT, lesson_names
-
-from ..grading import release
+from validate.grading import release
+from validate.run import coverage
+from validate.subject import generate, modules
+from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
 SPEEDS = [False, pytest.param(True, marks=pytest.mark.skipif(
     not modules.can_compile(), reason="numba has no wheel for this machine: there are no compiled twins"))]
@@ -71,8 +71,8 @@ def lessons_reached(*roots, folder):
 
 
 def given_functions():
-    """{(module, name): function} of solutions/support/ that reach a function of a lesson."""
-    homes = {name: modules.original(name) for name in modules.given_modules() if name.startswith("support.")}
+    """{(module, name): function} of solutions/given/ that reach a function of a lesson."""
+    homes = {name: modules.original(name) for name in modules.given_modules() if "." in name}
     own = {(module, name): value for module, space in homes.items() for name, value in vars(space).items()
            if isinstance(value, types.FunctionType) and value.__module__ == space.__name__}
     return {place: value for place, value in own.items() if lessons_reached(value, folder=SOLUTIONS)}
@@ -81,8 +81,11 @@ def given_functions():
 def test_the_functions_that_are_known_to_call_exercises_are_found():
     known = {("bodies", "stop_slip"), ("invariants", "sweep_residual_2d"), ("joints", "turn_on"),
              ("friction", "event_step"), ("simulator", "joint_step_2d"), ("simulator", "contact_trajectory")}
-    assert {(f"support.{module}", name) for module, name in known} <= given_functions().keys()
-    assert not [name for module, name in given_functions() if module in ("support.arms", "support.scenes")]
+    assert {(f"given.{module}", name) for module, name in known} <= given_functions().keys()
+
+
+def test_given_code_below_the_lessons_calls_no_exercise():
+    assert not [(module, name) for module, name in given_functions() if module.startswith("support.")]
 
 
 @pytest.mark.parametrize("compiled", SPEEDS)
@@ -120,7 +123,7 @@ def test_an_unfinished_lesson_blocks_no_other_that_takes_it_from_the_solutions(t
 def test_a_lesson_alone_in_its_folder_has_the_worked_ones_beside_it(tmp_path, compiled):
     world = modules.module_set(written(tmp_path, ["simulator"], elsewhere=None), compiled)
     assert ("rotation", "point_velocity") in lessons_reached(world.lesson("simulator").stop_slip, folder=SOLUTIONS)
-    history = world.given("support.simulator").contact_trajectory
+    history = world.given("given.simulator").contact_trajectory
     assert ("simulator", "advance_contact") in lessons_reached(history, folder=tmp_path)
 
 
@@ -177,12 +180,12 @@ def test_given_code_waits_for_a_function_that_is_gone(tmp_path):
 
 def test_a_students_file_may_import_what_is_given_above_it(tmp_path):
     """No lesson of ours imports its companion, but a student may try."""
-    more = "from solutions.support.friction import event_step\nfrom solutions.support import friction as more\n"
+    more = "from solutions.given.friction import event_step\nfrom solutions.given import friction as more\n"
     with open(written(tmp_path) / "friction.py", "a") as file:
         file.write(more)
     lesson = modules.bind("friction", tmp_path)
     for step in (lesson.event_step, lesson.more.event_step):
-        assert step is modules.module_set(tmp_path).given("support.friction").event_step
+        assert step is modules.module_set(tmp_path).given("given.friction").event_step
         assert not lessons_reached(step, folder=SOLUTIONS)
 
 
@@ -196,6 +199,6 @@ def test_records_of_a_copied_module_are_the_same_in_all_sets(tmp_path):
 
 
 def test_modules_are_imported_at_the_top_of_given_code_where_module_sets_see_it():
-    for path in SUPPORT.glob("*.py"):
+    for path in (SOLUTIONS / "given").glob("*.py"):
         assert not [line for line in path.read_text().splitlines() if line.lstrip() != line
                     and line.lstrip().startswith(("import ", "from ."))], path

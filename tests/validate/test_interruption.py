@@ -13,8 +13,8 @@ import time
 
 import pytest
 
-from validate.generate import exercises, stub
-from validate.modules import ROOT, SOLUTIONS, can_compile
+from validate.subject.generate import exercises, stub
+from validate.subject.modules import ROOT, SOLUTIONS, can_compile
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals, disks and limits are those of POSIX")
 PROMISED = 2.0               # a run may take so long to end [s]
@@ -140,7 +140,7 @@ def test_a_file_that_cannot_be_written_is_named_in_one_sentence(tmp_path):
 COMPILED = """
 import pathlib, sys
 import numpy as np
-from validate import modules, numba_twins
+from validate.subject import modules, numba_twins
 numba_twins.CACHE = pathlib.Path(sys.argv[1])
 vectors = modules.module_set("solutions", compiled=True).lesson("vectors")
 print(vectors.dot(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])))

@@ -1,4 +1,4 @@
-"""`python -m validate.limits` says how sharp the limits of a report are."""
+"""`python -m validate.report.limits` says how sharp the limits of a report are."""
 
 import json
 
@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate import limits, methods
+from validate import methods
 from validate.reference import schemes
 from validate.reference.schemes import ErrorLaw, Tableau, advance, advance_modes
+from validate.report import limits
 
 TABLES = {name: table for name, table in vars(schemes).items() if isinstance(table, Tableau)}
 

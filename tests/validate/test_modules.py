@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import modules, numba_twins
+from validate.subject import modules, numba_twins
 
 needs_numba = pytest.mark.skipif(not modules.can_compile(),
                                  reason="numba has no wheel for this machine: there are no compiled twins")
@@ -29,7 +29,8 @@ def in_a_new_process(code, *arguments):
 @needs_numba
 def test_an_edit_to_an_imported_sibling_is_seen_by_the_compiled_twin(tmp_path):
     (tmp_path / "upper.py").write_text("from .lower import base\n\n\ndef doubled(x):\n    return 2.0 * base(x)\n")
-    ask = "import sys; from validate.modules import bind; print(bind('upper', sys.argv[1], compiled=True).doubled(3.0))"
+    ask = ("import sys; from validate.subject.modules import bind; "
+           "print(bind('upper', sys.argv[1], compiled=True).doubled(3.0))")
     (tmp_path / "lower.py").write_text("def base(x):\n    return x + 1.0\n")
     assert in_a_new_process(ask, tmp_path) == "8.0"
     os.utime(tmp_path / "lower.py", (1, 1))  # the date of the file must not matter, only what is in it
@@ -55,7 +56,7 @@ def test_an_edit_is_seen_within_one_process_too(tmp_path):
 def test_a_second_process_compiles_nothing(function, call):
     ask = f"""
 import numpy as np
-from validate.modules import bind
+from validate.subject.modules import bind
 lesson = bind("integrators", compiled=True)
 {call}
 print(sum(lesson.{function}.stats.cache_misses.values()))
@@ -71,7 +72,7 @@ def test_two_processes_that_save_at_once_lose_nothing(tmp_path):
 import sys
 from time import sleep
 from numba.core.caching import IndexDataCacheFile
-from validate.modules import bind
+from validate.subject.modules import bind
 lesson, write = bind("lower", sys.argv[1], compiled=True), IndexDataCacheFile._save_index
 # one process is in the middle of its save when the other begins
 IndexDataCacheFile._save_index = lambda index, entries: (sleep(2.0), write(index, entries))
@@ -153,7 +154,7 @@ def test_a_companion_calls_the_exercises_of_its_subject(tmp_path, compiled):
     scene = modules.bind_scene("stick_slip", tmp_path, compiled)
     begins = scene.run.__globals__["slip_times"]
     assert getattr(begins, "twin", begins) is getattr(mine.slip_times, "twin", mine.slip_times)
-    assert modules.PLAIN.scene("stick_slip").run.__globals__["slip_times"].__module__ == "solutions.support.friction"
+    assert modules.PLAIN.scene("stick_slip").run.__globals__["slip_times"].__module__ == "solutions.given.friction"
 
 
 def test_a_companion_imports_exercises_from_its_lesson_only_and_no_lesson_imports_it():
@@ -161,7 +162,7 @@ def test_a_companion_imports_exercises_from_its_lesson_only_and_no_lesson_import
     lessons = {name: (modules.SOLUTIONS / f"{name}.py").read_text() for name in modules.lesson_names()}
     for name, lesson in modules.companions().items():
         assert not [user for user, text in lessons.items() if f"from .{name} import" in text]
-        text = (modules.SUPPORT / f"{lesson}.py").read_text()
+        text = (modules.SOLUTIONS / "given" / f"{lesson}.py").read_text()
         assert set(re.findall(r"^from \.\.(\w+) import", text, re.M)) - modules.GIVEN == {lesson}
 
 

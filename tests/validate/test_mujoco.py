@@ -3,16 +3,17 @@
 import numpy as np
 import pytest
 
-from validate import measure, modules
-from validate.compare import changes
+from validate import measure
+from validate.check import Verdict
 from validate.engines.mujoco import IMPEDANCE
 from validate.measure.accuracy import engine_curve, run_engine_to_end
 from validate.measure.selection import select
 from validate.products import MUJOCO, PRODUCTS
 from validate.reference import turns
 from validate.reference.friction import CLOSE
-from validate.results import Verdict
+from validate.report.compare import changes
 from validate.scenes.friction import incline
+from validate.subject import modules
 
 WITH_MUJOCO = [name for name in modules.scene_names()
                if any(r.who.product == MUJOCO for r in modules.bind_scene(name).engine_runners)]

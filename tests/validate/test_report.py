@@ -7,15 +7,16 @@ from itertools import pairwise
 
 import pytest
 
-from validate import measure, modules, report
+from validate import measure, report
+from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
 from validate.measure.selection import Plan
 from validate.report import films, plots, words
 from validate.report.answers import answers
-from validate.results import Verdict
-from validate.run import about
+from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
+from validate.subject import modules
 
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 

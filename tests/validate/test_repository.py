@@ -1,12 +1,13 @@
 """What must hold of the repository itself."""
 
+import ast
 import contextlib
 import io
 import re
 import tomllib
 from hashlib import sha256
 
-from validate.modules import ROOT, SOLUTIONS
+from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
 
 def test_the_lock_names_only_the_public_index():
@@ -31,7 +32,7 @@ def test_solutions_import_nothing_but_numpy_typing_and_their_siblings():
 
 
 def test_every_lesson_has_its_notebook_tests_mutants_and_scenes():
-    from validate import modules
+    from validate.subject import modules
     for name in modules.lesson_names():
         assert list((ROOT / "notebooks").glob(f"*_{name}.ipynb")), name
         assert (ROOT / "tests" / "lessons" / f"test_{name}.py").is_file()
@@ -48,7 +49,7 @@ def test_the_player_in_space_was_built_from_its_source_and_can_stand_inside_a_pa
 
 
 def test_no_text_names_a_lesson_that_there_is_not():
-    from validate import modules
+    from validate.subject import modules
     texts = [(SOLUTIONS / f"{name}.py").read_text() for name in modules.lesson_names()]
     there = {int(re.match(r'"""Lesson (\d+)', text)[1]) for text in texts}
     assert there == set(range(1, len(there) + 1))
@@ -77,3 +78,74 @@ def test_no_grading_test_and_no_answer_needs_an_index_of_64_bits():
     for path in (*SOLUTIONS.rglob("*.py"), *(ROOT / "tests" / "lessons").glob("*.py")):
         for call in re.findall(r"np\.bincount\(.*", path.read_text()):
             assert "astype(np.intp)" in call, f"{path.name}: {call}"
+
+
+def modules_of(*tops):
+    """{dotted name: path} of the modules in these folders."""
+    paths = [path for top in tops for path in (ROOT / top).rglob("*.py")]
+    names = [path.relative_to(ROOT).with_suffix("").parts for path in paths]
+    return {".".join(parts[:-1] if parts[-1] == "__init__" else parts): path
+            for parts, path in zip(names, paths, strict=True)}
+
+
+def imports_of(name, path, known):
+    """The modules among the known ones that a module imports, also inside of functions."""
+    package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            base = package[:len(package) + 1 - node.level] if node.level else []
+            home = ".".join([*base, *filter(None, [node.module])])
+            for alias in node.names:
+                whole = f"{home}.{alias.name}"
+                yield whole if whole in known else home
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+def order_of_validate():
+    """[{part, …}, …]: the lines of the list in CONTRIBUTING, from what imports nothing to what imports all."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    block = re.search(r"in the order in which data flows:\n\n```\n(.*?)```", text, re.S)[1]
+    named = [line.split("   ")[0].split() for line in block.splitlines()]
+    return [{f"validate.{part.removesuffix('.py').strip('/').replace('/', '.')}" for part in parts} for parts in named]
+
+
+def test_no_import_runs_upwards_in_the_order_that_contributing_gives():
+    lines = order_of_validate()
+    known = modules_of("validate")
+
+    def line_of(name):
+        """The line with the longest part of this name."""
+        found = [(len(part), k) for k, parts in enumerate(lines) for part in parts
+                 if name == part or name.startswith(f"{part}.")]
+        assert found, f"{name} is not in CONTRIBUTING's list"
+        return max(found)[1]
+
+    for name in known.keys() - {"validate"}:
+        for other in set(imports_of(name, known[name], known)) & known.keys() - {"validate"}:
+            assert line_of(other) <= line_of(name), f"{name} imports {other}, which stands below it"
+
+
+def test_a_lesson_imports_only_earlier_lessons_and_given_code_that_calls_no_later_one():
+    known = modules_of("solutions")
+    imported = {name: set(imports_of(name, path, known)) & known.keys() for name, path in known.items()}
+    place = {f"solutions.{name}": k for k, name in enumerate(lesson_names())}
+
+    def reached(name):
+        found, waiting = set(), [name]
+        while waiting:
+            new = imported[waiting.pop()] - found
+            found |= new
+            waiting += new
+        return found
+
+    for name in known:
+        lessons = reached(name) & place.keys()
+        assert not (name.startswith("solutions.support") and lessons), f"{name} imports {lessons}"
+        if name in place:
+            assert all(place[other] < place[name] for other in lessons), f"{name} imports {lessons}"
+
+
+def test_few_files_lie_at_the_root_of_validate():
+    files = {path.name for path in (ROOT / "validate").glob("*.py")} - {"__init__.py"}
+    assert files == {"__main__.py", "check.py", "methods.py", "products.py", "scene.py"}

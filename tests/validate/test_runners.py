@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate import measure, methods, modules
+from validate import measure, methods
 from validate.methods import INTEGRATORS, RK4, VERLET
 from validate.scene import Method, Runner, no_limit, ours
+from validate.subject import modules
 
 PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)
 METHODS = [m for m in vars(methods).values() if isinstance(m, Method)]

@@ -10,14 +10,15 @@ import pytest
 
 from solutions import integrators
 from solutions.checks import BadInput
-from validate import measure, methods, modules
-from validate.generate import stub
+from validate import measure, methods
+from validate.check import Verdict, is_right
 from validate.measure.accuracy import ASYMPTOTIC, engine_curve
 from validate.measure.selection import select
 from validate.measure.timing import time_to_error
 from validate.report import words
-from validate.results import Verdict, is_right
 from validate.scene import PRODUCTS, PYBULLET
+from validate.subject import modules
+from validate.subject.generate import stub
 
 SCENES = modules.scene_names()
 MOVING = [n for n in SCENES if modules.bind_scene(n).moves]

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from validate import measure, modules
+from validate import measure
+from validate.check import is_right
 from validate.engines.contact import pymunk_tower
 from validate.measure import film
 from validate.reference.contact import Settling, Towers, sway_of_tower, unrest_in_pymunk
-from validate.results import is_right
 from validate.scenes.contact import mass_ratio, piles, stack
+from validate.subject import modules
 
 TEXT, SIMULATOR = ((modules.SOLUTIONS / f"{name}.py").read_text(encoding="utf-8") for name in ("contact", "simulator"))
 CONE = "limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0"

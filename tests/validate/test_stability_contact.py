@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import Diverged
-from validate.modules import bind
 from validate.stability.examine import cases_of, found_by, subject_of
+from validate.subject.modules import bind
 
 worked = bind("contact")
 

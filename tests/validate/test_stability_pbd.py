@@ -5,8 +5,8 @@ import types
 import numpy as np
 import pytest
 
-from validate.modules import bind
 from validate.stability.examine import cases_of, found_by, subject_of
+from validate.subject.modules import bind
 
 worked = bind("pbd")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solutions import simulator as worked
-from solutions.support import simulator as given
+from solutions.given import simulator as given
 from validate.stability.examine import cases_of, found_by, subject_of
 
 from ..mutants.simulator import MUTANTS

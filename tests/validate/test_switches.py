@@ -4,11 +4,10 @@ import json
 
 import pytest
 
-from validate import audit
 from validate.engines.switches import worlds_made
 from validate.measure import switches
 from validate.measure.selection import Plan, select
-from validate.report import words
+from validate.report import audit, words
 from validate.scene import PYBULLET, PYMUNK
 
 PLAN = Plan(quick=False, speeds=("plain",))

@@ -15,8 +15,8 @@ from rich.console import Console
 
 from solutions.checks import BadInput
 
-from .. import modules
-from ..processes import one_sentence
+from ..run.processes import one_sentence
+from ..subject import modules
 from .site import outside_requests, size, wrong_links
 
 HERE = Path(__file__).resolve().parent

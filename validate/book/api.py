@@ -8,10 +8,11 @@ import re
 import textwrap
 from functools import cache
 
-from .. import generate, modules
-from ..modules import SOLUTIONS
+from ..subject import generate, modules
+from ..subject.modules import SOLUTIONS
 from . import course
 
+GIVEN = "solutions.given.", "solutions.support."
 SECTION = re.compile(r"^# -{20,} *(.+)$", re.M)
 FORMULA = re.compile(r"^\s|\s{3,}|^\S+( \S+)? [=←≥≤] ")        # a line whose columns or breaks matter
 LABEL = re.compile(r"^\*(Source|Left out):\*|^Raises \w")      # a line that begins a paragraph of its own
@@ -114,7 +115,7 @@ def page(name):
             parts.append(function(node, numbers.get(node.name)))
         elif isinstance(node, ast.ClassDef):
             parts.append(record(node, name))
-    parts += support(name)
+    parts += imported(name)
     return "\n\n".join(parts) + "\n"
 
 
@@ -151,21 +152,21 @@ def record(node, name):
     return f".. py:class:: {node.name}\n\n{textwrap.indent(body, '   ')}"
 
 
-def support(name):
-    """What the lesson imports from solutions/support/ and exports: names and first sentences."""
+def imported(name):
+    """The given functions and records that the lesson imports and exports: names and first sentences."""
     rows = []
     for node in tree_of(name).body:
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("solutions.support."):
-            file = SOLUTIONS / "support" / f"{node.module.rpartition('.')[2]}.py"
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(GIVEN):
+            file = SOLUTIONS.parent / f"{node.module.replace('.', '/')}.py"
             there = {one.name: one for one in ast.parse(file.read_text(encoding="utf-8")).body
                      if isinstance(one, (ast.FunctionDef, ast.ClassDef))}
-            rows += [entry(there[alias.name], file.stem) for alias in node.names if alias.name in there]
+            rows += [entry(there[alias.name], file) for alias in node.names if alias.name in there]
     if not rows:
         return []
-    return [heading("Given in solutions/support/", "-"), "This lesson imports them.", "\n".join(rows)]
+    return [heading("Given in other files", "-"), "This lesson imports them.", "\n".join(rows)]
 
 
 def entry(node, file):
     said = (ast.get_docstring(node) or "").partition("\n\n")[0].replace("Given.  ", "")
     signature = f"({ast.unparse(node.args)})" if isinstance(node, ast.FunctionDef) else ""
-    return f"``{node.name}{signature}``\n   {prose(said)} (``support/{file}.py``)"
+    return f"``{node.name}{signature}``\n   {prose(said)} (``{file.parent.name}/{file.name}``)"

@@ -16,10 +16,11 @@ from typing import NamedTuple
 
 import nbformat
 
-from .. import coverage, generate, modules
-from .. import needs as calls
-from ..modules import ROOT, SOLUTIONS
+from ..run import coverage
 from ..stability.examine import all_cases
+from ..subject import generate, modules
+from ..subject import needs as calls
+from ..subject.modules import ROOT, SOLUTIONS
 
 WORDS_PER_MINUTE = 100       # of a text with formulas
 MINUTES_PER_OUTPUT = 2.0     # to run a cell, and to look at what it shows

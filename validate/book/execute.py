@@ -18,8 +18,8 @@ from jupyter_client import KernelManager
 
 from solutions.checks import BadInput
 
-from .. import generate
-from ..modules import ROOT, SOLUTIONS
+from ..subject import generate
+from ..subject.modules import ROOT, SOLUTIONS
 
 NOTEBOOKS, KEPT = ROOT / "notebooks", ROOT / ".cache" / "book"
 LONGEST = 600                # of one cell [s]

@@ -8,8 +8,8 @@ import subprocess
 from base64 import b64decode
 from pathlib import Path
 
-from ..modules import ROOT
-from ..store import SUBSET
+from ..run.store import SUBSET
+from ..subject.modules import ROOT
 from . import api, course, execute, plan, sheets
 
 HERE = Path(__file__).resolve().parent

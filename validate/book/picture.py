@@ -14,10 +14,10 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from PIL import Image
 
-from ..__main__ import stored_report
-from ..modules import ROOT
-from ..processes import one_sentence
-from ..results import Role
+from ..check import Role
+from ..run.processes import one_sentence
+from ..run.store import stored_report
+from ..subject.modules import ROOT
 
 SCENES = {                   # {scene: its title in the film}
     "spring_net": "springs: a net that is let go",

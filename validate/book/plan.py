@@ -4,7 +4,7 @@ import re
 import subprocess
 from typing import NamedTuple
 
-from ..modules import ROOT
+from ..subject.modules import ROOT
 from . import course
 
 WIDTH = 84                   # of the code on a page of the book [characters]

@@ -3,8 +3,8 @@
 import html
 import re
 
-from .. import modules
 from ..stability.examine import all_cases
+from ..subject import modules
 from . import course, plan, weeks
 
 

@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from .. import modules
+from ..subject import modules
 from . import course, plan
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.collisions import Plane
-from solutions.support.collisions import Target
+from solutions.given.collisions import Target
 from validate.engines.bullet import Bullet
 from validate.methods import CONTINUOUS, DISCRETE
 from validate.reference.collisions import COPIES, ONLY_ROUND_OFF

@@ -4,13 +4,13 @@ from functools import partial
 
 import numpy as np
 
-from validate.drawing import axes_links, axes_seen, turned_in_place
 from validate.engines import mujoco
 from validate.engines.bullet import Rigid
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, free_limits
 from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
 from validate.scene import EXACT, MUJOCO, PYBULLET, EngineRun, engine, ours
+from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
 
 
 def turn_runners(body, methods, limits, in_quick, exact=()):

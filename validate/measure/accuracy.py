@@ -7,10 +7,10 @@ import numpy as np
 
 from solutions.checks import BadInput
 
+from ..check import Role, Verdict, jsonable
 from ..methods import engine_look
-from ..modules import report_text
-from ..results import Role, Verdict, jsonable
 from ..scene import ROUND_OFF, parameter_table
+from ..subject.modules import report_text
 from . import film, traces
 from .selection import select, with_overrides
 

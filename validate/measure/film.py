@@ -4,7 +4,7 @@ import base64
 
 import numpy as np
 
-from ..results import Role
+from ..check import Role
 from . import traces
 
 FRAMES = 120
@@ -73,7 +73,7 @@ def in_space(scene, shown, p, seconds):
 def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False, walls=()):
     """What the 3D player plays.
 
-    bodies    shapes of validate/drawing.py
+    bodies    shapes of validate/scenes/drawing.py
     runs      {label: (role, poses)}; poses (frames, bodies, 7): position x, y, z [m] and unit quaternion w, x, y, z
     arrows    {label: {name: (frames, 2, 3)}}: where each arrow begins and ends, for the runs that have them
     trail     number of the body whose path is drawn;   ground: draw the plane z = 0

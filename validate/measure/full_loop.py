@@ -10,8 +10,8 @@ from functools import partial
 
 import numpy as np
 
-from .. import modules
-from ..results import Verdict, jsonable
+from ..check import Verdict, jsonable
+from ..subject import modules
 from . import timing
 from .accuracy import relative, run_to_end
 from .selection import select, with_overrides

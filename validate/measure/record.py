@@ -3,9 +3,9 @@
 import json
 import platform
 
-from ..results import jsonable
+from ..check import jsonable
+from ..run.store import whole
 from ..scene import PYBULLET
-from ..store import whole
 from .accuracy import run_engine_to_end
 from .film import FRAMES, engine_frames
 from .selection import Plan, select

@@ -12,9 +12,9 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .. import modules
 from ..products import PYBULLET, PYMUNK
 from ..scene import Scene
+from ..subject import modules
 
 REPEATS = 7                  # of a timed run, at most
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]

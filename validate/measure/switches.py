@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..check import jsonable
 from ..engines.switches import worlds_made
-from ..results import jsonable
 from .accuracy import relative, run_engine_to_end
 from .timing import Timed, interleaved, time_engine
 

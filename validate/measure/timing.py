@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..results import jsonable
+from ..check import jsonable
 from . import traces
 from .accuracy import ASYMPTOTIC, labels_that_agree, relative
 from .selection import REPEATS, select, with_overrides

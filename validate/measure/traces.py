@@ -4,8 +4,8 @@ from pathlib import Path
 
 from solutions.checks import BadInput
 
-from ..results import Role
-from ..store import read_whole
+from ..check import Role
+from ..run.store import read_whole
 
 RECORDED = Path(__file__).resolve().parent.parent / "recorded"
 

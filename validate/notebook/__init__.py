@@ -22,13 +22,15 @@ from matplotlib.ticker import LogFormatterSciNotation
 
 from solutions.checks import BadInput
 
-from .. import copies, failing_case, measure, modules, needs
-from ..loading import lacks, waiting
+from .. import measure
+from ..check import Role
 from ..measure import film
+from ..mistakes import failing_case
 from ..products import PRODUCTS
 from ..report import ARROWS, PLAYER_3D, plots, words
-from ..results import Role
 from ..scene import check_known
+from ..subject import copies, modules, needs
+from ..subject.loading import lacks, waiting
 from . import cases, figures, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"

@@ -5,7 +5,7 @@ Positions are (n, 2) arrays [m], x to the right and y up.  The upper left corner
 
 import numpy as np
 
-from .. import drawing
+from ..scenes import drawing
 
 ROWS, COLS, CELL = 9, 13, 0.1                    # points down and across, and the distance between neighbours [m]
 RINGS = tuple(range(0, COLS, 4))                 # points of the top row by which it hangs

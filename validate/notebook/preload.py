@@ -12,5 +12,5 @@ from .pytest_process import quiet
 
 with tempfile.TemporaryDirectory() as place:
     Path(place, "test_nothing.py").write_text("def test_nothing():\n    pass\n")
-    quiet(place, f"--rootdir={place}", "-p", "tests.grading.plugin")
+    quiet(place, f"--rootdir={place}", "-p", "validate.grading.plugin")
 gc.freeze()                      # a copy's collector has nothing to do with what was there before

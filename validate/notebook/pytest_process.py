@@ -12,7 +12,7 @@ from functools import cache
 
 import pytest
 
-from ..modules import ROOT
+from ..subject.modules import ROOT
 
 try:
     import multiprocessing

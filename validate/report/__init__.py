@@ -8,9 +8,9 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
+from ..check import Verdict
 from ..products import PRODUCTS
-from ..results import Verdict
-from ..store import whole
+from ..run.store import whole
 from . import films, plots, tables, words
 from .answers import answers
 

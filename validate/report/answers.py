@@ -3,7 +3,7 @@
 from collections import Counter
 from statistics import quantiles
 
-from ..results import Verdict
+from ..check import Verdict
 from ..scene import EXACT
 from . import words
 

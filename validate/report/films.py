@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from ..results import Role
+from ..check import Role
 
 WIDTH, HEIGHT, MARGIN = 132.0, 84.0, 7.0         # of a still picture [px]
 STILL = 0.62                 # the moment of the film that a still picture shows, as a share of its frames

@@ -15,8 +15,8 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .. import methods
-from ..results import Role, Verdict, jsonable
-from ..store import whole
+from ..check import Role, Verdict, jsonable
+from ..run.store import whole
 from . import words
 
 EXACT_RUN = 1e-12               # relative error of a run of many steps that is exact [-]

@@ -5,7 +5,7 @@ from statistics import median
 
 from rich.table import Table
 
-from ..results import Verdict
+from ..check import Verdict
 from ..scene import EXACT
 from . import words
 

@@ -8,10 +8,10 @@ from math import floor, log10
 import numpy as np
 from markupsafe import Markup, escape
 
+from ..check import Verdict, is_right
 from ..measure.accuracy import relative
 from ..measure.timing import SAME
 from ..products import PRODUCTS
-from ..results import Verdict, is_right
 from ..scene import EXACT
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import modules
-from ..results import jsonable
+from ..check import jsonable
+from ..subject import modules
 from .case import CASES, Checks, Examined, finding
 
 

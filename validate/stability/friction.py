@@ -8,7 +8,7 @@ import numpy as np
 
 from solutions import integrators
 from solutions.friction import ParticleInBowl, ParticleOnPlane
-from solutions.support.friction import make_block
+from solutions.given.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
 from validate.reference.schemes import EULER, step_of

@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.collisions import Box, Plane, ball_box, ball_contact, box_corners, box_separation, gjk
-from solutions.support.collisions import (
+from solutions.given.collisions import (
     ball_capsule,
     ball_plane,
     ball_triangle,

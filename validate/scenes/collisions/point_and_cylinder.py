@@ -7,7 +7,7 @@ solves for the first root and works with any step.
 
 import numpy as np
 
-from solutions.support.collisions import advance_projectiles, ball_cylinder_gap, ball_cylinder_time
+from solutions.given.collisions import advance_projectiles, ball_cylinder_gap, ball_cylinder_time
 from validate.engines import collisions as engines
 from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene

@@ -6,7 +6,7 @@ t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight. 
 
 import numpy as np
 
-from solutions.support.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
+from solutions.given.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
 from validate.engines import collisions as engines
 from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene

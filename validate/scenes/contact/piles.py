@@ -22,11 +22,11 @@ from solutions.contact import (
 )
 from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
-from validate.drawing import box, seen, sphere
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
 from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.scenes.drawing import box, seen, sphere
 
 T = 1.0
 STEPS = (1,)
@@ -305,8 +305,8 @@ SCENE = Scene(
     slow_cases=tuple(CASES)[1:],
     omitted_methods="sweeps and Murty's method alone are missing: they move no bodies, and a matrix of 2,000 contacts "
                     "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "
-                    "1,000 bodies, because 50 iterations do not find the forces; the command python -m validate.piles "
-                    "compares piles of 1,000 bodies",
+                    "1,000 bodies, because 50 iterations do not find the forces; the command "
+                    "python -m validate.speed.piles compares piles of 1,000 bodies",
     moves=False,
     refinement="",
     quantity_names=quantity_names,

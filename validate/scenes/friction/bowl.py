@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from solutions.checks import check_positive
 from solutions.friction import ParticleInBowl, check_friction, particle_bowl_gap
 from solutions.friction import falling_acceleration as acceleration
-from solutions.support.friction import advance_particle
+from solutions.given.friction import advance_particle
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING

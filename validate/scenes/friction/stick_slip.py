@@ -4,8 +4,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
+from solutions.given.friction import make_block, slip_times
 from solutions.integrators import advance
-from solutions.support.friction import make_block, slip_times
 from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import (

@@ -7,8 +7,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
+from solutions.given.friction import make_block
 from solutions.integrators import advance
-from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block, slab_on_box, slab_on_line
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.checks import check_positive
+from solutions.given.impulses import advance_balls
 from solutions.impulses import BouncingBall, check_restitution
 from solutions.impulses import falling_acceleration as acceleration
-from solutions.support.impulses import advance_balls
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.support.impulses import Discs, advance_discs
+from solutions.given.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS

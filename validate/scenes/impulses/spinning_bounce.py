@@ -7,9 +7,9 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import check_friction
+from solutions.given.impulses import SpinningBall, advance_spinning_balls
 from solutions.impulses import check_restitution
 from solutions.impulses import falling_acceleration as acceleration
-from solutions.support.impulses import SpinningBall, advance_spinning_balls
 from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN

@@ -13,7 +13,6 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
-from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -26,6 +25,7 @@ from validate.reference.kinematics import (
     searched,
 )
 from validate.scene import EXACT, PYBULLET, Departure, Scene, engine, ours
+from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
 
 MOST = 4000                  # iterations
 ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]

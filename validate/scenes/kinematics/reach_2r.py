@@ -12,11 +12,11 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
-from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
 
 T = 1.0
 ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]

@@ -12,7 +12,6 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
-from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -25,6 +24,7 @@ from validate.reference.kinematics import (
     single_rounding,
 )
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
 
 T = 1.0
 ENOUGH = 1e-10               # |e| at which a search ends [m and rad]

@@ -11,11 +11,11 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bent_to, end_of, joints_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
 
 ITERATIONS = 200
 LENGTHS = np.array([1.0, 0.7, 0.4])

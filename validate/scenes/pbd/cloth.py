@@ -6,13 +6,13 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.given.pbd import make_constraint_network
+from solutions.given.pbd import network_gravity as acceleration
 from solutions.integrators import advance
-from solutions.support.pbd import make_constraint_network
-from solutions.support.pbd import network_gravity as acceleration
-from validate.drawing import seen
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest
 from validate.scene import Scene, by_order, ours
+from validate.scenes.drawing import seen
 
 T = 0.3                      # [s]
 STEPS = (5, 10, 25, 50, 100, 510, 1000)

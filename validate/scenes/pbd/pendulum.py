@@ -6,9 +6,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.given.pbd import make_constraint_network
+from solutions.given.pbd import network_gravity as acceleration
 from solutions.integrators import advance
-from solutions.support.pbd import make_constraint_network
-from solutions.support.pbd import network_gravity as acceleration
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD

@@ -6,9 +6,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.given.pbd import make_constraint_network
+from solutions.given.pbd import network_gravity as acceleration
 from solutions.integrators import advance
-from solutions.support.pbd import make_constraint_network
-from solutions.support.pbd import network_gravity as acceleration
 from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_sweeps, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import (

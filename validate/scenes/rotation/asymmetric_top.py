@@ -4,11 +4,9 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.given.rotation import advance_rotation, check_moments
 from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
-from solutions.support.rotation import advance_rotation, check_moments
-from validate import drawing
-from validate.drawing import omega_and_L
 from validate.engines.rotation import FREE_BODY, free_engines, mujoco_default, turn_runners
 from validate.methods import (
     AXIS_ANGLE,
@@ -25,6 +23,8 @@ from validate.methods import (
 from validate.reference.rotation import FreeTop, free_limits, freely
 from validate.reference.turns import free_turning
 from validate.scene import Scene
+from validate.scenes import drawing
+from validate.scenes.drawing import omega_and_L
 
 T = 10.0                     # [s]: it flips at 6.06 s, and is about to start the next flip
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)

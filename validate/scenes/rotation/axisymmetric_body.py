@@ -5,11 +5,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
+from solutions.given.rotation import advance_rotation, check_moments
 from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
-from solutions.support.rotation import advance_rotation, check_moments
-from validate import drawing
-from validate.drawing import omega_and_L
 from validate.engines.bullet import Rigid
 from validate.engines.rotation import FREE_BODY, free_engines, turn_runners
 from validate.methods import COMPOSED_SPLITTING, MATRIX, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
@@ -17,6 +15,8 @@ from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, L_KEPT, free_limits, freely, symmetric_top
 from validate.reference.turns import free_turning
 from validate.scene import PYBULLET, Scene
+from validate.scenes import drawing
+from validate.scenes.drawing import omega_and_L
 
 T = 10.0                     # [s]: eight and a half revolutions about L
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000, 100000)

@@ -6,10 +6,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.given.rotation import advance_rotation, check_moments
 from solutions.rotation import Top, exponential
 from solutions.rotation import heavy_top_torque as acceleration
-from solutions.support.rotation import advance_rotation, check_moments
-from validate import drawing
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import top as mujoco_top
 from validate.engines.rotation import turn_runners
@@ -18,6 +17,7 @@ from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
 from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
+from validate.scenes import drawing
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)

@@ -6,15 +6,15 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.given.rotation import advance_rigid_body
 from solutions.rotation import RollingBall
 from solutions.rotation import supported_weight as acceleration
-from solutions.support.rotation import advance_rigid_body
-from validate import drawing
-from validate.drawing import pose
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes import drawing
+from validate.scenes.drawing import pose
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)

@@ -6,17 +6,17 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
+from solutions.given.rotation import advance_rigid_body
 from solutions.rotation import RollingBall
 from solutions.rotation import supported_weight as acceleration
-from solutions.support.rotation import advance_rigid_body
-from validate import drawing
-from validate.drawing import pose
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes import drawing
+from validate.scenes.drawing import pose
 
 T = 1.5                      # [s]
 STEPS = (60, 120, 300, 600, 1200, 3000, 6000)

@@ -10,17 +10,17 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
+from solutions.given.rotation import advance_rigid_body
 from solutions.rotation import RollingBall
 from solutions.rotation import supported_weight as acceleration
-from solutions.support.rotation import advance_rigid_body
-from validate import drawing
-from validate.drawing import pose
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import OVERLAP, pybullet_spinning_ball, pymunk_body, pymunk_floor_space
 from validate.methods import AVERAGE_ROLLING, EXACT_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes import drawing
+from validate.scenes.drawing import pose
 
 T = 3.0                      # [s]
 STEPS = (30, 60, 150, 300, 600, 1500, 3000)

@@ -14,9 +14,9 @@ import numpy as np
 
 from solutions.checks import BadInput, check_friction, check_positive
 from solutions.contact import box_bounds_2d, box_contacts_2d, make_pile_2d
+from solutions.given.bodies import Bodies
 from solutions.simulator import advance_contact
 from solutions.simulator import weight as acceleration
-from solutions.support.bodies import Bodies
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import PILE, SETTLED_LOOP

@@ -9,13 +9,11 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.given.simulator import RodsInAngles, rods_acceleration
 from solutions.integrators import advance
 from solutions.rotation import SUZUKI
 from solutions.simulator import advance_free, make_bodies, make_bodies_2d, make_joints
 from solutions.simulator import weight as acceleration
-from solutions.support.simulator import RodsInAngles, rods_acceleration
-from validate import drawing
-from validate.drawing import pose
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.simulator import pybullet_chain, pymunk_chain
 from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
@@ -31,6 +29,8 @@ from validate.reference.simulator import (
     rods_slope,
 )
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, ours
+from validate.scenes import drawing
+from validate.scenes.drawing import pose
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)

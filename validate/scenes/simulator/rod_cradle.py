@@ -10,13 +10,13 @@ import numpy as np
 from solutions.checks import BadInput, check_not_negative, check_positive
 from solutions.simulator import advance_contact, disc_bounds, make_bodies_2d, make_joints, round_contacts
 from solutions.simulator import weight as acceleration
-from validate import drawing
-from validate.drawing import pose
 from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
 from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
 from validate.reference.simulator import cradle_motion
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Scene, engine, ours
+from validate.scenes import drawing
+from validate.scenes.drawing import pose
 
 T = 0.7                      # [s]: all impacts are over after 0.6
 STEPS = (5, 10, 20, 50, 100, 200, 500)

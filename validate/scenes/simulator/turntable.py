@@ -8,14 +8,14 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
+from solutions.given.rotation import advance_rigid_body
 from solutions.rotation import supported_weight as acceleration
 from solutions.simulator import CarriedBall, advance_contact, ball_bounds, make_bodies, round_contacts, weight
-from solutions.support.rotation import advance_rigid_body
-from validate import drawing
-from validate.drawing import pose
 from validate.engines.simulator import pybullet_turntable
 from validate.methods import CARRIED, LOOP
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes import drawing
+from validate.scenes.drawing import pose
 
 T = 5.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)

@@ -1,0 +1,1 @@
+"""Given code above the lessons: loops, joints and invariants.  It calls exercises."""

@@ -1,0 +1,165 @@
+"""Given with lesson 10.  Loops with joints, one whose positions go with mean velocities, and one that sweeps only as
+long as it helps; a chain that needs no joints, because its coordinates are angles; the history of a run with contact.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks import whole_number
+from ..simulator import *  # noqa: F403    one import has a lesson and its given functions
+from ..simulator import (
+    advance_contact,
+    contact_step_2d,
+    find_contacts,
+    kept_impulses,
+    new_velocities_2d,
+    velocity_sweep_2d,
+)
+from ..support.arms import apply_impulses_2d, arms_2d
+from ..support.records import check_record
+from ..support.scenes import PileState
+from ..support.small_systems import solve_band
+from .invariants import closing_speeds
+from .joints import (
+    COMPOSED,
+    close_joints_2d,
+    hold_joints_2d,
+    impulses_2d,
+    joint_arms_2d,
+    joint_velocities_2d,
+    parting_speeds,
+    without_joined,
+)
+
+SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
+FURTHER = 1500               # sweeps after those of the step, at most
+
+
+def settled_contact_step_2d(load, bounds, narrow, t, state, dt, p):
+    """Given.  Return the PileState of contact_step_2d, swept further until a sweep changes little.
+
+    The sweeps end when one changes no component of an impulse by more than SETTLED times the largest one.  At rest one
+    does; an impact that runs through several contacts gets as many as it needs.
+    *Source:* the residual threshold of an engine's solver.
+    """
+    _, _, v, omega, contacts, J = contact_step_2d(load, bounds, narrow, t, state, dt, p)
+    arms, aim = arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
+    for _ in range(FURTHER if J.size else 0):
+        found = J
+        v, omega, J = velocity_sweep_2d(v, omega, found, aim, 0.0 * aim, contacts, arms, p)
+        if np.max(np.abs(J - found)) <= SETTLED * np.max(np.abs(J)):
+            break
+    return PileState(state.x + dt * v, state.q + dt * omega, v, omega, contacts, J)
+
+
+def mean_contact_step_2d(load, bounds, narrow, t, state, dt, p):
+    """Given.  Return the PileState of contact_step_2d, but with  x ← x + ½ dt (v + v′).
+
+    v is the velocity before the step, v′ the one after it; angles go the same way.  The step is exact while the forces
+    are constant and what touches stays in contact.  It is no method for impacts: a body that arrives at a contact with
+    the speed v sinks in by ½ dt v.
+    *Source:* the trapezoidal rule; `average_rolling_step` of lesson 5 does the same for one ball.
+    """
+    x, q, v, omega, _, _ = state
+    _, _, v_new, omega_new, contacts, J = contact_step_2d(load, bounds, narrow, t, state, dt, p)
+    return PileState(x + 0.5 * dt * (v + v_new), q + 0.5 * dt * (omega + omega_new), v_new, omega_new, contacts, J)
+
+
+def joint_step_2d(load, t, x, q, v, omega, dt, p):
+    """Given.  Return (x, q, v, omega) of JointedBodies in the plane after dt without contact.
+
+    RATTLE: second order, reversible.
+    """
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, 0.5 * dt, p)
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    x, q = x + dt * v, q + dt * omega
+    v, omega = new_velocities_2d(load, t + dt, x, q, v, omega, 0.5 * dt, p)
+    v, omega = hold_joints_2d(q, v, omega, p)
+    return x, q, v, omega
+
+
+def composed_joint_step_2d(load, t, x, q, v, omega, dt, p):
+    """Given.  The same by five joint_step_2d, the third one backwards, as `compose` of lesson 5 does; fourth order."""
+    for share in COMPOSED:
+        x, q, v, omega = joint_step_2d(load, t, x, q, v, omega, share * dt, p)
+        t = t + share * dt
+    return x, q, v, omega
+
+
+def joint_contact_step_2d(load, bounds, narrow, t, state, dt, p):
+    """Given.  Return the PileState of JointedBodies in the plane after dt: contact_step_2d, and after each sweep
+    close_joints_2d, which leaves no joint open at the end of the step.
+
+    Bodies that share a joint do not touch.  A contact that comes with u_n leaves with −p.e u_n, and then no impulse of
+    the last step is kept.
+    """
+    x, q, v, omega, old, J = state
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
+    low, high, turn = bounds(x, q, p.half)
+    contacts = without_joined(find_contacts(narrow, x, low, high, turn, p), p.joints)
+    arms = arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    aim = parting_speeds(v, omega, contacts, arms, dt, p.e)
+    J, give = kept_impulses(contacts, old, J, p.margin if p.e == 0.0 else 0.0), np.zeros(aim.size)
+    apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
+    for _ in range(p.sweeps if contacts.a.size > 0 else 0):
+        v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, p)
+        v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
+
+
+def joint_impulses_2d(load, t, before, after, dt, p):
+    """Given.  Return J (m, 2) [N s], on body a, of the joints in a step of joint_contact_step_2d from `before`, at t.
+
+    They are what loads and contacts leave of the change of the velocities; J/dt is the mean force of the step, impacts
+    included.  Where rows depend on each other J is the shortest that there is.
+    """
+    arms = arms_2d(before.x, p.inv_mass, p.inv_inertia, after.contacts)
+    v, omega = new_velocities_2d(load, t, before.x, before.q, before.v, before.omega, dt, p)
+    apply_impulses_2d(v, omega, after.J, after.contacts, arms, p.inv_mass, p.inv_inertia)
+    ends = joint_arms_2d(before.q, p.joints)
+    return impulses_2d(ends, ends, joint_velocities_2d(v - after.v, omega - after.omega, ends, p.joints), p)[0]
+
+
+# ---------------------------------------------------------------------------------------------- the history of a run
+
+def contact_trajectory(step, load, bounds, narrow, t, state, dt, steps, p):
+    """Given.  Return (ts, [state, …]) of advance_contact: times and all PileStates, the first included."""
+    check_record(p, state)
+    steps, states = whole_number("number of steps", steps, 0), [state]
+    for n in range(steps):
+        states.append(advance_contact(step, load, bounds, narrow, t + n * dt, states[-1], dt, 1, p))
+    return t + dt * np.arange(steps + 1), states
+
+
+# ---------------------------------------------------------------------------------------------- without joints
+
+class RodsInAngles(NamedTuple):
+    """Equal rods in the plane, each hinged to the end of the one before, the first to a wall."""
+    m: float                 # mass of each [kg]
+    l: float                 # length of each [m]
+    I: float                 # moment of inertia of each about its centre [kg m²]
+    g: float                 # gravity, along −y [m/s²]
+
+
+def rods_acceleration(t, q, omega, p):
+    """Given.  Return the angular accelerations (n,) [rad/s²] of RodsInAngles p whose angles from the x axis are q (n,).
+
+    Angles cannot leave a joint open, so nothing holds it: Lagrange's equations replace the impulses of the joints.
+        Σⱼ (m l² cᵢⱼ cos(qᵢ − qⱼ) + δᵢⱼ I) αⱼ = −Σⱼ m l² cᵢⱼ sin(qᵢ − qⱼ) ωⱼ² − m g l (n − i − ½) cos qᵢ
+        cᵢⱼ = n − max(i, j) − ½  and  cᵢᵢ = n − i − ¾,  i and j from 0
+    The matrix is full, so that a step costs n³, where the band of the joints costs n.
+    *Source:* Lagrange's equations.
+    """
+    n, c, s = q.size, np.cos(q), np.sin(q)
+    A, right = np.empty((n, n)), np.empty(n)
+    for i in range(n):
+        right[i] = -p.m * p.g * p.l * (n - i - 0.5) * c[i]
+        for j in range(n):
+            share = p.m * p.l * p.l * (n - max(i, j) - 0.5)
+            A[i, j] = share * (c[i] * c[j] + s[i] * s[j])
+            right[i] -= share * (s[i] * c[j] - c[i] * s[j]) * omega[j] * omega[j]
+        A[i, i] = p.m * p.l * p.l * (n - i - 0.75) + p.I
+    solve_band(A, right, n, 0.0)
+    return right

@@ -1,0 +1,1 @@
+"""Points: what a grading test says when it fails, and what an exercise is worth."""

@@ -1,0 +1,78 @@
+"""`python -m validate.grading.example FOLDER`: make a class of five from the worked answers, and its class list.
+
+ada has everything right (a zip).  bob forgets dt in Euler's method.  cem has not begun (a zip).  dia's second file does
+not load.  eve's first file ends the program that imports it.  fay is on the list and hands nothing in.
+"""
+
+import sys
+import zipfile
+from pathlib import Path
+
+from solutions.checks import BadInput
+from validate.subject import generate, modules
+
+PEOPLE = """student_id,last_name,first_name,email
+ada,Lovelace,Ada,ada@example.org
+bob,Hooke,Bob,bob@example.org
+cem,Yilmaz,Cem,cem@example.org
+dia,Okafor,Dia,dia@example.org
+eve,Novak,Eve,eve@example.org
+fay,Tanaka,Fay,fay@example.org
+"""
+DATE = (2026, 11, 20, 12, 0, 0)
+
+
+def worked(lesson):
+    """The text of a lesson with every exercise answered, as a student would hand it in."""
+    source = (modules.SOLUTIONS / f"{lesson}.py").read_text()
+    return generate.stub(source, solved=generate.exercises(source))
+
+
+def files():
+    """{student: {lesson: text}}."""
+    first, second, *_ = modules.lesson_names()
+    stubs = {name: (modules.ROOT / "lessons" / f"{name}.py").read_text() for name in (first, second)}
+    right = {name: worked(name) for name in (first, second)}
+    wrong = right[first].replace("v + dt * acceleration(t, x, v, p)\n", "v + acceleration(t, x, v, p)\n", 1)
+    return {
+        "ada": right,
+        "bob": {first: wrong, second: stubs[second]},
+        "cem": stubs,
+        "dia": {first: right[first], second: right[second] + "\n)(\n"},
+        "eve": {first: "import os\n\nos._exit(0)\n"},
+    }
+
+
+def make(folder):
+    """Write the class into a new folder.  Raises BadInput when there is something already."""
+    folder = Path(folder)
+    if folder.exists():
+        raise BadInput(f"folder {str(folder)!r}", "there already", "name one that is not")
+    folder.mkdir(parents=True)
+    for student, lessons in files().items():
+        if student in ("ada", "cem"):
+            with zipfile.ZipFile(folder / f"{student}.zip", "w") as archive:
+                for lesson, text in lessons.items():
+                    archive.writestr(zipfile.ZipInfo(f"workbook/lessons/{lesson}.py", DATE), text)
+        else:
+            (folder / student / "lessons").mkdir(parents=True)
+            for lesson, text in lessons.items():
+                (folder / student / "lessons" / f"{lesson}.py").write_text(text)
+    (folder / "list.csv").write_text(PEOPLE)
+    return folder
+
+
+def main(arguments):
+    if len(arguments) != 1:
+        print("example: name one new folder, like: python -m validate.grading.example class", file=sys.stderr)
+        return 2
+    try:
+        print(f"a class of five, and its list, in {make(arguments[0])}")
+    except BadInput as e:
+        print(f"example: {e}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

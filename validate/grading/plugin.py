@@ -1,0 +1,358 @@
+"""One set of tests for several subjects: `pytest --of=solutions|lessons|PATH`.
+
+`--compiled`, `--exercise=1.2` and `--seed=anything` choose among the tests and their inputs.
+Without options the subject is `solutions`, plain and compiled, and the tests of the workbook itself run too.
+With --of only the grading tests run.  Long tests run only with --long.
+"""
+
+import hashlib
+import json
+import signal
+import threading
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+from validate import mistakes
+from validate.subject import copies, modules, needs
+from validate.subject.loading import TooLong, alarm, lacks
+
+from . import wire
+from .expect import NotYet
+from .points import (
+    AGAIN,
+    BOX_LIMIT,
+    LESSONS,
+    LIMIT,
+    PUBLIC,
+    TESTS,
+    TRACE,
+    FailingCases,
+    Points,
+    name_of,
+    score,
+)
+
+
+def pytest_addoption(parser):
+    group = parser.getgroup("workbook")
+    group.addoption("--of", help="whose answers to test: solutions, lessons or a folder of lesson files")
+    group.addoption("--compiled", action="store_true", help="test the compiled twins only")
+    exercise = "only this exercise (may be repeated)"
+    group.addoption("--exercise", action="append", default=[], metavar="1.2", help=exercise)
+    seed = "draw the inputs of the tests from this; a class is graded with a secret one"
+    group.addoption("--seed", default=PUBLIC, help=seed)
+    group.addoption("--long", action="store_true", help="run the long tests, too")
+    group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
+    case = "with --of and the public seed: write the first failing call there, as JSON, for a notebook to draw"
+    group.addoption("--case", metavar="FILE", help=case)
+
+
+def pytest_configure(config):
+    in_main_thread = threading.current_thread() is threading.main_thread()
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN and in_main_thread:
+        # a background job of a shell ignores Ctrl-C, and so would all processes that it starts
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False               # pytest-xdist would start the longest groups last
+    if config.getoption("--of"):
+        asked, config.option.of = config.option.of, copies.meant_here(config.option.of)
+        config.of_another_copy = asked != config.option.of
+        if config.getoption("--seed") == PUBLIC:
+            config.traces = mistakes.Traces()
+        try:
+            modules.subject_folder(config.getoption("--of"))
+        except BadInput as e:
+            raise pytest.UsageError(str(e)) from None
+        if config.option.tbstyle == "auto":
+            config.option.tbstyle = "short"
+        config.points = Points()
+        config.pluginmanager.register(config.points)
+        if config.getoption("--case") and hasattr(config, "traces"):  # never with a secret seed
+            config.cases = FailingCases()
+            config.pluginmanager.register(config.cases)
+    for exercise in config.getoption("--exercise"):
+        if not tests_of(exercise):
+            raise pytest.UsageError(f"exercise {exercise!r} is unknown: give its number, like --exercise=1.2")
+
+
+def tests_of(exercise):
+    """List the test files that name an exercise; for an empty one, those of every lesson."""
+    files = [LESSONS / f"test_{lesson}.py" for lesson in modules.lesson_names()]
+    files = [path for path in files if path.is_file()]
+    return [path for path in files if not exercise or f'"{exercise}"' in path.read_text(encoding="utf-8")]
+
+
+def pytest_ignore_collect(collection_path, config):
+    """With --of or --exercise, do not load files without a test of it."""
+    exercises = config.getoption("--exercise") or [""] * bool(config.getoption("--of"))
+    if exercises and collection_path.is_relative_to(TESTS) and collection_path.suffix == ".py":
+        return not any(collection_path in tests_of(exercise) for exercise in exercises) or None
+
+
+def pytest_generate_tests(metafunc):
+    if "lesson" in metafunc.fixturenames:
+        option = metafunc.config.getoption
+        group = pytest.mark.xdist_group(f"compiled {metafunc.definition.path.stem}")     # one process compiles
+        once = pytest.param("compiled", marks=group)
+        subjects = [once] if option("--compiled") else ["plain"] if option("--of") else ["plain", once]
+        if hasattr(metafunc.config, "given"):
+            subjects = list(metafunc.config.given)
+        metafunc.parametrize("lesson", subjects, indirect=True)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """Stop a subject's endless loop.  Compiled and given code is ours and trusted."""
+    given = hasattr(item.config, "given")
+    if not item.get_closest_marker("exercise") or not (given or item.config.getoption("--of")):
+        return (yield)
+    limit = limit_of(item, LIMIT)
+    try:
+        with alarm(limit, own=given):                                # own time when grading, wall time for one student
+            return (yield)
+    except TooLong as e:
+        e.limit = limit
+        note_too_long(item)
+        raise
+    finally:
+        box = box_of(item.config.given[item.callspec.params["lesson"]][0]) if given else None
+        if box and box.overdue:
+            note_too_long(item)
+
+
+def box_of(subject):
+    """The sandbox of a subject, or None.  A lesson's module is none, though it answers for every name that it lacks."""
+    return None if isinstance(subject, types.ModuleType) else getattr(subject, "box", None)
+
+
+TOO_LONG = pytest.StashKey()                                         # {(subject, exercise)} of tests that were stopped
+
+
+def note_too_long(item):
+    stopped = item.config.stash.setdefault(TOO_LONG, set())
+    stopped.add((item.callspec.params["lesson"], item.get_closest_marker("exercise").args[0]))
+
+
+def limit_of(item, limit):
+    """How long a test may take [s].
+
+    An endless loop is waited for once: after it, the other tests of its exercise, and those of exercises that call it,
+    have less time.  That is still twice what the slowest test of the worked answers takes, so a test that ends passes.
+    """
+    subject, exercise = item.callspec.params["lesson"], item.get_closest_marker("exercise").args[0]
+    stopped = item.config.stash.get(TOO_LONG, ())
+    below = [exercise, *needs.needed(exercise)] if stopped and exercise in needs.table() else [exercise]
+    return min(AGAIN, limit) if any((subject, number) in stopped for number in below) else limit
+
+
+def pytest_collection_modifyitems(config, items):
+    wanted = [item for item in items if is_wanted(item, config)]
+    keep = once_compiled([item for item in wanted if not is_left_out(item, config)], config)
+    count_left_out(config, len(wanted) - len(keep))
+    if len(keep) < len(items):
+        kept = {*keep}
+        config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+        items[:] = keep
+    if config.getoption("--of"):                                     # a student's code may warn, as in the sandbox
+        for item in items:
+            item.add_marker(pytest.mark.filterwarnings("ignore"))
+    items.sort(key=lambda item: item.path.stem != "test_notebooks")  # the longest first: processes end together
+
+
+def is_wanted(item, config):
+    mark, exercises = item.get_closest_marker("exercise"), config.getoption("--exercise")
+    if mark is None:
+        return not (exercises or config.getoption("--of") or hasattr(config, "given"))
+    if hasattr(config, "given"):
+        _, wanted = config.given[item.callspec.params["lesson"]]
+        return wanted(mark.args[0], name_of(item))
+    return not exercises or mark.args[0] in exercises
+
+
+def is_left_out(item, config):
+    """Whether this test is long and was not asked for."""
+    return bool(item.get_closest_marker("long")) and not config.getoption("--long")
+
+
+def once_compiled(items, config):
+    """By default one test of each lesson runs with compiled answers: each more of them compiles something else."""
+    if config.getoption("--long") or config.getoption("--compiled") or hasattr(config, "given"):
+        return items
+    seen, keep = set(), []
+    for item in items:
+        compiled = hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled"
+        if not compiled or item.path not in seen:
+            keep.append(item)
+        if compiled:
+            seen.add(item.path)
+    return keep
+
+
+def count_left_out(config, count):
+    """Keep the number of long tests left out for the summary; a worker of pytest-xdist sends it."""
+    config.long_tests_left_out = count
+    if hasattr(config, "workeroutput"):
+        config.workeroutput["long_tests_left_out"] = count
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """Take the number from a worker of pytest-xdist; all workers collect the same tests."""
+    left_out = getattr(node, "workeroutput", {}).get("long_tests_left_out", 0)
+    node.config.long_tests_left_out = max(left_out, getattr(node.config, "long_tests_left_out", 0))
+
+
+@pytest.fixture
+def lesson(request):
+    """Load the lesson that the test file is named after, from the subject under test."""
+    if hasattr(request.config, "given"):
+        subject, _ = request.config.given[request.param]
+        if box := box_of(subject):
+            box.begin(limit_of(request.node, BOX_LIMIT))
+        return Pure(subject, trace_for(request))
+    name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
+    if request.param == "plain":
+        return Pure(modules.bind(name, of), trace_for(request))
+    if not modules.can_compile():
+        pytest.skip("numba has no wheel for this machine: the compiled twins are not tested")
+    if request.node.get_closest_marker("counts_calls"):
+        pytest.skip("counts the calls of a Python function, which compiled code cannot call")
+    return Compiled(modules.bind(name, of, compiled=True))
+
+
+def trace_for(request):
+    """The Trace of the function that a test is about; None where nothing is traced, as with secret inputs."""
+    traces, mark = getattr(request.config, "traces", None), request.node.get_closest_marker("exercise")
+    if traces is None or mark is None:
+        return None
+    test = request.node.name.replace(f"[{request.param}-", "[").replace(f"[{request.param}]", "")
+    trace = traces.begin(request.param, request.path.stem.removeprefix("test_"), mark.args[0], test)
+    request.node.stash[TRACE] = trace
+    return trace
+
+
+class Draw:
+    """Draw the inputs of one test from the seed and the name of the test, the same for every subject."""
+
+    def __init__(self, seed, test):
+        self.rng = np.random.default_rng(list(hashlib.sha256(f"{seed}/{test}".encode()).digest()))
+
+    def __call__(self, low, high, shape=None):
+        """Return a float, or an array of them, between low and high."""
+        return self.rng.uniform(low, high, shape)
+
+    def whole(self, low, high):
+        """Return an integer from low to high, both included."""
+        return int(self.rng.integers(low, high + 1))
+
+
+@pytest.fixture
+def draw(request):
+    """The inputs of this test."""
+    return Draw(request.config.getoption("--seed"), request.function.__name__)
+
+
+class Pure:
+    """A lesson whose functions must not change their arguments: a call that changes an array fails the test."""
+
+    def __init__(self, subject, trace=None):
+        self.subject, self.trace = subject, trace
+
+    def __getattr__(self, name):
+        if isinstance(self.subject, types.ModuleType) and name not in vars(self.subject):
+            file = Path(self.subject.__file__)
+            raise NotYet("the file", f"a function {name}", lacks(file, name), "", "no such function")
+        value = getattr(self.subject, name)
+        if not callable(value) or isinstance(value, type):
+            return value
+        watched = self.trace and name == self.trace.function
+        value = self.trace.watching(value) if watched else value
+
+        def call(*arguments):
+            before = [a.copy() for a in wire.arrays_in(arguments)]
+            result = value(*(getattr(a, "unwatched", a) for a in arguments))
+            after = wire.arrays_in(arguments)
+            if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after, strict=True)):
+                if watched:
+                    self.trace.changed_input()
+                quantity, expected = "the input arrays", "unchanged: return new arrays"
+                culprit = f"{name}, or a function that it calls," if self.trace and not watched else name
+                raise NotYet(quantity, expected, f"{culprit} has changed one in place", "", "changed in place")
+            return result
+
+        call.unwatched = value
+        return call
+
+
+class Compiled:
+    """A compiled lesson that compiles the functions of a test that it gets as callbacks."""
+
+    def __init__(self, module):
+        self.module = module
+
+    def __getattr__(self, name):
+        value = getattr(self.module, name)
+        if not hasattr(value, "py_func"):
+            return value
+
+        def call(*arguments):
+            return value(*map(compiled_callback, arguments))
+
+        call.twin = value
+        return call
+
+
+def compiled_callback(argument):
+    if hasattr(argument, "twin"):
+        return argument.twin
+    return _jitted(argument) if isinstance(argument, types.FunctionType) else argument
+
+
+_callbacks = {}
+
+
+def _jitted(function):
+    from numba import njit
+    if function not in _callbacks:
+        _callbacks[function] = njit(error_model="numpy")(function)
+    return _callbacks[function]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionfinish(session):
+    terminal = session.config.pluginmanager.get_plugin("terminalreporter")
+    if terminal and hasattr(session.config, "points"):               # a file that cannot be loaded is reported once
+        errors = reversed(terminal.stats.get("error", ()))
+        terminal.stats["error"] = [*{str(report.longrepr): report for report in errors}.values()]
+    if hasattr(session.config, "points") and hasattr(session.config, "traces"):
+        session.config.points.explain(session.config.traces, modules.subject_folder(session.config.getoption("--of")))
+    path = session.config.getoption("--outcomes")
+    if path and hasattr(session.config, "points"):
+        Path(path).write_text(json.dumps([outcome._asdict() for outcome in session.config.points.all()]))
+    for text in [*session.config.cases.found.values()][:1] if hasattr(session.config, "cases") else ():
+        Path(session.config.getoption("--case")).write_text(text)
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    left_out = getattr(config, "long_tests_left_out", 0)
+    if left_out:
+        tests, were = ("test", "was") if left_out == 1 else ("tests", "were")
+        terminalreporter.line(f"{left_out} long {tests} {were} left out: pytest --long runs them, too")
+    if not hasattr(config, "points") or not config.points.outcomes:
+        return
+    table = score(config.points.all())
+    terminalreporter.section("points")
+    for exercise, (earned, possible) in table.items():
+        terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")
+        for said in dict.fromkeys(text for o in config.points.all() for text in (o.below, o.idea)
+                                  if o.exercise == exercise and text):
+            terminalreporter.line(f"{'':8}{said}")
+    earned = sum(e for e, _ in table.values())
+    possible = sum(p for _, p in table.values())
+    terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")
+    if config.of_another_copy:
+        terminalreporter.line(f"tested: {config.getoption('--of')}, with the tests of {modules.ROOT}")

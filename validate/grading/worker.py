@@ -1,0 +1,229 @@
+"""Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
+
+Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder
+of the lessons as handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the lessons that this
+one builds on; notes, the descriptor of the memory for what the instructor may look into, and noted, the kinds of it.
+Frames go over standard input and output; what the student prints goes to standard error.
+"""
+
+import collections
+import contextlib
+import importlib.util
+import json
+import mmap
+import os
+import resource
+import sys
+import traceback
+import types
+
+config = json.loads(sys.argv[1])
+LESSON = f"lessons.{config['lesson']}"
+for limit, value in config["limits"].items():                          # hard, and set before any code of the student's
+    with contextlib.suppress(ValueError, OSError):
+        resource.setrlimit(getattr(resource, f"RLIMIT_{limit}"), (value, value))
+
+sys.path.insert(0, config["wire"])
+import numpy  # noqa: F401         before the student's file, or it would count against the time of the first test
+import shipping
+import wire
+
+incoming, outgoing = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+os.dup2(2, 1)                                                          # print() goes where standard error goes
+
+
+# ---------------------------------------------------------------------------------------------- modules
+
+class Handout(importlib.machinery.SourceFileLoader):
+    """Loads a lesson as handed out; its exercises are worked by the parent, over the wire."""
+
+    def exec_module(self, module):
+        super().exec_module(module)
+        name = module.__name__.partition(".")[2]
+        for function in config["earlier"].get(name, ()):
+            setattr(module, function, remote(f"solution:{name}.{function}"))
+
+
+class Finder:
+    """Finds the student's file as lessons.NAME, and under solutions or lessons the checks and the lessons that this
+    one builds on.
+    """
+
+    @staticmethod
+    def find_spec(full, path=None, target=None):
+        package, _, name = full.rpartition(".")
+        if full == LESSON:
+            return importlib.util.spec_from_file_location(full, os.path.join(config["student"], f"{name}.py"))
+        file = os.path.join(config["given"], f"{name}.py")
+        if full in ("solutions.given", "solutions.support"):               # what is in them is found the usual way
+            folder = os.path.join(config["given"], name)
+            return importlib.util.spec_from_file_location(full, os.path.join(folder, "__init__.py"),
+                                                          submodule_search_locations=[folder])
+        if package in ("lessons", "solutions") and (name in config["earlier"] or name in ("checks", "vectors")):
+            return importlib.util.spec_from_file_location(full, file, loader=Handout(full, file))
+        return None
+
+
+for package in ("lessons", "solutions"):
+    sys.modules[package] = types.ModuleType(package)
+    sys.modules[package].__path__ = []
+sys.meta_path.insert(0, Finder)
+
+
+# ---------------------------------------------------------------------------------------------- functions and records
+
+own, names = {}, {}  # functions of ours that the parent knows by name, and back
+
+
+def remote(name):
+    """A function of the parent's."""
+    def call(*arguments):
+        return peer.call(name, arguments)
+    names[call] = name
+    return call
+
+
+def students(name):
+    """A function of the student's file, which is imported when the first one is called."""
+    def call(*arguments):
+        return getattr(importlib.import_module(LESSON), name)(*arguments)
+    names[call] = f"lesson:{name}"
+    return call
+
+
+def define(name, *parts):
+    """A function of the tests that runs here."""
+    own[name] = shipping.function_of(*parts)
+    names[own[name]] = name
+
+
+def resolve(name):
+    """A function by the name that it has on the wire."""
+    kind, _, rest = name.partition(":")
+    if name == "echo":
+        return lambda text: text
+    if name == "import":
+        return lambda: importlib.import_module(LESSON) and None
+    return students(rest) if kind == "lesson" else own[name] if kind in ("own", "code") else remote(name)
+
+
+def name_of(function):
+    """The name by which the parent may call a function."""
+    if function not in names:
+        names[function] = f"own:{len(own)}"
+        own[names[function]] = function
+    return names[function]
+
+
+records = {}
+
+
+def record(name, fields, values):
+    """A NamedTuple of the class that a lesson has for it, or of one that looks the same."""
+    for module in [m for n, m in list(sys.modules.items()) if n.startswith(("lessons.", "solutions."))]:
+        known = getattr(module, name, None)
+        if isinstance(known, type) and getattr(known, "_fields", None) == fields:
+            return known(*values)
+    if (name, fields) not in records:
+        records[name, fields] = collections.namedtuple(name, fields)
+    return records[name, fields](*values)
+
+
+# ---------------------------------------------------------------------------------------------- errors
+
+class FromParent(Exception):
+    """An error of the parent's that the lessons have no name for."""
+
+
+def raised(names, message, where):
+    """An error of the parent's, as the class of that name."""
+    for module in ("solutions.checks", "builtins"):
+        kind = getattr(sys.modules.get(module), names[0], None)
+        if isinstance(kind, type) and issubclass(kind, Exception):
+            return kind.__new__(kind, message)
+    return FromParent(f"{names[0]}: {message}")
+
+
+def describe(e):
+    """Names of its class and that class's bases, message, and the last place in the student's file."""
+    places = [entry.lineno for entry in traceback.extract_tb(e.__traceback__)
+              if entry.filename.startswith(config["student"])]
+    line = e.lineno if isinstance(e, SyntaxError) else places[-1] if places else None
+    place = f"{config['lesson']}.py, line {line}" if line else ""
+    return [kind.__name__ for kind in type(e).__mro__][:8], str(e)[:300], place
+
+
+# ------------------------------------------------------------------------------------ what the instructor may look into
+
+NOTED = {event: kind for kind, events in {
+    "process": "os.fork os.forkpty os.posix_spawn os.system os.exec subprocess.Popen",
+    "signal": "os.kill os.killpg signal.pthread_kill",
+    "write": "os.remove os.rename os.mkdir os.rmdir os.truncate os.link os.symlink os.chmod",
+    "read": "open os.listdir os.scandir",
+    "inside": "gc.get_objects gc.get_referrers gc.get_referents sys.settrace sys.setprofile sys._current_frames",
+    "limit": "resource.setrlimit resource.prlimit",
+}.items() for event in events.split()}
+FAMILIES = {"socket.": "network", "ctypes.": "native"}
+
+
+def shared(descriptor):
+    """Map a page of memory, and close its descriptor and the copy of it that mmap keeps."""
+    copy = os.dup(descriptor)
+    os.close(copy)                                                     # the next copy gets the same number
+    page = mmap.mmap(descriptor, mmap.PAGESIZE)
+    assert os.path.sameopenfile(copy, descriptor)
+    os.close(copy)
+    os.close(descriptor)
+    return page
+
+
+def watcher():
+    """An audit hook that notes what a lesson has no need of, in memory that the parent reads.
+
+    No descriptor leads to this memory, so that none can be turned to another file.  All that the hook uses is its own:
+    the student's code may change everything else here.
+    """
+    board = shared(config["notes"])
+    place, kinds, families = {kind: k for k, kind in enumerate(config["noted"])}, dict(NOTED), dict(FAMILIES)
+    places = {sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), os.devnull}
+    ours = (*places, config["given"], config["student"], config["wire"])
+    writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+    kind_of, text = type, str
+
+    def hook(event, arguments):
+        kind = kinds.get(event) or families.get(event[:7])
+        if kind == "read":
+            path = arguments[0]
+            if kind_of(path) is not text:                              # a descriptor, which has been opened before
+                return
+            if event == "open" and arguments[2] & writing and path != "/dev/null":
+                kind = "write"
+            elif path.startswith(ours):
+                return
+        if kind:
+            board[place[kind]] = 1
+    return hook
+
+
+# ---------------------------------------------------------------------------------------------- the conversation
+
+def send(frame):
+    outgoing.write(frame)
+    outgoing.flush()
+
+
+def receive():
+    frame = wire.read(incoming)
+    if frame is None:                                                  # the parent has gone
+        os._exit(0)
+    return frame
+
+
+peer = wire.Peer(send, receive, resolve, name_of, record, describe, raised, define)
+sys.addaudithook(watcher())
+send(wire.pack(("ready",)))
+while True:
+    kind, *content = peer.message()
+    if kind == "call":
+        peer.serve(*content)

@@ -1,0 +1,1 @@
+"""A run: its processes, its stored results, and workers on other machines."""

@@ -1,0 +1,183 @@
+"""Which exercise is run by which scene or stability case, read from their source.
+
+A scene runs its methods and whatever it names of a lesson; a case runs what it names of the lesson that it is given.
+Both run all functions that these call in turn.  The table says where a wrong answer can show, and that no exercise is
+without such a place; whether the place notices is what the seeded faults of the tests show.
+"""
+
+import ast
+import inspect
+import re
+from functools import cache
+from pathlib import Path
+
+from .. import methods
+from ..scene import Method
+from ..stability.examine import all_cases
+from ..subject import modules
+
+STABILITY = "stability/"
+
+
+@cache
+def trees():
+    """{module below solutions: its syntax tree}, such as "pbd" and "given.ropes"."""
+    files = {path.relative_to(modules.SOLUTIONS).with_suffix(""): path for path in modules.SOLUTIONS.rglob("*.py")}
+    return {".".join(name.parts): ast.parse(path.read_text(encoding="utf-8")) for name, path in files.items()}
+
+
+@cache
+def parts(piece):
+    """All names, attributes and constants in a piece of source."""
+    return [node for node in ast.walk(piece) if isinstance(node, (ast.Name, ast.Attribute, ast.Constant))]
+
+
+def imported(tree, home=""):
+    """{name: (module below solutions, its name there, or None for a module)} of what a file imports from solutions."""
+    found = {}
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.ImportFrom):
+            continue
+        module = node.module or ""
+        if node.level:
+            module = ".".join([*home.split(".")[:-node.level], *([module] if module else [])])
+        elif module == "solutions" or module.startswith("solutions."):
+            module = module.removeprefix("solutions").removeprefix(".")
+        else:
+            continue
+        for alias in node.names:
+            found[alias.asname or alias.name] = (module, alias.name) if module else (alias.name, None)
+    return found
+
+
+@cache
+def calls():
+    """{(module, function): what it names of solutions} for every function of solutions."""
+    found = {}
+    for module, tree in trees().items():
+        there = imported(tree, module)
+        there |= {node.name: (module, node.name) for node in tree.body if isinstance(node, ast.FunctionDef)}
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef):
+                names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+                found[module, node.name] = {there[name] for name in names if name in there}
+    return found
+
+
+def defined(place):
+    """(module, function) where it is defined; None where it is no function.
+
+    A lesson may import it from elsewhere, or have it in its companion.
+    """
+    while place not in calls():
+        module, name = place
+        if (f"given.{module}", name) in calls():
+            return f"given.{module}", name
+        place = imports_of(module).get(name)
+        if place is None:
+            return None
+    return place
+
+
+@cache
+def imports_of(module):
+    """What a module below solutions imports, as `imported` says it; nothing where there is no such module."""
+    return imported(trees()[module], module) if module in trees() else {}
+
+
+def reached(roots):
+    """All functions that these call, directly or not, themselves included."""
+    found, waiting = set(), [place for root in roots if (place := defined(root))]
+    while waiting:
+        place = waiting.pop()
+        if place not in found:
+            found.add(place)
+            waiting += [there for called in calls()[place] if (there := defined(called))]
+    return found
+
+
+def named(nodes, there, lesson):
+    """What pieces of source name: imported names, attributes of a lesson, and names of its functions in quotes."""
+    for node in nodes:
+        for one in parts(node):
+            if isinstance(one, ast.Name) and one.id in there and there[one.id][1]:
+                yield there[one.id]
+            elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
+                owner = one.value.id
+                if owner == "lesson":
+                    yield lesson, one.attr
+                elif owner in there and there[owner][1] is None:
+                    yield there[owner][0], one.attr
+            elif isinstance(one, ast.Constant) and isinstance(one.value, str) and defined((lesson, one.value)):
+                yield lesson, one.value
+
+
+@cache
+def parsed(path):
+    """(syntax tree, what it imports from solutions, {name: its definition}) of a file."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    own = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    own |= {target.id: node for node in tree.body if isinstance(node, ast.Assign)
+            for target in node.targets if isinstance(target, ast.Name)}
+    return tree, imported(tree), own
+
+
+def roots_of_scene(name):
+    """What a scene names of the lessons, its methods included."""
+    scene = modules.bind_scene(name)
+    tree, there, _ = parsed(modules.scene_files()[name])
+    return {*named([tree], there, scene.lesson), *((r.who.lesson, r.who.function) for r in scene.our_runners)}
+
+
+def roots_of_case(case):
+    """What a stability case names of its lesson, in its own function and in what it uses of its file."""
+    _, there, own = parsed(Path(inspect.getsourcefile(case.examine)))
+    pieces, waiting = {}, [case.examine.__name__]
+    while waiting:
+        name = waiting.pop()
+        if name not in pieces:
+            pieces[name] = own[name]
+            waiting += [n.id for n in parts(own[name]) if isinstance(n, ast.Name) and n.id in own]
+    return {*named(pieces.values(), there, case.lesson), *methods_in(pieces.values())}
+
+
+def methods_in(nodes):
+    """The functions of the methods that pieces of source name, such as INTEGRATORS."""
+    for node in nodes:
+        for one in parts(node):
+            found = getattr(methods, one.id, ()) if isinstance(one, ast.Name) else ()
+            for method in [found] if isinstance(found, Method) else found if isinstance(found, tuple) else ():
+                if isinstance(method, Method):
+                    yield method.lesson, method.function
+
+
+def exercises(lesson):
+    """[(number, function)] of the exercises that wait in lessons/, in the order of the text."""
+    text = (modules.ROOT / "lessons" / f"{lesson}.py").read_text(encoding="utf-8")
+    return re.findall(r'raise NotImplementedError\("Exercise ([\d.]+): (\w+)"\)', text)
+
+
+@cache
+def places():
+    """{(module, function): the scenes and stability cases that run it}, in the order of the course."""
+    where = {}
+    for name in modules.in_course_order(modules.scene_names()):
+        for place in reached(roots_of_scene(name)):
+            where.setdefault(place, []).append(name)
+    for case in all_cases():
+        for place in reached(roots_of_case(case)):
+            where.setdefault(place, []).append(f"{STABILITY}{case.lesson}/{case.slug}")
+    return where
+
+
+@cache
+def table():
+    """{exercise: {"lesson", "function", "places"}} in the order of the course; places: scenes and stability cases."""
+    where = places()
+    return {number: {"lesson": lesson, "function": function, "places": where.get((lesson, function), [])}
+            for lesson in modules.lesson_names() for number, function in exercises(lesson)}
+
+
+def missing():
+    """The exercises that nothing in the report runs."""
+    return [f"{number} {row['function']}" for number, row in table().items() if not row["places"]]

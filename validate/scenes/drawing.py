@@ -1,0 +1,90 @@
+"""The records of a scene's picture: shapes, poses, points and arrows, without a drawing library."""
+
+import numpy as np
+
+from ..reference.orientation import quaternion
+
+
+def box(half):
+    """A box of these half sizes [m] along its own axes."""
+    return {"kind": "box", "size": [float(a) for a in half]}
+
+
+def sphere(r):
+    return {"kind": "sphere", "r": float(r)}
+
+
+def cylinder(r, length):
+    """A cylinder along its own z."""
+    return {"kind": "cylinder", "r": float(r), "length": float(length)}
+
+
+def capsule(r, length):
+    """A capsule along its own z; length between the centres of its two half spheres."""
+    return {"kind": "capsule", "r": float(r), "length": float(length)}
+
+
+def cone(r, length):
+    """A cone along its own z, its tip in the origin: a top on its point."""
+    return {"kind": "cone", "r": float(r), "length": float(length)}
+
+
+def mesh(vertices, triangles):
+    """A mesh of vertices (n, 3) [m] and triangles (m, 3) of their numbers."""
+    return {
+        "kind": "mesh",
+        "vertices": np.round(np.asarray(vertices, dtype=float), 6).tolist(),
+        "triangles": np.asarray(triangles).tolist(),
+    }
+
+
+def seen(tips):
+    """Return drawing coordinates (n, 2) of points in space: y to the right, z up, and x oblique towards the reader."""
+    return np.asarray(tips) @ np.array([[-0.4, -0.3], [1.0, 0.0], [0.0, 1.0]])
+
+
+def axes_seen(R, p):
+    """Return the centre of a body and the tips of its three axes, as points to draw."""
+    return seen(np.vstack((np.zeros(3), np.reshape(R, (3, 3)).T)))
+
+
+def axes_links(p):
+    """Return the links of `axes_seen`: from the centre to each tip."""
+    return [(0, 1), (0, 2), (0, 3)]
+
+
+def arms_and_target(arms, target, size):
+    """Return points to draw, to 10 µm: the joints and the end of each arm, and a cross of this size at the target."""
+    cross = np.asarray(target) + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((*arms, cross)), 5)
+
+
+def two_arms_and_target_links(n):
+    """Return the links of `arms_and_target` for two arms of n links each."""
+    cross = 2 * (n + 1)
+    arms = [(first + k, first + k + 1) for first in (0, n + 1) for k in range(n)]
+    return [*arms, (cross, cross + 1), (cross + 2, cross + 3)]
+
+
+def pose(x, R):
+    """Return the pose (7,) of a body at x with the rotation R, for the 3D player."""
+    return np.concatenate((x, quaternion(R)))
+
+
+def turned_in_place(R, p):
+    """Return the poses of one body with the rotation R whose centre stays in the origin."""
+    return [pose(np.zeros(3), np.reshape(R, (3, 3)))]
+
+
+def omega_and_L(R, p, reach):
+    """Return the arrows of a free body with p.moments() and p.omega() that started at R = 1.
+
+    L = I ω(0) is constant and drawn reach [m] long.  ω has the scale at which its tip stays in the plane normal to
+    L at L's tip: ω · L = 2E is kept, too.
+    """
+    R, I = np.reshape(R, (3, 3)), p.moments()
+    L, still = I * p.omega(), np.zeros(3)
+    return {
+        "ω": (still, reach * np.linalg.norm(L) / (L @ p.omega()) * R @ ((R.T @ L) / I)),
+        "L": (still, reach * L / np.linalg.norm(L)),
+    }

@@ -1,0 +1,1 @@
+"""Benchmarks beside the report: piles, targets, memory."""

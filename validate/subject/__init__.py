@@ -1,0 +1,1 @@
+"""Whose code is measured: module sets, compiled twins, loading, and the lessons made from the answers."""

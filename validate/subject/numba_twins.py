@@ -1,0 +1,204 @@
+"""How a plain function is compiled with numba: the compiled twins, their cache, and four changes to numba itself.
+
+A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
+looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
+"""
+
+import os
+import shutil
+import time
+import types
+import uuid
+import warnings
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+CACHE = Path(__file__).resolve().parents[2] / ".cache" / "compiled"
+INLINED = "vectors"          # its functions become part of their callers: a call would pass whole arrays, and a step of
+                             # a spring net would take 2.5 times as long
+SAVE_WITHIN = 10.0           # wait for another process that saves [s]
+CACHED_SETS = 6              # digests kept on disk: some edits back
+IN_USE = 3600.0              # a digest that was asked for so long ago [s] may still be in use by another process
+
+
+def compiled_twins(module, names, space, cache):
+    """{name: compiled function}, whose globals are `space`, for those functions of a module.
+
+    cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
+    its functions call others there.
+    """
+    from numba import config, njit
+    config.CACHE_DIR = cache
+    twins = {}
+    for name in names:
+        plain = space[name]
+        copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
+        copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
+        inline = "always" if module.__name__.rpartition(".")[2] == INLINED else "never"
+        twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(copy)
+        # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
+        _forget_literals(twins[name])
+        twins[name]._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{plain.__qualname__}")))
+    return twins
+
+
+def _forget_literals(twin):
+    """Let callers compile a twin once for all strings and whole numbers that they write down.
+
+    numba would compile it for each of them: every check of the input again for the name of each thing that it checks.
+    """
+    from numba.core.types import unliteral
+    fold = twin._compiler.fold_argument_types
+
+    def folded(arguments, keywords):
+        signature, kinds = fold(arguments, keywords)
+        return signature, tuple(map(unliteral, kinds))
+    twin._compiler.fold_argument_types = folded
+
+
+class CachedDispatch:
+    """A compiled function that looks up its machine code by the kinds of its arguments:
+    numba's own search takes 50 µs per call.
+    """
+
+    def __init__(self, twin):
+        self.twin, self.known = twin, {}
+
+    def __call__(self, *arguments):
+        # a lesson's function may take another
+        arguments = [a.twin if isinstance(a, CachedDispatch | CheckedFirst) else a for a in arguments]
+        kinds = tuple(map(_kind, arguments))
+        if kinds not in self.known:
+            from numba import typeof
+            exact = tuple(map(typeof, arguments))
+            if exact not in self.twin.overloads:
+                self.twin.compile(exact)
+            self.known[kinds] = self.twin.get_overload(exact)
+        return self.known[kinds](*arguments)
+
+
+class CheckedFirst:
+    """A compiled function whose records are checked in plain Python before it starts."""
+
+    def __init__(self, twin, check, compiled=None):
+        self.twin, self.check, self.compiled = twin, check, compiled or twin
+
+    def __call__(self, *arguments):
+        self.check(*arguments)
+        return self.compiled(*(a.twin if isinstance(a, CheckedFirst) else a for a in arguments))
+
+    def __getattr__(self, name):                                     # py_func, overloads … are those of the twin
+        if name == "twin":
+            raise AttributeError(name)
+        return getattr(self.twin, name)
+
+
+def passed_over(p, state):
+    """Stand in for check_record where compiled code calls it: CheckedFirst has made the call before."""
+
+
+def cached_dispatch(function):
+    """Return a compiled function as a scene's plain run calls it."""
+    if isinstance(function, CheckedFirst):
+        return CheckedFirst(function.twin, function.check, CachedDispatch(function.twin))
+    return CachedDispatch(function)
+
+
+def _kind(argument):
+    """The properties of an argument that decide which machine code it needs."""
+    if isinstance(argument, np.ndarray):
+        return argument.dtype, argument.ndim, argument.flags.num
+    if isinstance(argument, tuple):
+        return type(argument), *map(_kind, argument)
+    return argument if hasattr(argument, "py_func") else type(argument)
+
+
+@cache
+def _make_dispatcher_constants_cacheable():
+    """Let numba cache functions that pass a function on: it refuses to,
+    because it would store an address that nobody reads.
+    """
+    import numba.experimental.function_type  # noqa: F401
+    from numba import types
+    from numba.core.imputils import lower_constant
+    lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
+
+
+@cache
+def _pass_checked_functions_on():
+    """Let a compiled function take a CheckedFirst as an argument: the twin in it is meant."""
+    from numba.extending import typeof_impl
+
+    @typeof_impl.register(CheckedFirst)
+    def _(checked, context):
+        return typeof_impl(checked.twin, context)
+
+
+@cache
+def _shorten_broadcast_error():
+    """Replace numba's detailed message for `rows[k] = row` by a short one:
+    compiling the detailed one dominates compile time.
+    """
+    from numba.extending import overload
+    from numba.np import arrayobj
+
+    def shapes_differ(src_shapes, index_shape):
+        """Stands in for numba's function of that purpose."""
+
+    @overload(shapes_differ)
+    def _(src_shapes, index_shape):
+        def say(src_shapes, index_shape):
+            raise ValueError("an array does not fit where it is assigned to")
+        return say
+    if hasattr(arrayobj, "raise_with_shape_context"):                # of numba 0.61 and later
+        arrayobj.raise_with_shape_context = shapes_differ
+
+
+@cache
+def _save_one_at_a_time():
+    """Let one process at a time save to a cache, and let numba go on when it cannot: it then compiles again next time.
+
+    numba reads the index of a function, adds an entry and writes it back.  Two processes at once lose an entry, or give
+    the machine code of both the same file.
+    """
+    from filelock import FileLock
+    from numba.core.caching import Cache
+    keep = Cache.save_overload
+
+    def keep_if_possible(cache, signature, data):
+        with suppress(OSError), FileLock(Path(cache.cache_path) / "lock", timeout=SAVE_WITHIN):    # or the disk is full
+            keep(cache, signature, data)
+    Cache.save_overload = keep_if_possible
+
+
+def use_cache(digest):
+    """Return the cache folder of this digest, as text, and delete those that nobody has asked for for long."""
+    import numba
+    from numba.core.config import _OptLevel
+    _make_dispatcher_constants_cacheable()
+    _pass_checked_functions_on()
+    _shorten_broadcast_error()
+    _save_one_at_a_time()
+    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
+    warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all
+    folder = CACHE / digest
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:                                                  # a read-only installation: compile anew each time
+        import tempfile
+        folder = Path(tempfile.mkdtemp(prefix="workbook-"))
+    os.utime(folder)
+    forget_old_sets(folder.parent)
+    return str(folder)
+
+
+def forget_old_sets(cache):
+    """Delete all folders of a cache but the newest CACHED_SETS and those that another process may be using."""
+    with suppress(OSError):                                          # another process deletes them at this moment
+        newest = sorted(cache.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+        for old in newest[CACHED_SETS:]:
+            if old.stat().st_mtime < time.time() - IN_USE:
+                shutil.rmtree(old, ignore_errors=True)
