@@ -113,7 +113,7 @@ def test_the_setup_installs_sandbox_interpreter_and_the_locked_versions(place, t
     assert run.returncode == 0, run.stderr
     lines, source = log.read_text().splitlines(), place / "source"
     assert "apt-get install -y bubblewrap libseccomp2" in lines and f"{there} -m venv {source}/venv" in lines
-    assert lines[-1] == f"pip install -q -c {source}/workbook/constraints.txt -e {source}/workbook"
+    assert lines[-1] == f"pip install -q -c {source}/workbook/constraints.txt -e {source}/workbook[student]"
 
 
 def test_the_setup_stops_with_a_sentence_where_python_is_too_old(place):

@@ -4,6 +4,7 @@ import ast
 import contextlib
 import io
 import re
+import sys
 import tomllib
 from hashlib import sha256
 
@@ -149,3 +150,24 @@ def test_a_lesson_imports_only_earlier_lessons_and_given_code_that_calls_no_late
 def test_few_files_lie_at_the_root_of_validate():
     files = {path.name for path in (ROOT / "validate").glob("*.py")} - {"__init__.py"}
     assert files == {"__main__.py", "check.py", "methods.py", "products.py", "scene.py"}
+
+
+OTHER_NAMES = {              # of distributions that are not called like their module
+    "PIL": "pillow", "_pytest": "pytest", "jupyter_client": "jupyter-client", "mujoco": "mujoco-core",
+    "pybullet_utils": "pybullet", "sphinxcontrib": "sphinxcontrib-katex", "xdist": "pytest-xdist", "yaml": "pyyaml",
+    "zmq": "pyzmq"}
+BESIDE_THE_WORKER = {"shipping", "wire"}     # files that the sandbox holds beside grading/worker.py
+
+
+def test_every_package_that_is_imported_is_declared():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    named = [*project["dependencies"], *(one for extra in project["optional-dependencies"].values() for one in extra)]
+    declared = {re.match(r"[\w.-]+", one)[0].lower() for one in named}
+    known = modules_of("solutions", "validate", "tests")
+    own = {"solutions", "validate", "tests", "lessons"}
+    for name, path in known.items():
+        if "attacks" in name:                                # programs that a student might hand in
+            continue
+        tops = {other.partition(".")[0] for other in imports_of(name, path, known)} - {""}
+        for top in tops - own - BESIDE_THE_WORKER - sys.stdlib_module_names:
+            assert OTHER_NAMES.get(top, top).lower() in declared, f"{name} imports {top}"

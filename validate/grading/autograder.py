@@ -57,7 +57,7 @@ if ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
     exit 1
 fi
 "$python" -m venv "$source/venv"
-"$source/venv/bin/pip" install -q -c "$source/workbook/constraints.txt" -e "$source/workbook"
+"$source/venv/bin/pip" install -q -c "$source/workbook/constraints.txt" -e "$source/workbook[student]"
 """
 RUN = """#!/usr/bin/env bash
 # Gradescope runs this for every submission, and shows results/results.json.
@@ -185,7 +185,7 @@ jobs:
         with:
           python-version: "3.11"
       - name: Install the workbook
-        run: python3 -m venv .venv && .venv/bin/pip install -q -c constraints.txt -e .
+        run: python3 -m venv .venv && .venv/bin/pip install -q -c constraints.txt -e ".[student]"
 """
 STEP = """      - name: {name}
         id: {id}
