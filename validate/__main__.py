@@ -1,6 +1,7 @@
 """The command line: `validate` measures scenes and writes the report, `validate list` names them,
 `validate record` keeps traces, `validate summary` prints the main results, `validate compare` what
-changed, `validate audit` whether a report follows from its raw rows.
+changed, `validate audit` whether a report follows from its raw rows, `validate limits` how sharp its limits are.
+`validate piles` and `validate targets` time our code against the engines.
 """
 
 import os
@@ -42,6 +43,7 @@ DEPTH = typer.Option("--quick/--full", help="Compile, refine and time only what 
 LIVE = typer.Option(help="Run only this engine live (may be repeated).")
 CHANGE = typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")
 PROCESSES = typer.Option(min=1, help="Processes for everything that is not timed.")
+ROUNDS = Annotated[int, typer.Option(min=3, help="How often each is timed, in turn.")]
 EXECUTOR = typer.Option(metavar="tcp://HOST:PORT", help="Measure on this Dask cluster instead of in processes here.")
 
 
@@ -195,6 +197,37 @@ def summary(
     if not (mark and closing):
         raise BadInput(f"file {str(into)!r}", f"without two marks {RESULTS}", "put them where the table belongs")
     into.write_text(f"{head}{mark}\n{text}{closing}{tail}", encoding="utf-8")
+
+
+@app.command("limits")
+def limits(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report")):
+    """Print how many times larger than the error the limits of a report are, and its loosest curves."""
+    from .report.limits import show
+    show(report)
+
+
+@app.command("piles")
+def piles(
+    kinds: Annotated[list[str] | None, typer.Argument(help="discs, boxes, spheres or bricks; else all")] = None,
+    bodies: Annotated[int, typer.Option(min=1)] = 1000,
+    rounds: ROUNDS = 15,
+    growth: Annotated[bool, typer.Option("--growth", help="How the cost of a step grows.")] = False,
+    memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
+):
+    """Time piles of lesson 9 against the engines, as ratios measured in one run."""
+    from .speed.piles import measure
+    measure(kinds or [], bodies, rounds, growth, memory)
+
+
+@app.command("targets")
+def targets(
+    arms: Annotated[list[str] | None, typer.Argument(help="planar or spatial; else both")] = None,
+    targets: Annotated[int, typer.Option(min=1)] = 1000,
+    rounds: ROUNDS = 15,
+):
+    """Time inverse kinematics of lesson 11 against pybullet, as ratios measured in one run."""
+    from .speed.targets import measure
+    measure(arms or [], targets, rounds)
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for

@@ -1,4 +1,4 @@
-"""`python -m validate.report.limits` says how sharp the limits of a report are."""
+"""`validate limits` says how sharp the limits of a report are."""
 
 import json
 
@@ -29,7 +29,7 @@ def test_rows_without_a_judgement_above_round_off_do_not_count():
 
 def test_the_tables_name_the_loosest_curve(tmp_path, capsys):
     (tmp_path / "report.json").write_text(json.dumps(report((0.1, 0.01, None), (0.1, 0.0, None))))
-    limits.main([str(tmp_path)])
+    limits.show(tmp_path)
     shown = capsys.readouterr().out
     assert "integrators" in shown and "Euler" in shown and "inf" in shown
 
@@ -37,7 +37,7 @@ def test_the_tables_name_the_loosest_curve(tmp_path, capsys):
 def test_a_report_of_round_off_only_is_refused(tmp_path):
     (tmp_path / "report.json").write_text(json.dumps(report((1e-12, 0.0, None))))
     with pytest.raises(BadInput, match="round-off"):
-        limits.main([str(tmp_path)])
+        limits.show(tmp_path)
 
 
 @pytest.mark.parametrize(("method", "factor"), [

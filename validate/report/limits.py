@@ -1,13 +1,11 @@
-"""How sharp the limits of a report are: `python -m validate.report.limits [REPORT]`.
+"""How sharp the limits of a report are: `validate limits [REPORT]`.
 
 A limit is the largest error that theory allows a run.  Limit over error says how much larger the error could have been
 before anybody had noticed.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left out: it
 says how exact a computer is.  A row with a prediction is judged from below as well.
 """
 
-import argparse
 import math
-from pathlib import Path
 from statistics import quantiles
 from typing import NamedTuple
 
@@ -17,7 +15,6 @@ from rich.table import Table
 from solutions.checks import BadInput
 
 from ..measure.accuracy import ASYMPTOTIC
-from ..run.processes import one_sentence
 from ..run.store import stored_report
 from .audit import distance
 
@@ -84,10 +81,8 @@ def loosest(rows):
     return table
 
 
-def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python -m validate.report.limits", description=__doc__.splitlines()[0])
-    parser.add_argument("report", nargs="?", type=Path, default=Path("report"), help="folder of a report")
-    report = parser.parse_args(arguments).report
+def show(report):
+    """Print how sharp the limits of a report are.  Raises BadInput for a report without limits."""
     rows = list(rows_of(stored_report(report)))
     if not rows:
         raise BadInput(f"report {str(report)!r}", "without a limit above round-off", "name a report of more scenes")
@@ -95,8 +90,3 @@ def main(arguments=None):
     for table in (table_of("lesson", rows, lambda row: row.lesson), table_of("scene", rows, lambda row: row.scene),
                   loosest(rows)):
         console.print(table, "")
-
-
-if __name__ == "__main__":
-    with one_sentence("limits"):
-        main()

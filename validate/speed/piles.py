@@ -1,6 +1,4 @@
-"""Piles of lesson 9 against engines, as ratios measured in one run: `python -m validate.speed.piles [KIND …]`.
-
-Options: `--bodies N`, `--rounds N`, `--growth` (of the cost of a step with the number of bodies), and `--memory`.
+"""Piles of lesson 9 against engines, as ratios measured in one run: `validate piles [KIND …]`.
 
 Kinds: discs, boxes (in the plane, against pymunk), spheres, bricks (in space, against pybullet).  Both run the same
 bodies from the same settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping.  Times are CPU times of
@@ -10,7 +8,6 @@ The cost of a step should grow as n to the power of 1, within a tenth, from 100 
 turn.  The memory is that of the whole process, compiler included, with 10,000 spheres: at most 4 GiB.
 """
 
-import argparse
 import sys
 import time
 
@@ -19,6 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..engines.contact import DT, KINDS, BulletPile, PymunkPile, fallen
+from ..scene import check_known
 from ..subject import modules
 
 BLOCK = 40                   # steps of one timing
@@ -134,32 +132,29 @@ def remember(lesson, n=10_000):
           f"{before:.2f} GiB before; goal: {ROOM:g} GiB")
 
 
-def main(arguments):
-    parser = argparse.ArgumentParser(prog="python -m validate.speed.piles", description=__doc__.splitlines()[0])
-    parser.add_argument("kinds", nargs="*", choices=[[], *KINDS], default=[])
-    parser.add_argument("--bodies", type=int, default=1000)
-    parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--growth", action="store_true", help="how the cost grows from 100 to 10,000 bodies")
-    parser.add_argument("--memory", action="store_true", help="memory of 10,000 spheres")
-    asked = parser.parse_args(arguments)
-    lesson = modules.bind("contact", compiled=True)
-    if asked.growth or asked.memory:
-        if asked.memory:
-            remember(lesson)
-        if asked.growth:
-            grow(lesson, asked.kinds or KINDS, asked.rounds)
-        return 0
+def race(lesson, names, bodies, rounds):
+    """Print the time of a step and the overlap, ours and each engine's."""
     table = Table("pile", "engine", "time, ours / engine", "middle half", "goal", "ours [ms]", "engine [ms]",
                   "overlap, ours [mm]", "engine [mm]")
-    for name in asked.kinds or KINDS:
-        for row in compare(lesson, name, asked.bodies, asked.rounds):
+    for name in names:
+        for row in compare(lesson, name, bodies, rounds):
             label, ratio, low, high, goal, ours, other, most, mean, most_other, mean_other = row
-            table.add_row(f"{asked.bodies} {name}", label, f"{ratio:.3f}", f"{low:.3f}–{high:.3f}", f"{goal:g}",
+            table.add_row(f"{bodies} {name}", label, f"{ratio:.3f}", f"{low:.3f}–{high:.3f}", f"{goal:g}",
                           f"{ours:.3f}", f"{other:.3f}",
                           f"{most:.2f}, mean {mean:.3f}", f"{most_other:.2f}, mean {mean_other:.3f}")
     Console(width=160).print(table)
-    return 0
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def measure(kinds, bodies, rounds, growth, memory):
+    """Print the memory, the growth, or else the races of some kinds of piles; of all without names.
+
+    Raises BadInput for an unknown kind.
+    """
+    check_known("pile", kinds, KINDS)
+    lesson = modules.bind("contact", compiled=True)
+    if memory:
+        remember(lesson)
+    if growth:
+        grow(lesson, kinds or KINDS, rounds)
+    if not (memory or growth):
+        race(lesson, kinds or KINDS, bodies, rounds)

@@ -1,5 +1,4 @@
-"""Inverse kinematics of lesson 11 against pybullet, as ratios measured in one run: `python -m validate.speed.targets
-[ARM …] [--targets N] [--rounds N]`.
+"""Inverse kinematics of lesson 11 against pybullet, as ratios measured in one run: `validate targets [ARM …]`.
 
 Arms: planar (three joints, in the plane), spatial (six joints, a place in space).  Both solve the same targets, drawn
 from angles and so within reach, all from the same start, in turn.  Times are CPU times of one thread; of pybullet only
@@ -9,18 +8,19 @@ pybullet's damping of ½ m² is far from the best for these arms, and most of th
 arm gives it our damping: then both take as many iterations, and the ratio is one of implementations.
 """
 
-import argparse
-import sys
 import time
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from solutions.checks import BadInput
 from solutions.support.chains import make_arm_2d, make_arm_3d
 
 from ..engines.kinematics import BulletChain
+from ..products import PYBULLET
 from ..reference.kinematics import spatial_end
+from ..scene import check_known
 from ..subject import modules
 
 THRESHOLD = 1e-4             # residual that pybullet asks for by default [m]
@@ -98,28 +98,18 @@ def compare(lesson, name, n, rounds):
                *(1e6 * np.median(times, axis=0) / n), found, left)
 
 
-def main(arguments):
-    parser = argparse.ArgumentParser(prog="python -m validate.speed.targets", description=__doc__.splitlines()[0])
-    parser.add_argument("arms", nargs="*", choices=[[], *ARMS], default=[])
-    parser.add_argument("--targets", type=int, default=1000)
-    parser.add_argument("--rounds", type=int, default=15)
-    asked = parser.parse_args(arguments)
+def measure(arms, targets, rounds):
+    """Print the races of some arms; of all without names.  Raises BadInput for an unknown arm, or without pybullet."""
+    check_known("arm", arms, ARMS)
+    if not PYBULLET.installed():
+        raise BadInput("engine 'pybullet'", "not installed", "run this where it is: nothing else can be compared")
     lesson = modules.bind("kinematics", compiled=True)
     table = Table("arm", "engine", "time, engine / ours", "middle half", "goal", "ours [µs]", "engine [µs]",
                   "residual, ours [m]", "engine [m]")
     spread = lambda left: f"median {np.median(left):.0e}, worst {np.max(left):.0e}"
-    try:
-        for name in asked.arms or ARMS:
-            for row in compare(lesson, name, asked.targets, asked.rounds):
-                label, ratio, low, high, goal, *times, found, left = row
-                table.add_row(f"{asked.targets} targets, {name}", label, f"{ratio:.1f}", f"{low:.1f}–{high:.1f}",
-                              goal, *(f"{one:.2f}" for one in times), spread(found), spread(left))
-    except ImportError:
-        print("pybullet is not installed here, and nothing can be compared", file=sys.stderr)
-        return 1
+    for name in arms or ARMS:
+        for row in compare(lesson, name, targets, rounds):
+            label, ratio, low, high, goal, *times, found, left = row
+            table.add_row(f"{targets} targets, {name}", label, f"{ratio:.1f}", f"{low:.1f}–{high:.1f}",
+                          goal, *(f"{one:.2f}" for one in times), spread(found), spread(left))
     Console(width=180).print(table)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -306,7 +306,7 @@ SCENE = Scene(
     omitted_methods="sweeps and Murty's method alone are missing: they move no bodies, and a matrix of 2,000 contacts "
                     "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "
                     "1,000 bodies, because 50 iterations do not find the forces; the command "
-                    "python -m validate.speed.piles compares piles of 1,000 bodies",
+                    "validate piles compares piles of 1,000 bodies",
     moves=False,
     refinement="",
     quantity_names=quantity_names,
