@@ -18,7 +18,7 @@ from validate.measure import record, traces
 from validate.products import PYMUNK, Product
 from validate.report import plots, summary
 from validate.run import processes, store
-from validate.run.run import run as validation
+from validate.run import run as validation
 from validate.subject import modules
 from validate.subject.generate import exercises, stub
 
