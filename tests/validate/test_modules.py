@@ -132,8 +132,8 @@ def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     (tmp_path / "integrators.py").write_text(text + own)
     scene = modules.bind_scene("oscillator", tmp_path)
     p = scene.parameters
-    assert scene.run(None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
-    assert modules.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
+    assert scene.run(scene.lessons, None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
+    assert modules.bind_scene("oscillator").lessons.integrators.advance.__module__ == "solutions.integrators"
 
 
 OWN_EVENT = "\n\ndef advance_to_event(acceleration, t, x, v, dt, p):\n    return dt, x + 42.0, v\n"
@@ -151,9 +151,9 @@ def test_a_companion_calls_the_exercises_of_its_subject(tmp_path, compiled):
     arguments = ours.driven_acceleration, 0.0, zero, zero, 0.1, ours.Block(np.eye(2)[1], 0.5, 0.4, zero, zero, 0.0)
     assert ours.event_step(*arguments)[0][0] == 0.0 and mine.event_step(*arguments)[0][0] == 42.0
     scene = modules.bind_scene("stick_slip", tmp_path, compiled)
-    begins = scene.run.__globals__["slip_times"]
-    assert getattr(begins, "twin", begins) is getattr(mine.slip_times, "twin", mine.slip_times)
-    assert modules.PLAIN.scene("stick_slip").run.__globals__["slip_times"].__module__ == "solutions.support.friction"
+    step = scene.lessons.friction.event_step
+    assert getattr(step, "twin", step) is getattr(mine.event_step, "twin", mine.event_step)
+    assert modules.bind_scene("stick_slip").lessons.friction.event_step.__module__ == "solutions.support.friction"
 
 
 def test_a_companion_imports_exercises_from_its_lesson_only_and_no_lesson_imports_it():
@@ -182,9 +182,9 @@ def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
     plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)
     p = plain.cases["rough bowl"]
     ends = []
-    for scene, compiled in ((plain, False), (fast, True)):
-        step = modules.module_set(compiled=compiled).lesson("friction").position_friction_step
-        ends.append(scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, 0.01, 20), p))
+    for scene in (plain, fast):
+        step = scene.lessons.friction.position_friction_step
+        ends.append(scene.observe(scene.run(scene.lessons, step, scene.law, scene.start(p), p, 0.01, 20), p))
     assert np.array_equal(*ends)
 
 
