@@ -593,10 +593,13 @@ class CompiledModules(ModuleSet):
         return self._outside(name, self._with_companion(name, self.solution(name)), vars(PLAIN.lesson(name)))
 
     def _law(self, name, scene):
-        """The law of a scene: a lesson's is compiled already, and one of its own calls compiled lessons."""
+        """The law of a scene: a lesson's or a given one is shared with others, and one of its own is compiled here."""
         law = scene.acceleration and scene.acceleration(Lessons(self._inside))
         if law is None or hasattr(law, "py_func"):
             return law
+        source, origin = self._home(law)
+        if source == "solutions":
+            return getattr(self.given(origin), law.__name__)
         return compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes"))
 
     def _inside(self, name):

@@ -65,6 +65,20 @@ print(sum(lesson.{function}.stats.cache_misses.values()))
 
 
 @needs_numba
+@pytest.mark.parametrize("name", ["kepler", "linear_drag", "wind"])          # a given law, its own, one with an exercise
+def test_a_second_process_compiles_no_law_of_a_scene(name):
+    ask = f"""
+from validate import modules
+scene = modules.bind_scene({name!r}, compiled=True)
+integrators, p = scene.lessons.integrators, scene.parameters
+scene.run(scene.lessons, integrators.rk4_step, scene.law, scene.start(p), p, 0.01, 5)
+print(sum(sum(twin.stats.cache_misses.values()) for twin in (scene.law, integrators.advance.twin)))
+"""
+    in_a_new_process(ask)
+    assert in_a_new_process(ask) == "0"
+
+
+@needs_numba
 def test_two_processes_that_save_at_once_lose_nothing(tmp_path):
     (tmp_path / "lower.py").write_text("def base(x):\n    return x + x\n")
     ask = """
