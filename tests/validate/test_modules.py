@@ -65,7 +65,7 @@ print(sum(lesson.{function}.stats.cache_misses.values()))
 
 
 @needs_numba
-@pytest.mark.parametrize("name", ["kepler", "linear_drag", "wind"])          # a given law, its own, one with an exercise
+@pytest.mark.parametrize("name", ["kepler", "linear_drag", "wind"])  # a given law, its own, one with an exercise
 def test_a_second_process_compiles_no_law_of_a_scene(name):
     ask = f"""
 from validate import modules
