@@ -143,6 +143,18 @@ def called_by_scene(name):
     return {call for text in texts for call in called_of_lessons(ast.parse(text))}
 
 
+def load_lessons_of(name, scene, lessons):
+    """Load what a scene calls.  Raises Unloadable where a lesson cannot be loaded, or lacks a function.
+
+    A step that is lacking fails later, as one that is not written: the others can run.
+    """
+    steps = {(r.who.lesson, r.who.function) for r in scene.our_runners}
+    for lesson, _ in steps:
+        getattr(lessons, lesson)
+    for lesson, function in called_by_scene(name) - steps:
+        part(getattr(lessons, lesson), function)
+
+
 def called_of_lessons(tree):
     """{(lesson, function)} of what source calls of `lessons`: lessons.friction.event_step, and friction.event_step
     where the same function says  friction = lessons.friction.
@@ -288,6 +300,7 @@ class PlainModules:
     @cache  # noqa: B019
     def scene(self, name):
         scene = written_scene(name)
+        load_lessons_of(name, scene, self.lessons)
         return replace(scene, lessons=self.lessons, law=scene.acceleration and scene.acceleration(self.lessons))
 
 
@@ -446,17 +459,10 @@ class ModuleSet:
     # ------------------------------------------------------------------------------------------ scenes
 
     def scene(self, name):
-        """A scene with the lessons of this set.
-
-        Raises Unloadable where a lesson that it calls cannot be loaded, or lacks the function.
-        """
+        """A scene with the lessons of this set."""
         if name not in self.scenes:
             scene = written_scene(name)
-            steps = {(r.who.lesson, r.who.function) for r in scene.our_runners}
-            for lesson, _ in steps:
-                getattr(self.lessons, lesson)
-            for lesson, function in called_by_scene(name) - steps:
-                part(getattr(self.lessons, lesson), function)
+            load_lessons_of(name, scene, self.lessons)
             self.scenes[name] = replace(scene, lessons=self.lessons, law=self._law(name, scene))
         return self.scenes[name]
 
