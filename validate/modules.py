@@ -286,22 +286,34 @@ def report_text(thing):
     return text.replace("*Source:*", "Source:").replace("*Left out:*", "Left out:").strip()
 
 
-class PlainModules:
+class Binding:
+    """What all module sets do with scenes."""
+
+    def __init__(self, lesson):
+        self.lessons, self.scenes = Lessons(lesson), {}
+
+    def scene(self, name):
+        """A scene with the lessons of this set."""
+        if name not in self.scenes:
+            scene = written_scene(name)
+            load_lessons_of(name, scene, self.lessons)
+            self.scenes[name] = replace(scene, lessons=self.lessons, law=self._law(name, scene))
+        return self.scenes[name]
+
+    def _law(self, name, scene):
+        return scene.acceleration and scene.acceleration(self.lessons)
+
+
+class PlainModules(Binding):
     """The packages as imported."""
 
     def __init__(self):
-        self.lessons = Lessons(self.lesson)
+        super().__init__(self.lesson)
 
     @cache  # noqa: B019    there is one PlainModules
     def lesson(self, name):
         module, companion = importlib.import_module(f"solutions.{name}"), f"support.{name}"
         return both(module, importlib.import_module(f"solutions.{companion}")) if companion in companions() else module
-
-    @cache  # noqa: B019
-    def scene(self, name):
-        scene = written_scene(name)
-        load_lessons_of(name, scene, self.lessons)
-        return replace(scene, lessons=self.lessons, law=scene.acceleration and scene.acceleration(self.lessons))
 
 
 PLAIN = PlainModules()
@@ -321,16 +333,16 @@ def _meant_by_given_code(folder):
     return {name for name in here if name not in named or withheld(name)}
 
 
-class ModuleSet:
+class ModuleSet(Binding):
     """Copies of the subject's lessons, and of the given modules that call their exercises, under a package name of
     their own, that refer to each other.
     """
 
     def __init__(self, folder, digest, speed="plain"):
+        super().__init__(self.lesson_of_scenes)
         self.name, self.folder, self.done = f"_{speed}_{digest}", folder, {}
         self.stuck, self.loading = {}, set()  # {lesson: its Unloadable}, lessons being loaded
         self.whole = {}                       # {lesson: it and its companion}
-        self.lessons, self.scenes = Lessons(self.lesson_of_scenes), {}
         paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": []}
         for package, path in paths.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
@@ -457,17 +469,6 @@ class ModuleSet:
         return found
 
     # ------------------------------------------------------------------------------------------ scenes
-
-    def scene(self, name):
-        """A scene with the lessons of this set."""
-        if name not in self.scenes:
-            scene = written_scene(name)
-            load_lessons_of(name, scene, self.lessons)
-            self.scenes[name] = replace(scene, lessons=self.lessons, law=self._law(name, scene))
-        return self.scenes[name]
-
-    def _law(self, name, scene):
-        return scene.acceleration and scene.acceleration(self.lessons)
 
     def lesson_of_scenes(self, name):
         """A lesson as scenes call it: the subject's; where it has none, the worked one."""
