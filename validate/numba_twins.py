@@ -43,15 +43,14 @@ def compiled_twins(module, names, space, cache):
 def compiled(function, name, cache, inline="never"):
     """Return the twin of a function, which may be a closure that calls other twins.
 
-    name: the same in every process, and no other function's.  By it alone numba recognises the function, as an
-    argument too, in a cache on disk.  Of a closure numba would pickle all that it holds, differently in each process.
+    name: the same in every process, and no other function's.  numba recognises a function argument in its disk cache
+    by the id that is made from it.
     """
     from numba import config, njit
     config.CACHE_DIR = cache
     twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(function)
     _forget_literals(twin)
     twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, name)))
-    twin._cache._index_key = lambda signature, codegen: (signature, codegen.magic_tuple(), name)
     return twin
 
 
