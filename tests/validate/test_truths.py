@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from validate import modules
+from validate.engines.springs import net_points, start_net
 from validate.reference.springs import modes
 from validate.scenes.friction import stick_slip
 from validate.scenes.inertia_tensors import tensors
@@ -45,7 +46,7 @@ def test_the_lectures_steps_err_as_the_scene_says(samples, said, digit):
     p, steps = scene.parameters, round(samples_per_frame.FRAMES_PER_SECOND * samples * scene.duration)
     step, dt = LESSONS.integrators.average_velocity_step, scene.duration / steps
     end = scene.observe(scene.run(scene.lessons, step, scene.law, scene.start(p), p, dt, steps), p)
-    off = samples_per_frame.net_points(end - scene.truth(p, scene.duration), p)
+    off = net_points(end - scene.truth(p, scene.duration), p)
     assert np.linalg.norm(off, axis=1).max() == pytest.approx(said, abs=digit)
 
 
@@ -55,5 +56,5 @@ def test_a_net_of_the_lesson_has_the_springs_and_the_rest_state_of_the_reference
     offsets = springs.STRUCTURAL + springs.SHEAR * p.shear + springs.BEND * p.bend
     ours = {tuple(sorted(pair)) for pair in springs.grid_pairs(p.n, p.n, offsets).tolist()}
     assert ours == set(map(tuple, net.pairs.tolist()))
-    _, v, network = spring_net.start_net(p)
+    _, v, network = start_net(p)
     assert np.abs(springs.spring_network_acceleration(0.0, spring_net.rest_positions(net), v, network)).max() < 1e-10
