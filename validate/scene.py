@@ -127,7 +127,7 @@ class Scene:
     duration: float          # T, the output time [s]; 1 where nothing moves
     steps: tuple             # numbers of steps over T, coarse to fine: they divide T and span two decades
     start: Callable          # (p) → state, a tuple of arrays; refuses impossible parameters
-    run: Callable            # (step, acceleration, state, p, dt, steps) → state: only this is timed
+    run: Callable            # (lessons, step, acceleration, state, p, dt, steps) → state: only this is timed
     observe: Callable        # (state, p) → flat array that is compared with the truth at T
     truth: Callable          # (p, t) → the same quantities
     truth_uncertainty: float  # of the truth, relative [-]
@@ -136,14 +136,14 @@ class Scene:
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
     full_loop: str = ""      # why the whole loop of lesson 10 cannot stand for a method here; else it is measured
-    acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
+    acceleration: Callable | None = None     # (lessons) → its law, (t, x, v, p) → a [m/s²]
     omitted_methods: str = ""                # why methods or engines that a reader expects are missing
     slow_cases: tuple = ()                   # names of cases that only --full runs
     moves: bool = True                       # False: nothing moves; no start is compared with the truth
     refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
     quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers
     published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
-    sanity_checks: Callable | None = None    # () → ((claim, found, expected, tolerance), …) about the truth itself
+    sanity_checks: Callable | None = None    # () → ((claim, found, expected, tolerance), …) about the truth alone
     links: Callable | None = None            # (p) → pairs of points that the picture joins
     link_look: str = "rod"                   # how they are drawn: rod, spring, or spring and damper
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
@@ -156,6 +156,9 @@ class Scene:
     ground: bool = False                     # draw the plane z = 0
     walls: Callable | None = None            # (p) → pairs of points in space: edges of what stands still, in 3D
     story: str = ""                          # the module's docstring, filled in when the scene is loaded
+    # filled in when the scene is bound to a subject
+    lessons: object = None                   # those of the subject, plain or compiled
+    law: Callable | None = None              # what `acceleration` makes of them, compiled where they are
 
     def __post_init__(self):
         for f in fields(self):

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from validate.scenes.simulator import card_house, machine
-from validate.subject.modules import bind
+from validate.subject.modules import PLAIN, bind
 
-simulator = bind("simulator")
+simulator, LESSONS = bind("simulator"), PLAIN.lessons
 
 G = 9.81                     # [m/s²]
 FLOOR = (0.0, 1.0, 0.0)
@@ -56,9 +56,9 @@ def test_dominoes_converge_and_only_lose_energy():
 def test_a_machine_runs_for_ten_seconds_and_gains_nothing_without_a_source():
     """The scene's own run, its bounds, and what a belt and a crank would gain if their work were not counted."""
     p, steps = machine.CASES["energy"], 1200
-    state, energies = machine.start(p), []
+    state, load, energies = machine.start(p), machine.acceleration(LESSONS), []
     for _ in range(steps // 10):
-        state = machine.run(simulator.contact_step_2d, machine.acceleration, state, p, machine.T / steps, 10)
+        state = machine.run(LESSONS, simulator.contact_step_2d, load, state, p, machine.T / steps, 10)
         energies.append(machine.energy(state.now, state.rows))
     for kind in ("energy", "overlap", "residual"):
         seen = machine.CASES[kind]
@@ -75,7 +75,8 @@ def test_a_house_of_cards_stands_from_the_friction_on_that_statics_asks_for():
     steps = 240
     for rough, stands in ((0.98, False), (1.02, True)):
         p = card_house.Params(rough=rough)
-        state = card_house.run(simulator.contact_step_2d, simulator.weight, card_house.start(p), p, 1.0 / steps, steps)
+        state = card_house.run(LESSONS, simulator.contact_step_2d, simulator.weight, card_house.start(p), p,
+                               1.0 / steps, steps)
         moved = np.linalg.norm(card_house.observe(state, p) - card_house.truth(p, 0.0))
         limit = card_house.limit(p._replace(rough=1.02), 1.0 / steps)
         assert (moved < limit * np.linalg.norm(card_house.truth(p, 0.0))) == stands, (rough, moved, limit)

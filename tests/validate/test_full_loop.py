@@ -2,7 +2,7 @@
 
 import pytest
 
-from validate import measure
+from validate import measure, methods
 from validate.measure import full_loop
 from validate.report import audit
 from validate.subject import modules
@@ -17,7 +17,7 @@ LOOPS = ("rolling_down", "incline", "stopping_block", "heavy_top", "throw", "cat
 @pytest.mark.parametrize("name", EARLIER)
 def test_a_scene_is_measured_against_the_whole_loop_or_says_why_not(name):
     scene = modules.bind_scene(name)
-    covered = any(runner.who.function in full_loop.FULL for runner in scene.our_runners)
+    covered = any(runner.who in full_loop.FULL for runner in scene.our_runners)
     assert covered != bool(scene.full_loop), "give the field full_loop a sentence, or leave it out"
 
 
@@ -43,7 +43,7 @@ def test_a_loop_that_moves_otherwise_is_noticed_and_the_audit_checks_the_ratio(m
     def heavier(lessons):
         step = full_loop.block(lessons)
         return lambda acceleration, t, x, v, dt, p: step(lambda *now: 1.001 * acceleration(*now), t, x, v, dt, p)
-    monkeypatch.setitem(full_loop.FULL, "sliding_step", heavier)
+    monkeypatch.setitem(full_loop.FULL, methods.SLIDING, heavier)
     found = full_loop.left_out("incline", PLAN, agreeing("incline"))
     assert not found["same"]
     result = {"cases": {}, "times": {"rows": [], "time_to_error": {}, "advantage": [], "ablations": [],

@@ -66,6 +66,20 @@ print(sum(lesson.{function}.stats.cache_misses.values()))
 
 
 @needs_numba
+@pytest.mark.parametrize("name", ["kepler", "linear_drag", "wind"])  # a given law, its own, one with an exercise
+def test_a_second_process_compiles_no_law_of_a_scene(name):
+    ask = f"""
+from validate import modules
+scene = modules.bind_scene({name!r}, compiled=True)
+integrators, p = scene.lessons.integrators, scene.parameters
+scene.run(scene.lessons, integrators.rk4_step, scene.law, scene.start(p), p, 0.01, 5)
+print(sum(sum(twin.stats.cache_misses.values()) for twin in (scene.law, integrators.advance.twin)))
+"""
+    in_a_new_process(ask)
+    assert in_a_new_process(ask) == "0"
+
+
+@needs_numba
 def test_two_processes_that_save_at_once_lose_nothing(tmp_path):
     (tmp_path / "lower.py").write_text("def base(x):\n    return x + x\n")
     ask = """
@@ -133,8 +147,8 @@ def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     (tmp_path / "integrators.py").write_text(text + own)
     scene = modules.bind_scene("oscillator", tmp_path)
     p = scene.parameters
-    assert scene.run(None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
-    assert modules.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
+    assert scene.run(scene.lessons, None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
+    assert modules.bind_scene("oscillator").lessons.integrators.advance.__module__ == "solutions.integrators"
 
 
 OWN_EVENT = "\n\ndef advance_to_event(acceleration, t, x, v, dt, p):\n    return dt, x + 42.0, v\n"
@@ -152,9 +166,9 @@ def test_a_companion_calls_the_exercises_of_its_subject(tmp_path, compiled):
     arguments = ours.driven_acceleration, 0.0, zero, zero, 0.1, ours.Block(np.eye(2)[1], 0.5, 0.4, zero, zero, 0.0)
     assert ours.event_step(*arguments)[0][0] == 0.0 and mine.event_step(*arguments)[0][0] == 42.0
     scene = modules.bind_scene("stick_slip", tmp_path, compiled)
-    begins = scene.run.__globals__["slip_times"]
-    assert getattr(begins, "twin", begins) is getattr(mine.slip_times, "twin", mine.slip_times)
-    assert modules.PLAIN.scene("stick_slip").run.__globals__["slip_times"].__module__ == "solutions.given.friction"
+    step = scene.lessons.friction.event_step
+    assert getattr(step, "twin", step) is getattr(mine.event_step, "twin", mine.event_step)
+    assert modules.bind_scene("stick_slip").lessons.friction.event_step.__module__ == "solutions.given.friction"
 
 
 def test_a_companion_imports_exercises_from_its_lesson_only_and_no_lesson_imports_it():
@@ -183,9 +197,9 @@ def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
     plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)
     p = plain.cases["rough bowl"]
     ends = []
-    for scene, compiled in ((plain, False), (fast, True)):
-        step = modules.module_set(compiled=compiled).lesson("friction").position_friction_step
-        ends.append(scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, 0.01, 20), p))
+    for scene in (plain, fast):
+        step = scene.lessons.friction.position_friction_step
+        ends.append(scene.observe(scene.run(scene.lessons, step, scene.law, scene.start(p), p, 0.01, 20), p))
     assert np.array_equal(*ends)
 
 

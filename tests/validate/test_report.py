@@ -257,7 +257,7 @@ def test_no_page_names_what_only_a_programmer_knows():
     internal = re.compile(r"\b(?:[A-Z]{2,}_[A-Z_]+|[a-z]{4,}_[a-z_]{4,})\b")
     for name in modules.scene_names():
         scene = modules.bind_scene(name)
-        for text in (*map(modules.report_text, filter(None, (scene.truth, scene.acceleration))), theory(scene)):
+        for text in (*map(modules.report_text, filter(None, (scene.truth, scene.law))), theory(scene)):
             assert not internal.findall(text), name
 
 

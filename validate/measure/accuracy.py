@@ -41,7 +41,7 @@ def errors(name, plan):
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
         **parity(selection, first),
         "picture": film.picture(selection, first, labels_to_film({"cases": cases})),
-        "law": report_text(scene.acceleration) if scene.acceleration else "",
+        "law": report_text(scene.law) if scene.law else "",
         "limits": theory(scene),
     })
 
@@ -77,7 +77,8 @@ def run_to_end(scene, step, p, steps, asked=False):
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            state = scene.run(step, scene.acceleration, scene.start(p), p, scene.duration / steps, steps)
+            dt = scene.duration / steps
+            state = scene.run(scene.lessons, step, scene.law, scene.start(p), p, dt, steps)
             observed = scene.observe(state, p)
     except ArithmeticError as e:
         return Outcome(None, str(e))

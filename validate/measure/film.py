@@ -104,7 +104,7 @@ def our_frames(scene, step, p, dt, per_frame):
     state, film = scene.start(p), []
     for _ in range(FRAMES + 1):
         film.append(scene.observe(state, p))
-        state = scene.run(step, scene.acceleration, state, p, dt, per_frame)
+        state = scene.run(scene.lessons, step, scene.law, state, p, dt, per_frame)
     return film
 
 

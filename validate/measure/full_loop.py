@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from ..check import Verdict, jsonable
-from ..subject import modules
+from ..methods import DISCRETE, GYROSCOPIC, PENALTY, RATTLE, ROLLING, SLIDING, SYMPLECTIC_EULER
 from . import timing
 from .accuracy import relative, run_to_end
 from .selection import select, with_overrides
@@ -39,12 +39,12 @@ def loop(simulator, dim):
 class Whole:
     """The whole loop for n round bodies: it has the record of the bodies and the contacts of the last step.
 
-    lessons: the module set of the subject.
+    lessons: those of the subject.
     """
 
     def __init__(self, lessons, x, m, inertia, radius, planes, gravity, mu, sweeps=SWEEPS, margin=NEAR):
         n, dim = x.shape
-        self.step, self.bounds, self.narrow, make = loop(lessons.lesson("simulator"), dim)
+        self.step, self.bounds, self.narrow, make = loop(lessons.simulator, dim)
         q = np.zeros(n) if dim == 2 else np.tile(UPRIGHT, (n, 1))
         half = np.outer(np.broadcast_to(radius, n), np.ones(dim))
         self.state, self.bodies = make(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin)
@@ -84,7 +84,7 @@ def points(lessons):
 
 def sprung_floor(lessons):
     """penalty_step of lesson 7: a point over a floor whose spring and damper are forces."""
-    step, impulses = points(lessons), lessons.lesson("impulses")
+    step, impulses = points(lessons), lessons.impulses
 
     def penalty_step(acceleration, t, x, v, dt, p):
         def with_floor(t, x, v, p):
@@ -124,7 +124,7 @@ def no_load(t, x, q, v, omega, p):
 
 def strings(lessons):
     """rattle_step of lesson 8 for a pendulum or a rope: rods with joints, and a search for contacts."""
-    whole, simulator = [], lessons.lesson("simulator")
+    whole, simulator = [], lessons.simulator
 
     def rattle_step(acceleration, t, x, v, dt, network):
         turn, rate = link_angles(x, v)
@@ -178,7 +178,7 @@ def block(lessons):
 
 def turning_body(lessons):
     """gyroscopic_step of lesson 5: one body in space that touches nothing."""
-    whole, angular_momentum = [], lessons.lesson("rotation").body_angular_momentum
+    whole, angular_momentum = [], lessons.rotation.body_angular_momentum
 
     def gyroscopic_step(torque, t, q, L, dt, body):
         if not whole:
@@ -194,7 +194,7 @@ def turning_body(lessons):
 
 def rolling_ball(lessons):
     """rolling_step of lesson 5: a ball on the plane z = 0, found at every step."""
-    whole, weight = [], lessons.lesson("simulator").weight
+    whole, weight = [], lessons.simulator.weight
 
     def rolling_step(load, t, x, q, v, omega, dt, ball):
         if not whole:
@@ -205,15 +205,8 @@ def rolling_ball(lessons):
     return rolling_step
 
 
-FULL = {"symplectic_euler_step": points, "sliding_step": block, "gyroscopic_step": turning_body,
-        "rolling_step": rolling_ball, "penalty_step": sprung_floor, "discrete_step": stopped_ball,
-        "rattle_step": strings}                  # what the whole loop is when it stands for these steps
-
-
-def lessons_with_loop(plan):
-    """The module set whose lesson 10 is the loop: the subject's, or ours for a subject without that lesson."""
-    own = modules.subject_folder(plan.of) / "simulator.py"
-    return modules.module_set(plan.of if own.is_file() else "solutions")
+FULL = {SYMPLECTIC_EULER: points, SLIDING: block, GYROSCOPIC: turning_body, ROLLING: rolling_ball,
+        PENALTY: sprung_floor, DISCRETE: stopped_ball, RATTLE: strings}      # what the whole loop is for these methods
 
 
 def made_when_called(make):
@@ -252,7 +245,7 @@ def left_out(name, plan, result):
     selection = select(name, plan)
     scene, (_, p) = selection.scene, selection.first
     nothing = {"method": "", "steps": None, "ratio": None, "same": None, "observed": None, "repeats": None}
-    here = [r for r in scene.our_runners if r.who.function in FULL]
+    here = [r for r in scene.our_runners if r.who in FULL]
     runner = next((r for r in here if r.label in labels_as_expected(result)), None)
     if scene.full_loop or not here:
         return {**nothing, "note": scene.full_loop}
@@ -262,7 +255,7 @@ def left_out(name, plan, result):
         return {**nothing, "note": f"{here[0].label} departs from the truth here"}
     steps = next(n for n in scene.steps if n >= LEAST and n not in steps_that_fail(result, runner.label))
     _, step = selection.bound(runner, "plain")
-    make, dt = partial(FULL[runner.who.function], lessons_with_loop(plan)), scene.duration / steps
+    make, dt = partial(FULL[runner.who], scene.lessons), scene.duration / steps
     one, other = (run_to_end(scene, s, p, steps) for s in (made_when_called(make), step))
     if one.observed is None:
         return {**nothing, "note": f"the whole loop does not run here: {one.failure}"}

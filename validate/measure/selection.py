@@ -56,7 +56,7 @@ class Selection(NamedTuple):
     ours: tuple              # of Runner: methods of ours; a case may support fewer
     steps: tuple             # numbers of steps over T
     notes: tuple             # sentences: what is omitted, and what is left to --full
-    bindings: dict           # {speed: (scene, its set of modules)} of the speeds that were used: looking up takes 30 ms
+    bindings: dict           # {speed: its scene} of the speeds that were used: looking up takes 30 ms
 
     @property
     def first(self):
@@ -90,11 +90,9 @@ class Selection(NamedTuple):
     def bound(self, runner, speed):
         """(scene, step): the scene and our step, both plain or both compiled."""
         if speed not in self.bindings:
-            compiled = speed == "compiled"
-            scene = bound_scene(self.name, self.plan, compiled)
-            self.bindings[speed] = scene, modules.module_set(self.plan.of, compiled)
-        scene, lessons = self.bindings[speed]
-        return scene, getattr(lessons.lesson(runner.who.lesson), runner.who.function)
+            self.bindings[speed] = bound_scene(self.name, self.plan, speed == "compiled")
+        scene = self.bindings[speed]
+        return scene, getattr(getattr(scene.lessons, runner.who.lesson), runner.who.function)
 
     def steps_of(self, runner, p):
         """The numbers of steps of a runner.

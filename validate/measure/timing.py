@@ -110,7 +110,7 @@ def time_ours(scene, step, p, state=None):
     state = state or scene.start(p)
 
     def prepare(steps, dt):
-        arguments = step, scene.acceleration, state, p, dt, steps
+        arguments = scene.lessons, step, scene.law, state, p, dt, steps
         return lambda: scene.run(*arguments), lambda: None
     return prepare
 
@@ -261,8 +261,8 @@ def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full)
     items = [Timed(which, speed, steps, dt, time_ours(scene, step, *begin))
              for which, *begin in (("without", p), ("with", p_full, state))]
     (_, lean), (_, full) = interleaved(items, {speed: np.inf}, repeats)
-    a = scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, dt, steps), p)
-    b = scene.observe(scene.run(step, scene.acceleration, state, p_full, dt, steps), p)
+    a = scene.observe(scene.run(scene.lessons, step, scene.law, scene.start(p), p, dt, steps), p)
+    b = scene.observe(scene.run(scene.lessons, step, scene.law, state, p_full, dt, steps), p)
     return {"what": what, "cost": full["seconds"] / lean["seconds"], "same": relative(a, b) < SAME, "note": "",
             "observed": (a, b), "repeats": (full["repeats"], lean["repeats"])}
 

@@ -123,10 +123,11 @@ def parsed(path):
 
 
 def roots_of_scene(name):
-    """What a scene names of the lessons, its methods included."""
+    """What a scene calls of `lessons` and names of solutions, its methods included."""
     scene = modules.bind_scene(name)
     tree, there, _ = parsed(modules.scene_files()[name])
-    return {*named([tree], there, scene.lesson), *((r.who.lesson, r.who.function) for r in scene.our_runners)}
+    return {*modules.called_by_scene(name), *named([tree], there, scene.lesson),
+            *((r.who.lesson, r.who.function) for r in scene.our_runners)}
 
 
 def roots_of_case(case):

@@ -108,7 +108,7 @@ def lacks(file, name):
 
 
 def part(module, name):
-    """What a scene imports from a lesson.  Raises Unloadable where the lesson's file has no such thing."""
+    """What a scene or a lesson takes from a lesson.  Raises Unloadable where the lesson's file has no such thing."""
     if name not in vars(module):
         file = Path(module.__file__)
         raise Unloadable(f"{file.parent.name}/{file.name}", f"it has no {name}", PUT_BACK)

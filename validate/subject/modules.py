@@ -1,9 +1,11 @@
-"""Load any lesson or scene, plain or compiled, with the lesson functions of a chosen subject.
+"""Load any lesson, plain or compiled, from a chosen subject, and bind scenes to it.
 
 A *module set* is one consistent set of modules: the lessons of a subject (`solutions`, `lessons` or a folder) and the
-scenes that use them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh copy
-of those files under a package name of its own.  In it, each function that came from `solutions` is replaced by the
+given modules that call them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh
+copy of those files under a package name of its own.  In it, each function that came from `solutions` is replaced by the
 subject's function or by its compiled twin.  Nothing is decorated, and the imported packages stay as they are.
+
+A scene is imported once.  Its functions that call lessons take them as their first argument, `lessons`, a `Lessons`.
 
 The *given modules* lie beside the lessons: checks, vectors, and the files of `solutions/support/`, which imports no
 lesson, and `solutions/given/`, which calls exercises.  A given module that
@@ -33,7 +35,7 @@ from solutions.checks import BadInput
 
 from ..scene import Scene, field_names
 from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
-from .numba_twins import CheckedFirst, cached_dispatch, compiled_twins, passed_over, use_cache
+from .numba_twins import CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
@@ -42,7 +44,6 @@ GIVEN = {"__init__", "checks", "vectors", *PACKAGES}
 ORIGINALS = "solutions"  # the package of the given modules that module sets share or copy
 CHECK, RECORDS = "check_record", "support.records"     # the check of a record, and its home
 MAKE = "make_"           # begins the names of functions that make records: they stay plain, and convert what they get
-LAW = "acceleration"  # the function of a scene that is compiled, with all that it calls; loops are in the lessons
 
 
 def subject_folder(of):
@@ -115,6 +116,77 @@ def scene_names():
     return list(scene_files())
 
 
+class Lessons:
+    """The lessons of a subject: `lessons.friction.event_step` is its function, plain or compiled.
+
+    A lesson is loaded when it is first named.
+    """
+
+    def __init__(self, lesson):
+        self._lesson = lesson                                            # (name) → module
+
+    def __getattr__(self, name):
+        if name not in lesson_names():
+            raise AttributeError(f"there is no lesson {name!r}")
+        module = self._lesson(name)
+        setattr(self, name, module)
+        return module
+
+
+def written_scene(name):
+    """The Scene of that name as it is written, without lessons."""
+    return record_of(importlib.import_module(f"validate.scenes.{scene_files()[name].parent.name}.{name}"), name)
+
+
+def called_by_scene(name):
+    """{(lesson, function)} of what a scene calls of lessons, in its file and in its `run`, if that is elsewhere."""
+    texts = scene_files()[name].read_text(encoding="utf-8"), inspect.getsource(written_scene(name).run)
+    return {call for text in texts for call in called_of_lessons(ast.parse(text))}
+
+
+def load_lessons_of(name, scene, lessons):
+    """Load what a scene calls.  Raises Unloadable where a lesson cannot be loaded, or lacks a function.
+
+    A step that is lacking fails later, as one that is not written: the others can run.
+    """
+    steps = {(r.who.lesson, r.who.function) for r in scene.our_runners}
+    for lesson, _ in steps:
+        getattr(lessons, lesson)
+    for lesson, function in called_by_scene(name) - steps:
+        part(getattr(lessons, lesson), function)
+
+
+def called_of_lessons(tree):
+    """{(lesson, function)} of what source calls of `lessons`: lessons.friction.event_step, and friction.event_step
+    where the same function says  friction = lessons.friction.
+    """
+    found = set()
+    for function in tree.body:
+        meant = _names_of_lessons(function)
+        for node in ast.walk(function):
+            if isinstance(node, ast.Attribute):
+                lesson = meant.get(node.value.id) if isinstance(node.value, ast.Name) else _lesson_named(node.value)
+                found |= {(lesson, node.attr)} if lesson else set()
+    return found
+
+
+def _names_of_lessons(function):
+    """{name: lesson} of the names that a function gives to lessons."""
+    found = {}
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assign):
+            names, values = (side.elts if isinstance(side, ast.Tuple) else [side]
+                             for side in (node.targets[0], node.value))
+            found |= {name.id: lesson for name, value in zip(names, values) if (lesson := _lesson_named(value))}
+    return found
+
+
+def _lesson_named(node):
+    """The lesson that source names by lessons.<lesson>; None for anything else."""
+    named = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "lessons"
+    return node.attr if named else None
+
+
 def in_course_order(names):
     """Scenes in the order of the course."""
     lessons = lesson_names()
@@ -134,7 +206,7 @@ def bind(lesson, of="solutions", compiled=False):
 
 
 def bind_scene(scene, of="solutions", compiled=False):
-    """The Scene of that name with the lesson functions of a subject.  Raises BadInput if it is unknown or broken."""
+    """The Scene of that name with its `lessons` and its `law`.  Raises BadInput if it or a lesson of it is broken."""
     if scene not in scene_names():
         raise BadInput(f"scene {scene!r}", "unknown", "`validate list` names them all")
     try:
@@ -215,19 +287,34 @@ def report_text(thing):
     return text.replace("*Source:*", "Source:").replace("*Left out:*", "Left out:").strip()
 
 
-class PlainModules:
+class Binding:
+    """What all module sets do with scenes."""
+
+    def __init__(self, lesson):
+        self.lessons, self.scenes = Lessons(lesson), {}
+
+    def scene(self, name):
+        """A scene with the lessons of this set."""
+        if name not in self.scenes:
+            scene = written_scene(name)
+            load_lessons_of(name, scene, self.lessons)
+            self.scenes[name] = replace(scene, lessons=self.lessons, law=self._law(name, scene))
+        return self.scenes[name]
+
+    def _law(self, name, scene):
+        return scene.acceleration and scene.acceleration(self.lessons)
+
+
+class PlainModules(Binding):
     """The packages as imported."""
+
+    def __init__(self):
+        super().__init__(self.lesson)
 
     @cache  # noqa: B019    there is one PlainModules
     def lesson(self, name):
         module, companion = importlib.import_module(f"solutions.{name}"), f"given.{name}"
         return both(module, importlib.import_module(f"solutions.{companion}")) if companion in companions() else module
-
-    def scene_module(self, name):
-        return importlib.import_module(f"validate.scenes.{scene_files()[name].parent.name}.{name}")
-
-    def scene(self, name):
-        return record_of(self.scene_module(name), name)
 
 
 PLAIN = PlainModules()
@@ -247,17 +334,17 @@ def _meant_by_given_code(folder):
     return {name for name in here if name not in named or withheld(name)}
 
 
-class ModuleSet:
-    """Copies of the subject's lessons, of the given modules that call their exercises, and of the scenes, under a
-    package name of their own, that refer to each other.
+class ModuleSet(Binding):
+    """Copies of the subject's lessons, and of the given modules that call their exercises, under a package name of
+    their own, that refer to each other.
     """
 
     def __init__(self, folder, digest, speed="plain"):
+        super().__init__(self.lesson_of_scenes)
         self.name, self.folder, self.done = f"_{speed}_{digest}", folder, {}
         self.stuck, self.loading = {}, set()  # {lesson: its Unloadable}, lessons being loaded
         self.whole = {}                       # {lesson: it and its companion}
-        paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": [],
-                 ".subject.given": [], ".scenes": [SCENES]}
+        paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": [], ".subject.given": []}
         for package, path in paths.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
             module.__path__ = [str(p) for p in path]
@@ -275,7 +362,10 @@ class ModuleSet:
 
         Raises the same Unloadable every time when its file cannot be loaded.
         """
-        lesson, companion = self._own_lesson(name), f"given.{name}"
+        return self._with_companion(name, self._own_lesson(name))
+
+    def _with_companion(self, name, lesson):
+        companion = f"given.{name}"
         if companion not in companions():
             return lesson
         if name not in self.whole:
@@ -381,25 +471,24 @@ class ModuleSet:
 
     # ------------------------------------------------------------------------------------------ scenes
 
-    def scene_module(self, name):
-        return self._load("scenes", name)
+    def lesson_of_scenes(self, name):
+        """A lesson as scenes call it: the subject's; where it has none, the worked one."""
+        return self.lesson(name) if (self.folder / f"{name}.py").is_file() else self._worked(name)
 
-    def scene(self, name):
-        return record_of(self.scene_module(name), name)
+    def _worked(self, name):
+        return self._with_companion(name, original(name))
+
+    # ------------------------------------------------------------------------------------------ what is imported
 
     def _load(self, package, name):
         if (package, name) not in self.done:
-            folder = f".{scene_files()[name].parent.name}" if package == "scenes" else ""
-            module = importlib.import_module(f"{self.name}.{package}{folder}.{name}")
-            self.done[package, name] = module
+            self.done[package, name] = module = importlib.import_module(f"{self.name}.{package}.{name}")
             self._finish(package, module)
         return self.done[package, name]
 
     def _finish(self, package, module):
         """Redirect what a loaded module has imported; the copies of given modules are made only now."""
         vars(module).update(self._redirected(package, module))
-        if package == "scenes" and isinstance(record := vars(module).get("SCENE"), Scene):
-            module.SCENE = replace(record, acceleration=vars(module).get(LAW))
 
     def _home(self, value):
         """(package, name below it) of the module that a thing comes from: ("solutions", "friction"), ("subject",
@@ -410,20 +499,19 @@ class ModuleSet:
         source = "solutions" if source == ORIGINALS else source
         return (source, origin) if source in ("solutions", "subject") else ("", "")
 
-    def _stays(self, package, origin):
+    def _stays(self, origin):
         """Whether something imported from there is what it should be: what a subject's file takes from a lesson is."""
-        return package == "subject" and origin not in self.copied
+        return origin not in self.copied
 
     def _redirected(self, package, module):
         """{name: what it means in this set} for everything that module imported from a lesson or a given module.
 
-        A scene means the subject's lessons; a lesson means what it imports.  Classes are the same in all sets, or
-        `except BadInput` would not recognise what a twin raises.
+        Classes are the same in all sets, or `except BadInput` would not recognise what a twin raises.
         """
         meant, own = {}, self._home(module)
         for name, value in vars(module).items():
             source, origin = home = self._home(value)
-            if not source or self._stays(package, origin):
+            if not source or self._stays(origin):
                 continue
             if isinstance(value, type):
                 meant[name] = getattr(PLAIN.lesson(origin), value.__name__) if source == "solutions" else value
@@ -433,10 +521,7 @@ class ModuleSet:
         return meant
 
     def _meant(self, package, source, origin):
-        """The module that a lesson or a scene means by one of the solutions or of the subject."""
-        lesson = companions().get(origin, origin)
-        if package == "scenes" and lesson not in given_modules() and (self.folder / f"{lesson}.py").is_file():
-            return self.inner_lesson(lesson)
+        """The module that a lesson means by one of the solutions or of the subject."""
         if origin in given_modules():
             return self.given(origin)
         return self.inner_lesson(origin) if source == "subject" else self.solution(origin)
@@ -456,9 +541,10 @@ class CompiledModules(ModuleSet):
 
     def lesson(self, name):
         """A lesson with plain make_* and with loops that check their record first."""
+        return self._outside(name, self.inner_lesson(name), vars(module_set(self.folder).lesson(name)))
+
+    def _outside(self, name, inside, plain):
         if name not in self.outside:
-            inside = self.inner_lesson(name)
-            plain = vars(module_set(self.folder).lesson(name))
             self.outside[name] = types.ModuleType(inside.__name__)
             vars(self.outside[name]).update(
                 {key: self._from_outside(key, value, plain.get(key)) for key, value in vars(inside).items()})
@@ -494,27 +580,41 @@ class CompiledModules(ModuleSet):
         space = {**vars(module), CHECK: passed_over} if module.__name__.endswith(f".{RECORDS}") else vars(module)
         vars(module).update(compiled_twins(module, own, space, os.path.join(self.cache, package)))
 
-    def _stays(self, package, origin):
+    def _stays(self, origin):
         return False
 
     def _meant(self, package, source, origin):
         return self.solution(origin) if package == "solutions" else super()._meant(package, source, origin)
 
     def _finish(self, package, module):
-        if package != "scenes":
-            vars(module).update(self._redirected(package, module))
-            self._compile(package, module)
-            return
-        redirected = self._redirected(package, module)
-        space = {**vars(module), **redirected}                                  # what compiled functions see
-        plain = vars(module_set(self.folder).scene_module(module.__name__.rpartition(".")[2]))
-        lessons = {name: cached_dispatch(self._from_outside(name, twin, plain.get(name)))
-                   for name, twin in redirected.items() if hasattr(twin, "py_func") and not name.startswith(MAKE)}
-        space |= compiled_twins(module, _called_from(space, LAW, module.__name__), space,
-                                os.path.join(self.cache, package))
-        run = types.FunctionType(plain["run"].__code__, {**plain, **lessons}, "run")
-        record = replace(plain["SCENE"], run=run, acceleration=space.get(LAW))
-        vars(module).update({**plain, "__name__": module.__name__, "SCENE": record})
+        super()._finish(package, module)
+        self._compile(package, module)
+
+    def lesson_of_scenes(self, name):
+        """The same, with functions that find their machine code sooner."""
+        lesson = types.ModuleType(name)
+        vars(lesson).update({key: cached_dispatch(value) if hasattr(value, "py_func") else value
+                             for key, value in vars(super().lesson_of_scenes(name)).items()})
+        return lesson
+
+    def _worked(self, name):
+        return self._outside(name, self._with_companion(name, self.solution(name)), vars(PLAIN.lesson(name)))
+
+    def _law(self, name, scene):
+        """The law of a scene: a lesson's or a given one is shared with others, and one of its own is compiled here."""
+        law = scene.acceleration and scene.acceleration(Lessons(self._inside))
+        if law is None or hasattr(law, "py_func"):
+            return law
+        source, origin = self._home(law)
+        if source == "solutions":
+            return getattr(self.given(origin), law.__name__)
+        return compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes"))
+
+    def _inside(self, name):
+        """A lesson as compiled functions call it."""
+        if (self.folder / f"{name}.py").is_file():
+            return self.inner_lesson(name)
+        return self._with_companion(name, self.solution(name))
 
 
 @cache
@@ -528,14 +628,3 @@ def checks_of(file, digest):
                 check = ast.fix_missing_locations(ast.Expression(ast.Lambda(function.args, line.value)))
                 found[function.name] = eval(compile(check, file, "eval"), space)
     return found
-
-
-def _called_from(space, root, home):
-    """Names of the functions of module `home` that root reaches, itself included."""
-    own = {name: f for name, f in space.items() if isinstance(f, types.FunctionType) and f.__module__ == home}
-    reached, waiting = set(), [root] if root in own else []
-    while waiting:
-        name = waiting.pop()
-        reached.add(name)
-        waiting += [n for n in own[name].__code__.co_names if n in own and n not in reached]
-    return reached

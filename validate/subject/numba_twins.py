@@ -30,19 +30,28 @@ def compiled_twins(module, names, space, cache):
     cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
     its functions call others there.
     """
-    from numba import config, njit
-    config.CACHE_DIR = cache
     twins = {}
     for name in names:
         plain = space[name]
         copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
         inline = "always" if module.__name__.rpartition(".")[2] == INLINED else "never"
-        twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(copy)
-        # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
-        _forget_literals(twins[name])
-        twins[name]._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{plain.__qualname__}")))
+        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, inline)
     return twins
+
+
+def compiled(function, name, cache, inline="never"):
+    """Return the twin of a function, which may be a closure that calls other twins.
+
+    name: the same in every process, and no other function's.  numba recognises a function argument in its disk cache
+    by the id that is made from it.
+    """
+    from numba import config, njit
+    config.CACHE_DIR = cache
+    twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(function)
+    _forget_literals(twin)
+    twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, name)))
+    return twin
 
 
 def _forget_literals(twin):
@@ -101,7 +110,7 @@ def passed_over(p, state):
 
 
 def cached_dispatch(function):
-    """Return a compiled function as a scene's plain run calls it."""
+    """Return a compiled function as scenes call it."""
     if isinstance(function, CheckedFirst):
         return CheckedFirst(function.twin, function.check, CachedDispatch(function.twin))
     return CachedDispatch(function)
@@ -129,12 +138,13 @@ def _make_dispatcher_constants_cacheable():
 
 @cache
 def _pass_checked_functions_on():
-    """Let a compiled function take a CheckedFirst as an argument: the twin in it is meant."""
+    """Let a compiled function take a CheckedFirst or a CachedDispatch as an argument: the twin in it is meant."""
     from numba.extending import typeof_impl
 
     @typeof_impl.register(CheckedFirst)
-    def _(checked, context):
-        return typeof_impl(checked.twin, context)
+    @typeof_impl.register(CachedDispatch)
+    def _(around, context):
+        return typeof_impl(around.twin, context)
 
 
 @cache

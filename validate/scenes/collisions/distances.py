@@ -9,17 +9,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.collisions import Box, Plane, ball_box, ball_contact, box_corners, box_separation, gjk
-from solutions.given.collisions import (
-    ball_capsule,
-    ball_plane,
-    ball_triangle,
-    box_box,
-    capsule_capsule,
-    cylinder_hit,
-    points_plane,
-    polygon_contacts,
-)
+from solutions.collisions import Box, Plane
 from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
 from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
@@ -171,45 +161,48 @@ MANY = ("box on a box", "rectangles (2D)")
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     """Run the lesson's function for this pair; GJK on rounded hulls gives the points' own distance, less the radii."""
-    a, b = SHAPES[p.pair]
-    if step.__name__ == "cylinder_hit" or p.pair == "flying disc (2D)":
+    collisions, (a, b) = lessons.collisions, SHAPES[p.pair]
+    if p.pair == "flying disc (2D)":
         x_0, x_1 = (np.append(0.0, x) for x in np.array(a[1]))
-        c = cylinder_hit(0.0, 1.0, x_0, x_1, p.r, p.R)
+        c = collisions.cylinder_hit(0.0, 1.0, x_0, x_1, p.r, p.R)
         return (np.array([c.t, *c.n[1:]]),)
     if p.pair in MANY:
-        c = polygon_contacts(corners(a, p), corners(b, p)) if flat(p) else box_box(box_of(a), box_of(b))
+        c = (collisions.polygon_contacts(corners(a, p), corners(b, p)) if flat(p)
+             else collisions.box_box(box_of(a), box_of(b)))
         return (np.array([c.gap.min(), *c.n, *c.p_b.mean(axis=0), len(c.gap)]),)
     # the corners below the plane; of these the deepest
     if p.pair == "box, plane":
-        c = points_plane(box_corners(box_of(a)), the_plane())
+        c = collisions.points_plane(collisions.box_corners(box_of(a)), the_plane())
         k = int(np.argmin(c.gap))
         return (np.array([c.gap[k], *c.n, *c.p_b[k]]),)
-    if step.__name__ == "gjk":
-        c = gjk(corners(a, p), corners(b, p))
+    if step is collisions.gjk:
+        c = step(corners(a, p), corners(b, p))
         r_a, r_b = radii(p)
         return (np.array([c.gap - r_a - r_b, *c.n, *(c.p_b + r_b * c.n)]),)
-    if step.__name__ == "box_separation":
-        gap, n, _ = box_separation(box_of(a), box_of(b))
+    if step is collisions.box_separation:
+        gap, n, _ = step(box_of(a), box_of(b))
         return (np.array([gap, *n]),)
-    c = narrow(p, a, b)
+    c = narrow(lessons, p, a, b)
     return (np.array([c.gap, *c.n, *c.p_b]),)
 
 
-def narrow(p, a, b):
+def narrow(lessons, p, a, b):
     """Return the Contact of a pair for which the lesson has a formula."""
-    x = corners(a, p)
+    collisions, x = lessons.collisions, corners(a, p)
     if b[0] == "plane":
-        return ball_plane(x[0], p.r, the_plane())
+        return collisions.ball_plane(x[0], p.r, the_plane())
     if b[0] == "box":
-        return ball_box(x[0], p.r, box_of(b))
+        return collisions.ball_box(x[0], p.r, box_of(b))
     y = corners(b, p)
     if a[0] == "capsule":
-        return capsule_capsule(x[0], x[1], p.r, y[0], y[1], p.R)
+        return collisions.capsule_capsule(x[0], x[1], p.r, y[0], y[1], p.R)
     if b[0] == "capsule":
-        return ball_capsule(x[0], p.r, y[0], y[1], p.R)
-    return ball_triangle(x[0], p.r, *y) if b[0] == "hull" else ball_contact(x[0], p.r, y[0], p.R)
+        return collisions.ball_capsule(x[0], p.r, y[0], y[1], p.R)
+    if b[0] == "hull":
+        return collisions.ball_triangle(x[0], p.r, *y)
+    return collisions.ball_contact(x[0], p.r, y[0], p.R)
 
 
 def observe(state, p):

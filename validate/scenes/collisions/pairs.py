@@ -55,7 +55,7 @@ def quantity_names(p):
     return "pairs that touch [-]", "too many [-]"
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     return (step(*state),)
 
 

@@ -7,7 +7,6 @@ solves for the first root and works with any step.
 
 import numpy as np
 
-from solutions.given.collisions import advance_projectiles, ball_cylinder_gap, ball_cylinder_time
 from validate.engines import collisions as engines
 from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene
@@ -35,9 +34,10 @@ def place(p):
 start = engines.start_balls(place, ("speed", "r", "R"))
 
 
-def run(step, acceleration, state, p, dt, steps):
-    x, v, goal = state
-    return *advance_projectiles(step, ball_cylinder_gap, ball_cylinder_time, 0.0, x, v, dt, steps, goal), goal
+def run(lessons, step, acceleration, state, p, dt, steps):
+    collisions, (x, v, goal) = lessons.collisions, state
+    gap, time = collisions.ball_cylinder_gap, collisions.ball_cylinder_time
+    return *collisions.advance_projectiles(step, gap, time, 0.0, x, v, dt, steps, goal), goal
 
 
 def truth(p, t):

@@ -6,7 +6,6 @@ t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight. 
 
 import numpy as np
 
-from solutions.given.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
 from validate.engines import collisions as engines
 from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene
@@ -28,9 +27,10 @@ def place(p):
 start = engines.start_balls(place, ("speed", "r"))
 
 
-def run(step, acceleration, state, p, dt, steps):
-    x, v, goal = state
-    return *advance_projectiles(step, ball_plane_gap, ball_plane_time, 0.0, x, v, dt, steps, goal), goal
+def run(lessons, step, acceleration, state, p, dt, steps):
+    collisions, (x, v, goal) = lessons.collisions, state
+    gap, time = collisions.ball_plane_gap, collisions.ball_plane_time
+    return *collisions.advance_projectiles(step, gap, time, 0.0, x, v, dt, steps, goal), goal
 
 
 def truth(p, t):

@@ -77,7 +77,7 @@ def stands(forces, p, number):
     return np.max(np.abs(acceleration)) < AT_REST
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     expected = truth(p, T)[0]
     return (np.array([bisected(lambda number: stands(step, p, number), 0.8 * expected, 1.3 * expected, WIDTH)]),)
 

@@ -141,7 +141,7 @@ def edge(holds, p, width):
     return np.array([0.5 * (falls + safe)])
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     return (edge(lambda number: stands(step, p, number), p, WIDTH),)
 
 

@@ -11,17 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import Diverged, check_positive
-from solutions.contact import (
-    best_relaxation,
-    box_bounds_2d,
-    box_contacts_2d,
-    contact_rows,
-    delassus_matrix,
-    inverse_masses,
-    make_contacts,
-    make_pile_2d,
-    mass_ratio_contraction,
-)
+from solutions.contact import make_contacts, make_pile_2d
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
@@ -100,37 +90,37 @@ def start(p):
     return x, inv_mass, 6.0 / p.size**2 * inv_mass, contacts, load
 
 
-def run(step, acceleration, state, p, dt, steps):
-    """What the kind asks for.  The functions that a compiled step takes must be named here."""
-    shape = [getattr(f, "twin", f) for f in (box_bounds_2d, box_contacts_2d)]
+def run(lessons, step, acceleration, state, p, dt, steps):
+    """What the kind asks for."""
     if p.kind in ("sweeps", "relaxed"):
-        return (np.array([count(step, state, p)]),)
+        return (np.array([count(lessons, step, state, p)]),)
     if p.kind == "refused":
-        return (np.array([refuses(step, shape, state, p)]),)
-    if step.__name__ != "advance_pile_2d":
-        return (forces_of(step, state, p),)
-    depths, forces = settled(step, shape, p)
+        return (np.array([refuses(lessons, step, state, p)]),)
+    if step is not lessons.contact.advance_pile_2d:
+        return (forces_of(lessons, step, state, p),)
+    depths, forces = settled(lessons, step, p)
     stands = np.array([1.0 * (np.max(np.abs(depths)) < STANDS * p.size)])
     return ({"forces": forces, "overlap": depths, "stands": stands}[p.kind],)
 
 
-def normals_only(state):
+def normals_only(lessons, state):
     """(A, b) of both contacts without friction."""
-    x, inv_mass, inv_inertia, contacts, load = state
-    G, w = contact_rows(x, contacts)[::2], inverse_masses(inv_mass, inv_inertia)
-    return delassus_matrix(G, w), G @ (w * load.ravel())
+    contact, (x, inv_mass, inv_inertia, contacts, load) = lessons.contact, state
+    G, w = contact.contact_rows(x, contacts)[::2], contact.inverse_masses(inv_mass, inv_inertia)
+    return contact.delassus_matrix(G, w), G @ (w * load.ravel())
 
 
-def forces_of(step, state, p):
+def forces_of(lessons, step, state, p):
     """Forces (2,) by a solver, one contact in the middle of each joint."""
-    if step.__name__ == "contact_forces":
+    if step is lessons.contact.contact_forces:
         return step(*state, np.full(2, MU))[0][:, 0]
-    return step(*normals_only(state))
+    return step(*normals_only(lessons, state))
 
 
-def count(step, state, p):
+def count(lessons, step, state, p):
     """Number of sweeps from zero until both forces are right to SMALL; a wrong sweep ends at ten times what is due."""
-    (A, b), lam, forces, omega = normals_only(state), np.zeros(2), weights(p), relaxation(p)
+    (A, b), lam = normals_only(lessons, state), np.zeros(2)
+    forces, omega = weights(p), relaxation(lessons, p)
     most = 10.0 * sweeps_needed(p.r, best(p.r) if p.kind == "relaxed" else 1.0, SMALL)
     done = 0
     while np.max(np.abs(lam / forces - 1.0)) > SMALL and done < most:
@@ -138,26 +128,28 @@ def count(step, state, p):
     return float(done)
 
 
-def relaxation(p):
+def relaxation(lessons, p):
     """The lesson's best relaxation, or none."""
-    return best_relaxation(mass_ratio_contraction(p.r))[0] if p.kind == "relaxed" else 1.0
+    contact = lessons.contact
+    return contact.best_relaxation(contact.mass_ratio_contraction(p.r))[0] if p.kind == "relaxed" else 1.0
 
 
-def refuses(step, shape, state, p):
+def refuses(lessons, step, state, p):
     """1 if it ends in Diverged that names a residual, else 0."""
     try:
-        settled(step, shape, p) if step.__name__ == "advance_pile_2d" else forces_of(step, state, p)
+        settled(lessons, step, p) if step is lessons.contact.advance_pile_2d else forces_of(lessons, step, state, p)
     except Diverged as e:
         return 1.0 * ("residual" in str(e))
     return 0.0
 
 
-def settled(advance, shape, p):
+def settled(lessons, advance, p):
     """(depths [m], forces [N]), both (2,) from below, of boxes that were put on each other as a pile."""
     substeps, hertz, seconds = solver(p)
     half = np.full((2, 2), 0.5 * p.size)
     state, pile = make_pile_2d(start(p)[0][:2], np.zeros(2), masses(p), masses(p) * p.size**2 / 6.0, half,
                                np.array([(0.0, 1.0, 0.0)]), (0.0, -p.g), MU, substeps, hertz, ZETA, 0.02 * p.size)
+    shape = lessons.contact.box_bounds_2d, lessons.contact.box_contacts_2d
     end = advance(*shape, state, DT, round(seconds / DT), pile)
     forces = np.zeros(2)
     for b, J in zip(end.contacts.b, end.J):

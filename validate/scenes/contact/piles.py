@@ -10,16 +10,8 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+import solutions.contact
 from solutions.checks import BadInput
-from solutions.contact import (
-    ball_bounds,
-    box_bounds,
-    box_bounds_2d,
-    box_contacts,
-    box_contacts_2d,
-    disc_bounds,
-    round_contacts,
-)
 from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
@@ -69,18 +61,18 @@ def start(p):
     return fallen(kind_of(p), p.n)
 
 
-def geometry(p):
-    """(bounds, contacts) of a kind of pile."""
-    return {"discs": (disc_bounds, round_contacts), "boxes": (box_bounds_2d, box_contacts_2d),
-            "spheres": (ball_bounds, round_contacts), "bricks": (box_bounds, box_contacts)}[p.kind]
+def geometry(lessons, p):
+    """(bounds, contacts) of a kind of pile: given functions of lesson 9, compiled ones for a compiled step."""
+    contact = lessons.contact
+    return {"discs": (contact.disc_bounds, contact.round_contacts),
+            "boxes": (contact.box_bounds_2d, contact.box_contacts_2d),
+            "spheres": (contact.ball_bounds, contact.round_contacts),
+            "bricks": (contact.box_bounds, contact.box_contacts)}[p.kind]
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     """The pile in blocks of BLOCK steps, and the largest rise of its energy from one to the next."""
-    shape = {"discs": (disc_bounds, round_contacts), "boxes": (box_bounds_2d, box_contacts_2d),
-             "spheres": (ball_bounds, round_contacts), "bricks": (box_bounds, box_contacts)}[p.kind]
-    shape = [getattr(f, "twin", f) for f in shape]                       # what a compiled step takes
-    (pile_state, pile), energies = state, []
+    (pile_state, pile), shape, energies = state, geometry(lessons, p), []
     FALL[p] = [(pile_state.x, pile_state.q)]
     for _ in range(round(p.seconds / DT / BLOCK)):
         pile_state = step(*shape, pile_state, DT, BLOCK, pile)
@@ -96,7 +88,7 @@ def observe(state, p):
     wall = np.sum(end.J[c.b >= p.n], axis=0) / h
     inv_inertia = pile.inv_inertia
     if kind_of(p).d == 3:
-        inv_inertia = world_inertia(geometry(p)[0](end.x, end.q, pile.half)[2], inv_inertia)
+        inv_inertia = world_inertia(geometry(solutions, p)[0](end.x, end.q, pile.half)[2], inv_inertia)
     residual = natural_residual((end.x, end.v, end.omega, pile.inv_mass, inv_inertia), (c.a, c.b, c.n, c.p, c.gap),
                                 end.J, MU, h)
     return numbers(p, pile, end.x, end.q, wall, energies, residual)
@@ -119,7 +111,7 @@ def numbers(p, pile, x, q, wall, energies, residual):
     """What is observed, from places, forces, energies and the residual [m/s]."""
     weight = G * np.sum(1.0 / pile.inv_mass[:p.n])
     rise = max(0.0, np.max(np.diff(energies))) / energies[0]
-    bounds, contacts = geometry(p)
+    bounds, contacts = geometry(solutions, p)
     low, high, turn = bounds(x, q, pile.half)
     gap = contacts(x, turn, pile.half, pile.planes, near_pairs(low, high, pile.planes), 0.0).gap
     deep = max(0.0, -np.min(gap, initial=0.0)) / np.min(pile.half)

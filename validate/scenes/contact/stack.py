@@ -12,18 +12,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.contact import (
-    box_bounds,
-    box_bounds_2d,
-    box_contacts,
-    box_contacts_2d,
-    contact_rows,
-    delassus_matrix,
-    inverse_masses,
-    make_contacts,
-    make_pile,
-    make_pile_2d,
-)
+from solutions.contact import make_contacts, make_pile, make_pile_2d
 from validate.engines.bullet import CONTACT_ERP, WARM
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import SOFT
@@ -93,20 +82,18 @@ def start(p):
     return x, movable / p.m, movable / moment(p), contacts, load
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     """The forces at all contacts: (n,) added up joint by joint."""
-    x, inv_mass, inv_inertia, contacts, load = state
-    if step.__name__ == "advance_pile_2d":
-        shape = [getattr(f, "twin", f) for f in (box_bounds_2d, box_contacts_2d)]        # what a compiled step takes
-        return (pile_forces(step, *shape, p),)
-    if step.__name__ == "advance_pile":
-        shape = [getattr(f, "twin", f) for f in (box_bounds, box_contacts)]
-        return (pile_forces_in_space(step, *shape, p),)
-    if step.__name__ == "contact_forces":
+    contact, (x, inv_mass, inv_inertia, contacts, load) = lessons.contact, state
+    if step is contact.advance_pile_2d:
+        return (pile_forces(step, contact.box_bounds_2d, contact.box_contacts_2d, p),)
+    if step is contact.advance_pile:
+        return (pile_forces_in_space(step, contact.box_bounds, contact.box_contacts, p),)
+    if step is contact.contact_forces:
         forces = step(x, inv_mass, inv_inertia, contacts, load, np.full(len(contacts.a), MU))[0][:, 0]
     else:                                                     # without friction: the normal rows only
-        G, w = contact_rows(x, contacts)[::2], inverse_masses(inv_mass, inv_inertia)
-        forces = step(delassus_matrix(G, w), G @ (w * load.ravel()))
+        G, w = contact.contact_rows(x, contacts)[::2], contact.inverse_masses(inv_mass, inv_inertia)
+        forces = step(contact.delassus_matrix(G, w), G @ (w * load.ravel()))
     return (forces.reshape(p.n, -1).sum(axis=1),)
 
 

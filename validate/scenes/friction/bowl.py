@@ -8,9 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from solutions.checks import check_positive
-from solutions.friction import ParticleInBowl, check_friction, particle_bowl_gap
-from solutions.friction import falling_acceleration as acceleration
-from solutions.given.friction import advance_particle
+from solutions.friction import ParticleInBowl, check_friction
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
@@ -53,9 +51,9 @@ def start(p):
     return *place(p), ParticleInBowl(1.0, p.mu, 0.0, np.array([0.0, 0.0, -p.g]), np.zeros(3), axis, p.radius)
 
 
-def run(step, acceleration, state, p, dt, steps):
-    x, v, bowl = state
-    x, v = advance_particle(step, acceleration, particle_bowl_gap, 0.0, x, v, dt, steps, bowl)
+def run(lessons, step, acceleration, state, p, dt, steps):
+    friction, (x, v, bowl) = lessons.friction, state
+    x, v = friction.advance_particle(step, acceleration, friction.particle_bowl_gap, 0.0, x, v, dt, steps, bowl)
     return x, v, bowl
 
 
@@ -265,7 +263,7 @@ SCENE = Scene(
     title="Particle in a bowl", lesson="friction",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.friction.falling_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),

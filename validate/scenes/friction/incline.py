@@ -6,9 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.friction import driven_acceleration as acceleration
 from solutions.given.friction import make_block
-from solutions.integrators import advance
 from validate.engines.friction import block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
@@ -47,9 +45,9 @@ def start(p):
     return np.zeros(2), np.array([p.v0, 0.0]), block
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, block = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, block), block
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
 def truth(p, t):
@@ -179,7 +177,8 @@ def points(observed, p):
 
 SCENE = Scene(
     title="Block on an incline",
-    **block_on("slope", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
+    **block_on("slope", start), cases=CASES, duration=T, steps=STEPS,
+    acceleration=lambda lessons: lessons.friction.driven_acceleration, run=run,
     runners=RUNNERS,
     truth=truth, truth_uncertainty=1e-15,
     omitted_methods=("the integrators of lesson 1 have no stopping condition; the stability case "

@@ -6,9 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.friction import driven_acceleration as acceleration
 from solutions.given.friction import make_block
-from solutions.integrators import advance
 from validate.engines.friction import bullet_block, pymunk_block, slab_on_box, slab_on_line
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
@@ -40,9 +38,9 @@ def start(p):
     return np.zeros(3), thrown(p), make_block((0.0, 0.0, 1.0), p.mu, p.mu, (0.0, 0.0, -p.g), (0.0, 0.0, 0.0), 0.0)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, block = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, block), block
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
 def observe(state, p):
@@ -161,7 +159,7 @@ SCENE = Scene(
     title="Stopping block", lesson="friction",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.friction.driven_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,

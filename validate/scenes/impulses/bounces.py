@@ -8,9 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.checks import check_positive
-from solutions.given.impulses import advance_balls
 from solutions.impulses import BouncingBall, check_restitution
-from solutions.impulses import falling_acceleration as acceleration
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
@@ -76,9 +74,9 @@ def start(p):
     return x, v, BouncingBall(p.e, -p.g * up, np.zeros(d), up, p.omega**2, 2.0 * p.damping() * p.omega)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, drop = state
-    return *advance_balls(step, acceleration, 0.0, x, v, dt, steps, drop), drop
+    return *lessons.impulses.advance_balls(step, acceleration, 0.0, x, v, dt, steps, drop), drop
 
 
 def observe(state, p):
@@ -265,7 +263,7 @@ SCENE = Scene(
     title="Bounces", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.impulses.falling_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -77,7 +77,7 @@ def start(p):
     return body, r, np.tile(n, (len(r), 1)), ROUGH * p.rough
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     body, r, n, mu = state
     after, _ = step(body, r, n, p.e, mu)
     return after, r, n, mu

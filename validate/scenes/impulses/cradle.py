@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.given.impulses import Discs, advance_discs
+from solutions.given.impulses import Discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
@@ -49,9 +49,9 @@ def start(p):
     return x, v, Discs(np.full(BALLS, p.R), np.ones(BALLS), 1.0)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, discs = state
-    return *advance_discs(step, x, v, dt, steps, discs), discs
+    return *lessons.impulses.advance_discs(step, x, v, dt, steps, discs), discs
 
 
 def seen(x, v, p):

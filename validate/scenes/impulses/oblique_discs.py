@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.given.impulses import Discs, advance_discs
+from solutions.given.impulses import Discs
 from solutions.impulses import check_restitution
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
@@ -54,9 +54,9 @@ def start(p):
     return x, v, Discs(np.full(2, p.R), np.array([1.0 / p.m1, 1.0 / p.m2]), p.e)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, discs = state
-    return *advance_discs(step, x, v, dt, steps, discs), discs
+    return *lessons.impulses.advance_discs(step, x, v, dt, steps, discs), discs
 
 
 def observe(state, p):

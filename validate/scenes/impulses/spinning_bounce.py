@@ -7,9 +7,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import check_friction
-from solutions.given.impulses import SpinningBall, advance_spinning_balls
+from solutions.given.impulses import SpinningBall
 from solutions.impulses import check_restitution
-from solutions.impulses import falling_acceleration as acceleration
 from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
@@ -66,9 +65,9 @@ def start(p):
     return x, v, omega, SpinningBall(p.e, p.mu, 1.0 / p.m, inv_inertia, p.R, np.zeros(3), np.zeros(3), up)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, omega, ball = state
-    x, v, omega = advance_spinning_balls(step, acceleration, 0.0, x, v, omega, dt, steps, ball)
+    x, v, omega = lessons.impulses.advance_spinning_balls(step, acceleration, 0.0, x, v, omega, dt, steps, ball)
     return x, v, omega, ball
 
 
@@ -203,7 +202,7 @@ SCENE = Scene(
     title="Spinning bounce", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.impulses.falling_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,

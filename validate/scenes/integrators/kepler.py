@@ -1,7 +1,6 @@
 """A planet orbits its sun sixteen times on an ellipse, and every method is compared by its final position."""
 
-from solutions.integrators import advance
-from solutions.support.orbits import attraction as acceleration
+from solutions.support.orbits import attraction
 from validate.engines.integrators import (
     bullet_planet,
     planet,
@@ -21,9 +20,9 @@ STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 150000, 2000
 CASES = {"e = 0.6": Planet()}
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):
@@ -34,7 +33,7 @@ SCENE = Scene(
     title="Kepler", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
-    acceleration=acceleration, start=planet, run=run, observe=observe,
+    acceleration=lambda lessons: attraction, start=planet, run=run, observe=observe,
     truth=kepler_position,
     # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as a phase does: 3e-13
     truth_uncertainty=1e-12,

@@ -6,7 +6,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
@@ -41,9 +40,9 @@ def start(p):
     return np.zeros(2), np.array([p.vx, p.vy])
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):
@@ -178,7 +177,7 @@ SCENE = Scene(
     title="Linear drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: acceleration, start=start, run=run, observe=observe,
     truth=truth,
     # (1 − e^(−kt)) and gt are ten times as large as their difference
     truth_uncertainty=1e-14,

@@ -6,8 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import Oscillator, advance
-from solutions.integrators import oscillator_acceleration as acceleration
+from solutions.integrators import Oscillator, oscillator_acceleration
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER
@@ -44,9 +43,9 @@ def start(p):
     return np.array([p.x0]), np.zeros(1)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, oscillator(p))
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, oscillator(p))
 
 
 def observe(state, p):
@@ -113,7 +112,7 @@ def spring_and_damper(p):
 
 
 MOTION = Motion(T, law, released, seen, truth, floor)
-DAMPED = hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)
+DAMPED = hidden_damping(lambda t, x, v, p: oscillator_acceleration(t, x, v, oscillator(p)), start)
 IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # the most steps, of what is slow in plain Python
 
 
@@ -126,7 +125,7 @@ def pymunk_make(p, dt, ahead=0.0):
     space = pymunk_space()
     body = pymunk.Body(p.m, 1.0)
     body.position = (p.x0, 0.0)
-    body.velocity = (ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0)
+    body.velocity = (ahead * dt * oscillator_acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0)
     space.add(body, pymunk.DampedSpring(space.static_body, body, (-2.0, 0.0), (0.0, 0.0), 2.0, p.k, p.c))
     return pymunk_world(space, dt, lambda: np.array([body.position.x]))
 
@@ -134,7 +133,7 @@ def pymunk_make(p, dt, ahead=0.0):
 def pybullet_make(p, dt, ahead=0.0, default=False):
     """Apply the force of the spring and the damper, computed from the state before each step."""
     bullet = Bullet(dt)
-    v0 = -ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p))
+    v0 = -ahead * dt * oscillator_acceleration(0.0, p.x0, 0.0, oscillator(p))
     body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (v0, 0.0, 0.0), default)
 
     def step():
@@ -183,7 +182,7 @@ SCENE = Scene(
     lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.integrators.oscillator_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     points=points, links=links,
     uses=("one coordinate", "one step function"),

@@ -6,7 +6,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
@@ -39,9 +38,9 @@ def start(p):
     return np.zeros(1), np.zeros(1)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):
@@ -162,7 +161,7 @@ SCENE = Scene(
     title="Quadratic drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     # the depth; the speed is then 9.852684396 m/s
     published_states=((3.0, (22.80837567,), 5e-9),),

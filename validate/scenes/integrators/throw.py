@@ -5,7 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import (
@@ -49,9 +48,9 @@ def start(p):
     return np.zeros(3), np.array([p.vx, p.vy, p.vz])
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):
@@ -156,7 +155,7 @@ SCENE = Scene(
     title="Throw", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     # by hand, exactly: only round-off may differ
     published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),

@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from solutions.kinematics import make_arm_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
@@ -64,11 +64,12 @@ def settings(p):
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
-    if step.__name__ == "contraction_factors":
+def run(lessons, step, acceleration, state, p, dt, steps):
+    kinematics = lessons.kinematics
+    if step is kinematics.contraction_factors:
         return tuple(step(directions(p)[1], *settings(p)))
     target = end_of(ANGLES, lengths_of(p))
-    return tuple(advance_reach(step, reach_2d, theta, target, 1, arm_of(p)) for theta in state)
+    return tuple(kinematics.advance_reach(step, kinematics.reach_2d, theta, target, 1, arm_of(p)) for theta in state)
 
 
 def arm_of(p):

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
+from solutions.kinematics import make_arm_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -59,8 +59,9 @@ def start(p):
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
-    return solve_reach(step, reach_2d, state[0], target_of(p), ENOUGH * REACH, MOST, arm_of(p))[:1]
+def run(lessons, step, acceleration, state, p, dt, steps):
+    kinematics, target = lessons.kinematics, target_of(p)
+    return kinematics.solve_reach(step, kinematics.reach_2d, state[0], target, ENOUGH * REACH, MOST, arm_of(p))[:1]
 
 
 def arm_of(p):

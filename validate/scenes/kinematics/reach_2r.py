@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
+from solutions.kinematics import make_arm_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
@@ -58,11 +58,13 @@ def start(p):
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
-    if step.__name__ == "solve_2r":
+def run(lessons, step, acceleration, state, p, dt, steps):
+    kinematics = lessons.kinematics
+    if step is kinematics.solve_2r:
         return step(target_of(p), lengths_of(p), 1.0), step(target_of(p), lengths_of(p), -1.0)
     enough = ENOUGH * (p.l_1 + p.l_2)
-    return tuple(solve_reach(step, reach_2d, theta, target_of(p), enough, MOST, arm_of(p))[0] for theta in state)
+    return tuple(kinematics.solve_reach(step, kinematics.reach_2d, theta, target_of(p), enough, MOST, arm_of(p))[0]
+                 for theta in state)
 
 
 def arm_of(p):

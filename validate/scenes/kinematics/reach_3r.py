@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
+from solutions.kinematics import make_arm_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -69,10 +69,12 @@ def start(p):
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
-    if step.__name__ == "solve_3r":
+def run(lessons, step, acceleration, state, p, dt, steps):
+    kinematics = lessons.kinematics
+    if step is kinematics.solve_3r:
         return step(target_of(p), lengths_of(p), 1.0), step(target_of(p), lengths_of(p), -1.0)
-    return tuple(solve_reach(step, pose_2d, theta, target_of(p), ENOUGH, MOST, arm_of(p))[0] for theta in state)
+    return tuple(kinematics.solve_reach(step, kinematics.pose_2d, theta, target_of(p), ENOUGH, MOST, arm_of(p))[0]
+                 for theta in state)
 
 
 def arm_of(p):

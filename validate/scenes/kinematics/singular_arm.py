@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from solutions.kinematics import make_arm_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bent_to, end_of, joints_of
@@ -36,8 +36,9 @@ def start(p):
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
-    return (advance_reach(step, reach_2d, state[0], np.array([p.x, 0.0]), ITERATIONS, arm_of(p)),)
+def run(lessons, step, acceleration, state, p, dt, steps):
+    kinematics = lessons.kinematics
+    return (kinematics.advance_reach(step, kinematics.reach_2d, state[0], np.array([p.x, 0.0]), ITERATIONS, arm_of(p)),)
 
 
 def arm_of(p):

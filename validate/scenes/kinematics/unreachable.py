@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from solutions.kinematics import make_arm_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
@@ -55,8 +55,9 @@ def start(p):
 
 # ---------------------------------------------------------------------------------------------- ours
 
-def run(step, acceleration, state, p, dt, steps):
-    return (advance_reach(step, reach_2d, state[0], target_of(p), ITERATIONS, arm_of(p)),)
+def run(lessons, step, acceleration, state, p, dt, steps):
+    kinematics = lessons.kinematics
+    return (kinematics.advance_reach(step, kinematics.reach_2d, state[0], target_of(p), ITERATIONS, arm_of(p)),)
 
 
 def arm_of(p):

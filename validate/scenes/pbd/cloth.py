@@ -7,8 +7,6 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.given.pbd import make_constraint_network
-from solutions.given.pbd import network_gravity as acceleration
-from solutions.integrators import advance
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest
 from validate.scene import Scene, by_order, ours
@@ -62,9 +60,9 @@ def start(p):
     return (rest(p) if p.hanging else flat.x), np.zeros_like(flat.x), network
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, network = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -156,7 +154,7 @@ SCENE = Scene(
     title="Cloth", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.pbd.network_gravity, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt); the methods "
                      "that solve for all links at once would have a dense matrix, with 2,682 unknowns"),

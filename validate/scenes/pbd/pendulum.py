@@ -7,8 +7,6 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.given.pbd import make_constraint_network
-from solutions.given.pbd import network_gravity as acceleration
-from solutions.integrators import advance
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
@@ -55,9 +53,9 @@ def start(p):
     return x, np.zeros((2, 2)), make_constraint_network(x, p.m, [0], [(0, 1)], 0.0, 1.0, (0.0, -p.g), 1)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, network = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -182,7 +180,7 @@ SCENE = Scene(
     title="Pendulum", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.pbd.network_gravity, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     published_states=(
         (0.0, (1.0, 0.0), 1e-15),

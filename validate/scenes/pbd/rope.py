@@ -7,8 +7,6 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.given.pbd import make_constraint_network
-from solutions.given.pbd import network_gravity as acceleration
-from solutions.integrators import advance
 from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_sweeps, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import (
@@ -56,9 +54,9 @@ def start(p):
     return x, 0.0 * x, make_constraint_network(x, p.m, [0], pairs, 0.0, 1.0, (0.0, -p.g), p.sweeps)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, network = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -214,7 +212,7 @@ SCENE = Scene(
     title="Rope", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.pbd.network_gravity, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
     omitted_methods=("the projection method has a dense matrix of all points and links; a long rope would need a "
                      "sparse one, and pymunk more iterations"),

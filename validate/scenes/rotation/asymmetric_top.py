@@ -4,9 +4,8 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.given.rotation import advance_rotation, check_moments
+from solutions.given.rotation import check_moments
 from solutions.rotation import RigidBody
-from solutions.rotation import no_torque as acceleration
 from validate.engines.rotation import FREE_BODY, free_engines, mujoco_default, turn_runners
 from validate.methods import (
     AXIS_ANGLE,
@@ -57,9 +56,9 @@ def start(p):
     return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), RigidBody(1.0, p.moments())
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     q, L, body = state
-    return *advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body), body
+    return *lessons.rotation.advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body), body
 
 
 def truth(p, t):
@@ -108,7 +107,7 @@ SCENE = Scene(
     **FREE_BODY,
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run,
+    acceleration=lambda lessons: lessons.rotation.no_torque, start=start, run=run,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
     bodies=bodies, arrows=arrows,

@@ -5,9 +5,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.given.rotation import advance_rotation, check_moments
+from solutions.given.rotation import check_moments
 from solutions.rotation import RigidBody
-from solutions.rotation import no_torque as acceleration
 from validate.engines.bullet import Rigid
 from validate.engines.rotation import FREE_BODY, free_engines, turn_runners
 from validate.methods import COMPOSED_SPLITTING, MATRIX, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
@@ -48,9 +47,9 @@ def start(p):
     return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), RigidBody(1.0, p.moments())
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     q, L, body = state
-    return *advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body), body
+    return *lessons.rotation.advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body), body
 
 
 def truth(p, t):
@@ -122,7 +121,7 @@ SCENE = Scene(
     **FREE_BODY,
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run,
+    acceleration=lambda lessons: lessons.rotation.no_torque, start=start, run=run,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     omitted_methods=("by theory ω*R with renormalised columns has the error 3,700 dt here, three times that of the "
                      "worst of the others; the asymmetric top has it"),

@@ -6,9 +6,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.given.rotation import advance_rotation, check_moments
+from solutions.given.rotation import check_moments
 from solutions.rotation import Top, exponential
-from solutions.rotation import heavy_top_torque as acceleration
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import top as mujoco_top
 from validate.engines.rotation import turn_runners
@@ -52,9 +51,9 @@ def start(p):
     return q, about(np.array([1.0, 0.0, 0.0]), p.tilt) @ np.array([0.0, 0.0, p.I3 * p.spin]), Top(p.moments(), p.mgl)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     q, L, top = state
-    return *advance_rotation(step, acceleration, 0.0, q, L, dt, steps, top), top
+    return *lessons.rotation.advance_rotation(step, acceleration, 0.0, q, L, dt, steps, top), top
 
 
 def observe(state, p):
@@ -191,7 +190,7 @@ SCENE = Scene(
     title="Heavy top", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.heavy_top_torque, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -6,9 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.given.rotation import advance_rigid_body
 from solutions.rotation import RollingBall
-from solutions.rotation import supported_weight as acceleration
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
@@ -45,9 +43,9 @@ def start(p):
     return np.array([0.0, 0.0, p.radius]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, q, v, omega = state
-    return advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
+    return lessons.rotation.advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
 
 
 def observe(state, p):
@@ -158,7 +156,7 @@ SCENE = Scene(
     title="Rolling down", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.supported_weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,

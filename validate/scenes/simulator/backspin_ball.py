@@ -10,9 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.given.rotation import advance_rigid_body
 from solutions.rotation import RollingBall
-from solutions.rotation import supported_weight as acceleration
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import OVERLAP, pybullet_spinning_ball, pymunk_body, pymunk_floor_space
 from validate.methods import AVERAGE_ROLLING, EXACT_ROLLING, ROLLING
@@ -52,9 +50,9 @@ def start(p):
     return np.array([0.0, 0.0, p.R]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([p.v0, 0.0, 0.0]), spin
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, q, v, omega = state
-    return advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
+    return lessons.rotation.advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
 
 
 def observe(state, p):
@@ -221,7 +219,7 @@ SCENE = Scene(
     title="A ball with backspin", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.supported_weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("goes on", "disc"),
     sanity_checks=sanity_checks,

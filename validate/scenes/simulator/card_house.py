@@ -10,8 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_friction, check_positive
-from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
-from solutions.simulator import weight as acceleration
+from solutions.simulator import make_bodies_2d
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
@@ -93,9 +92,10 @@ def start(p):
                           (0.0, -p.g), p.rough * least(p), SWEEPS, MARGIN)
 
 
-def run(step, acceleration, state, p, dt, steps):
-    now, rows = state
-    return advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, now, dt, steps, rows), rows
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator, (now, rows) = lessons.simulator, state
+    shape = simulator.box_bounds_2d, simulator.box_contacts_2d
+    return simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, rows), rows
 
 
 def corners(x, angle):
@@ -199,7 +199,7 @@ SCENE = Scene(
     title="A house of cards", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("barely",),
     omitted_methods="the house was not set up in pybullet",

@@ -13,10 +13,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_friction, check_positive
-from solutions.contact import box_bounds_2d, box_contacts_2d, make_pile_2d
+from solutions.contact import make_pile_2d
 from solutions.given.bodies import Bodies
-from solutions.simulator import advance_contact
-from solutions.simulator import weight as acceleration
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import PILE, SETTLED_LOOP
@@ -91,13 +89,13 @@ def start(p):
     return rows, pile
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     rows, pile = state
-    if step.__name__ == "advance_pile_2d":
-        shape = [getattr(f, "twin", f) for f in (box_bounds_2d, box_contacts_2d)]           # what a compiled step takes
+    shape = lessons.contact.box_bounds_2d, lessons.contact.box_contacts_2d
+    if step is lessons.contact.advance_pile_2d:
         return [step(*shape, row, dt, steps, pile._replace(hertz=CARRIED / dt)) for row in rows], pile
     bodies = Bodies(*(getattr(pile, name) for name in Bodies._fields[:6]), SWEEPS, pile.margin)
-    return [advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, row, dt, steps, bodies)
+    return [lessons.simulator.advance_contact(step, acceleration, *shape, 0.0, row, dt, steps, bodies)
             for row in rows], pile
 
 
@@ -270,7 +268,7 @@ SCENE = Scene(
     lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     slow_cases=("fifteen", "six, smoother"),
     omitted_methods="sweeps and Murty's method alone are missing: they find forces and move no bodies",

@@ -10,17 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_friction, check_positive
-from solutions.simulator import (
-    advance_contact,
-    box_bounds_2d,
-    box_contacts_2d,
-    largest_overlap,
-    make_bodies_2d,
-    mechanical_energy_2d,
-    sweep_residual_2d,
-    weight,
-)
-from solutions.springs import spring_tension
+from solutions.simulator import make_bodies_2d, mechanical_energy_2d
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
@@ -68,17 +58,21 @@ class Run(NamedTuple):
     residual: float          # of a step [m/s]
 
 
-def acceleration(t, x, q, v, omega, p):
-    """Weight, air, and a spring that pulls the hammer."""
-    F, tau = weight(t, x, q, v, omega, p)
-    for i in range(x.shape[0]):
-        if p.inv_mass[i] > 0.0:
-            F[i] = F[i] - DRAG * v[i]
-    r = ANCHOR - x[HAMMER]
-    length = np.sqrt(r[0] * r[0] + r[1] * r[1])
-    rate = -(r[0] * v[HAMMER, 0] + r[1] * v[HAMMER, 1]) / length
-    F[HAMMER] = F[HAMMER] + spring_tension(length, rate, REST, SPRING, DAMPER) / length * r
-    return F, tau
+def acceleration(lessons):
+    weight, spring_tension = lessons.simulator.weight, lessons.springs.spring_tension
+
+    def load(t, x, q, v, omega, p):
+        """Weight, air, and a spring that pulls the hammer."""
+        F, tau = weight(t, x, q, v, omega, p)
+        for i in range(x.shape[0]):
+            if p.inv_mass[i] > 0.0:
+                F[i] = F[i] - DRAG * v[i]
+        r = ANCHOR - x[HAMMER]
+        length = np.sqrt(r[0] * r[0] + r[1] * r[1])
+        rate = -(r[0] * v[HAMMER, 0] + r[1] * v[HAMMER, 1]) / length
+        F[HAMMER] = F[HAMMER] + spring_tension(length, rate, REST, SPRING, DAMPER) / length * r
+        return F, tau
+    return load
 
 
 def start(p):
@@ -112,19 +106,21 @@ def work_of_supports(now, rows):
     return work
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator = lessons.simulator
+    shape = simulator.box_bounds_2d, simulator.box_contacts_2d
     if p.seen == "places":
-        end = advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, state.now, dt, steps, state.rows)
+        end = simulator.advance_contact(step, acceleration, *shape, 0.0, state.now, dt, steps, state.rows)
         return state._replace(now=end)
     now, rows, work, lowest, gain, deepest, residual = state
     for _ in range(steps):
-        now = advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, now, dt, 1, rows)
+        now = simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, 1, rows)
         work += work_of_supports(now, rows)
         rest = energy(now, rows) - work
         lowest = min(lowest, rest)
         gain = max(gain, rest - lowest)
-        deepest = max(deepest, largest_overlap(now.contacts))
-        residual = max(residual, sweep_residual_2d(now, dt, rows))
+        deepest = max(deepest, simulator.largest_overlap(now.contacts))
+        residual = max(residual, simulator.sweep_residual_2d(now, dt, rows))
     return Run(now, rows, work, lowest, gain, deepest, residual)
 
 

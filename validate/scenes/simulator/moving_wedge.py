@@ -10,8 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
-from solutions.simulator import weight as acceleration
+from solutions.simulator import make_bodies_2d
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
@@ -64,10 +63,10 @@ def start(p):
                           np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), 0.0, SWEEPS, MARGIN)
 
 
-def run(step, acceleration, state, p, dt, steps):
-    now, bodies_here = state
-    return advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, now, dt, steps,
-                           bodies_here), bodies_here
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator, (now, bodies_here) = lessons.simulator, state
+    shape = simulator.box_bounds_2d, simulator.box_contacts_2d
+    return simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, bodies_here), bodies_here
 
 
 def observe(state, p):
@@ -256,7 +255,7 @@ SCENE = Scene(
     title="A wedge that slides away", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("45°, light wedge", "10°, heavy wedge"),
     sanity_checks=sanity_checks,

@@ -11,16 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.integrators import rk4_step
-from solutions.simulator import (
-    RockingBlock,
-    advance_contact,
-    advance_rocking,
-    box_bounds_2d,
-    box_contacts_2d,
-    make_bodies_2d,
-)
-from solutions.simulator import weight as acceleration
+from solutions.simulator import RockingBlock, make_bodies_2d
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import (
@@ -77,13 +68,15 @@ def start(p):
     return np.array([p.share * alpha(p)]), np.zeros(1)
 
 
-def run(step, acceleration, state, p, dt, steps):
-    x, v = state
-    if step.__name__ == "rocking_step":
-        return advance_rocking(rk4_step, 0.0, x, v, dt, steps, RockingBlock(1.0, p.b, p.h, inertia(p), p.g))
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator, (x, v) = lessons.simulator, state
+    if step is simulator.rocking_step:
+        block = RockingBlock(1.0, p.b, p.h, inertia(p), p.g)
+        return simulator.advance_rocking(lessons.integrators.rk4_step, 0.0, x, v, dt, steps, block)
     now, block = make_bodies_2d(place(p)[None], x, 1.0, inertia(p), np.array([(p.b, p.h)]),
                                 np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), MU, SWEEPS, MARGIN)
-    end = advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, now, dt, steps, block)
+    shape = simulator.box_bounds_2d, simulator.box_contacts_2d
+    end = simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, block)
     return end.q[:1], end.omega[:1]
 
 
@@ -198,7 +191,7 @@ SCENE = Scene(
     title="A rocking block", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-11,
     slow_cases=("a quarter of it",),
     sanity_checks=sanity_checks,

@@ -9,11 +9,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.given.simulator import RodsInAngles, rods_acceleration
-from solutions.integrators import advance
+from solutions.given.simulator import RodsInAngles
 from solutions.rotation import SUZUKI
-from solutions.simulator import advance_free, make_bodies, make_bodies_2d, make_joints
-from solutions.simulator import weight as acceleration
+from solutions.simulator import make_bodies, make_bodies_2d, make_joints
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.simulator import pybullet_chain, pymunk_chain
 from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
@@ -78,18 +76,19 @@ def start(p):
     return *flat[:4], hinged, *deep[:4], make_joints(deep, rows, n, n - 1, ends[:-1, :1] * HEADING, 0.0)
 
 
-def run(step, acceleration, state, p, dt, steps):
-    if step.__name__ == "rk4_step":
-        rods = RodsInAngles(p.m, p.l, inertia(p), p.g)
-        angle, omega = advance(step, rods_acceleration, 0.0, state[1][1:], state[3][1:], dt, steps, rods)
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator, advance = lessons.simulator, lessons.integrators.advance
+    if step is lessons.integrators.rk4_step:
+        rods, begins = RodsInAngles(p.m, p.l, inertia(p), p.g), (state[1][1:], state[3][1:])
+        angle, omega = advance(step, simulator.rods_acceleration, 0.0, *begins, dt, steps, rods)
         return centres(angle, p), np.append(0.0, angle), state[2], np.append(0.0, omega), *state[4:]
-    if step.__name__ == "joint_step":
-        now = advance_free(step, acceleration, 0.0, *state[5:9], dt, steps, state[9])
+    if step is simulator.joint_step:
+        now = simulator.advance_free(step, acceleration, 0.0, *state[5:9], dt, steps, state[9])
         # for the picture: places and angles in the plane of the motion
         x, along = now[0], np.array([about_x(q) for q in now[1]])
         flat = np.stack((x @ HEADING, x[:, 2]), axis=1), np.arctan2(along[:, 2], along @ HEADING)
         return *flat, *state[2:5], *now, state[9]
-    return *advance_free(step, acceleration, 0.0, *state[:4], dt, steps, state[4]), *state[4:]
+    return *simulator.advance_free(step, acceleration, 0.0, *state[:4], dt, steps, state[4]), *state[4:]
 
 
 def about_x(q):
@@ -258,7 +257,7 @@ SCENE = Scene(
     title="A chain of rods", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
     slow_cases=("50 rods",),
     sanity_checks=sanity_checks,

@@ -8,8 +8,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_not_negative, check_positive
-from solutions.simulator import advance_contact, disc_bounds, make_bodies_2d, make_joints, round_contacts
-from solutions.simulator import weight as acceleration
+from solutions.simulator import make_bodies_2d, make_joints
 from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
 from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
@@ -74,9 +73,10 @@ def start(p):
     return state, make_joints(state, rows, np.arange(BALLS), np.full(BALLS, BALLS), pivots(p), 1.0)
 
 
-def run(step, acceleration, state, p, dt, steps):
-    now, rows = state
-    return advance_contact(step, acceleration, disc_bounds, round_contacts, 0.0, now, dt, steps, rows), rows
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator, (now, rows) = lessons.simulator, state
+    shape = simulator.disc_bounds, simulator.round_contacts
+    return simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, rows), rows
 
 
 def seen(theta, omega, p):
@@ -213,7 +213,7 @@ SCENE = Scene(
     title="A cradle of balls on rods", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
     slow_cases=("two balls", "touching"),
     sanity_checks=sanity_checks,

@@ -8,9 +8,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.given.rotation import advance_rigid_body
-from solutions.rotation import supported_weight as acceleration
-from solutions.simulator import CarriedBall, advance_contact, ball_bounds, make_bodies, round_contacts, weight
+from solutions.simulator import CarriedBall, make_bodies
 from validate.engines.simulator import pybullet_turntable
 from validate.methods import CARRIED, LOOP
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
@@ -60,11 +58,13 @@ def start(p):
     return x, UPRIGHT, v, omega, state, rows
 
 
-def run(step, acceleration, state, p, dt, steps):
-    x, q, v, omega, rows, bodies_here = state
-    if step.__name__ == "carried_step":
-        return *advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p)), rows, bodies_here
-    end = advance_contact(step, weight, ball_bounds, round_contacts, 0.0, rows, dt, steps, bodies_here)
+def run(lessons, step, acceleration, state, p, dt, steps):
+    simulator, (x, q, v, omega, rows, bodies_here) = lessons.simulator, state
+    if step is simulator.carried_step:
+        end = lessons.rotation.advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
+        return *end, rows, bodies_here
+    shape = simulator.ball_bounds, simulator.round_contacts
+    end = simulator.advance_contact(step, simulator.weight, *shape, 0.0, rows, dt, steps, bodies_here)
     return end.x[0], end.q[0], end.v[0], end.omega[0], end, bodies_here
 
 
@@ -210,7 +210,7 @@ SCENE = Scene(
     title="A ball on a turntable", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.supported_weight, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("hollow ball",),
     omitted_methods="pymunk is planar: seen from above, it has no floor under the ball",

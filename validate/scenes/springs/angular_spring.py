@@ -8,8 +8,6 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
 from solutions.checks import check_positive
-from solutions.integrators import advance
-from solutions.springs import angular_spring_forces
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
 from validate.reference.schemes import Model, Motion
@@ -40,16 +38,20 @@ def inertia(p):
     return p.m * p.length**2 / 3.0
 
 
-def acceleration(t, x, v, p):
-    """θ̈ = (r × F_c − ½ m g length sin θ)/I,  r = length (sin θ, −cos θ),  F_c: the spring's force on the end.
+def acceleration(lessons):
+    angular_spring_forces = lessons.springs.angular_spring_forces
 
-    The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's
-    length.
-    """
-    r = np.array([p.length * np.sin(x[0]), -p.length * np.cos(x[0])])
-    F_c = angular_spring_forces(DOWN, HINGE, r, 0.0, p.kappa)[2]
-    moment = r[0] * F_c[1] - r[1] * F_c[0] - 0.5 * p.m * p.g * p.length * np.sin(x[0])
-    return np.array([moment * 3.0 / (p.m * p.length * p.length)])
+    def swing(t, x, v, p):
+        """θ̈ = (r × F_c − ½ m g length sin θ)/I,  r = length (sin θ, −cos θ),  F_c: the spring's force on the end.
+
+        The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's
+        length.
+        """
+        r = np.array([p.length * np.sin(x[0]), -p.length * np.cos(x[0])])
+        F_c = angular_spring_forces(DOWN, HINGE, r, 0.0, p.kappa)[2]
+        moment = r[0] * F_c[1] - r[1] * F_c[0] - 0.5 * p.m * p.g * p.length * np.sin(x[0])
+        return np.array([moment * 3.0 / (p.m * p.length * p.length)])
+    return swing
 
 
 def start(p):
@@ -58,9 +60,9 @@ def start(p):
     return np.array([p.theta0]), np.zeros(1)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):

@@ -6,8 +6,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from solutions.integrators import advance
-from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
 from validate.engines.springs import in_space, net_runners, start_of
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
@@ -69,9 +67,9 @@ def net(p):
 start = start_of(net, ("links", "m", "k", "rest", "span"))
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, network = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -155,7 +153,7 @@ SCENE = Scene(
     title="Discrete catenary", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.springs.spring_network_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",

@@ -4,8 +4,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.integrators import advance
-from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import in_space, pymunk_net, start_of
 from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, INTEGRATORS, ONE_OF_EACH_ORDER
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
@@ -43,9 +41,9 @@ def net(p):
 start = start_of(net, ("springs", "m", "k", "rest"))
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, network = state
-    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -156,7 +154,7 @@ SCENE = Scene(
     title="Hanging springs", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.springs.spring_network_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",

@@ -5,8 +5,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import advance
-from solutions.springs import universal_gravity
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.integrators import planet, planet_runners
@@ -41,10 +39,14 @@ def both(r, p):
     return np.stack((-p.m_b / total * r, p.m_a / total * r))
 
 
-def acceleration(t, x, v, p):
-    """m_a a_a = F,  m_b a_b = −F"""
-    F = universal_gravity(x[0], x[1], p.m_a, p.m_b, p.G)
-    return np.stack((F / p.m_a, -F / p.m_b))
+def acceleration(lessons):
+    universal_gravity = lessons.springs.universal_gravity
+
+    def attraction(t, x, v, p):
+        """m_a a_a = F,  m_b a_b = −F"""
+        F = universal_gravity(x[0], x[1], p.m_a, p.m_b, p.G)
+        return np.stack((F / p.m_a, -F / p.m_b))
+    return attraction
 
 
 def start(p):
@@ -54,9 +56,9 @@ def start(p):
     return both(r, p), both(v, p)
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):
@@ -81,11 +83,18 @@ def seen(r, p):
 MOTION = kepler_motion(T)._replace(seen=seen, truth=truth)
 
 
+def pulls(x, p):
+    """Return the accelerations (2, 2) [m/s²] of both, apart from the lesson's."""
+    r = x[1] - x[0]
+    F = p.G * p.m_a * p.m_b / np.sqrt(np.sum(r * r)) ** 3 * r
+    return np.stack((F / p.m_a, -F / p.m_b))
+
+
 def pymunk_stars(p, dt, ahead=0.0):
     """Attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
     import pymunk
     space, bodies, (x, v) = pymunk_space(), [], start(p)
-    for m, place, speed, pull in zip((p.m_a, p.m_b), x, v, acceleration(0.0, x, v, p)):
+    for m, place, speed, pull in zip((p.m_a, p.m_b), x, v, pulls(x, p)):
         body = pymunk.Body(m, 1.0)
         body.position, body.velocity = tuple(map(float, place)), tuple(map(float, speed + ahead * dt * pull))
         bodies.append(body)
@@ -105,7 +114,7 @@ def pymunk_stars(p, dt, ahead=0.0):
 def bullet_stars(p, dt, ahead=0.0):
     """Apply the attraction as two opposite forces, from the positions before each step."""
     bullet, (x, v) = Bullet(dt), start(p)
-    v = v - ahead * dt * acceleration(0.0, x, v, p)
+    v = v - ahead * dt * pulls(x, p)
     bodies = [bullet.point_mass(m, (*place, 0.0), (*speed, 0.0)) for m, place, speed in zip((p.m_a, p.m_b), x, v)]
 
     def step():

@@ -5,8 +5,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import advance
-from solutions.springs import air_force
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
@@ -29,11 +27,15 @@ class Params(NamedTuple):
 CASES = {"thrown": Params()}
 
 
-def acceleration(t, x, v, p):
-    """a = F/m − g ŷ,   F the force of the air"""
-    a = air_force(v, np.array([-p.wind, 0.0]), p.k_v) / p.m
-    a[1] -= p.g
-    return a
+def acceleration(lessons):
+    air_force = lessons.springs.air_force
+
+    def blown(t, x, v, p):
+        """a = F/m − g ŷ,   F the force of the air"""
+        a = air_force(v, np.array([-p.wind, 0.0]), p.k_v) / p.m
+        a[1] -= p.g
+        return a
+    return blown
 
 
 def start(p):
@@ -42,9 +44,9 @@ def start(p):
     return np.zeros(2), np.array([p.vx, p.vy])
 
 
-def run(step, acceleration, state, p, dt, steps):
+def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
 def observe(state, p):

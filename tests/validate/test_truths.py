@@ -1,0 +1,60 @@
+"""Truths of scenes, compared with what the worked answers find on another way."""
+
+import numpy as np
+import pytest
+
+from validate.engines.springs import net_points, start_net
+from validate.reference.springs import modes
+from validate.scenes.friction import stick_slip
+from validate.scenes.inertia_tensors import tensors
+from validate.scenes.springs import samples_per_frame, spring_net
+from validate.subject import modules
+
+LESSONS = modules.PLAIN.lessons
+
+
+def test_event_steps_find_the_times_of_the_slips():
+    """v(t) at the end of a slip is wrong by dt² Aω² s/24, and falls there at more than μg − A |cos ωt| > 0.3 m/s²."""
+    p, dt = stick_slip.CASES["F = 8 cos t"], 0.001
+    late = dt**2 * p.force * p.omega**2 * 0.6 / 24.0 / 0.3
+    law, (x, v, block) = LESSONS.friction.driven_acceleration, stick_slip.start(p)
+    found = LESSONS.friction.slip_times(law, 0.0, x, v, dt, round(stick_slip.T / dt), block)
+    expected = np.array([[begin, end] for begin, end, _, _ in stick_slip.slips(p)])
+    assert np.max(np.abs(found - expected)) < late + 1e-12
+
+
+def test_the_parts_of_an_uneven_dumbbell_have_its_centre():
+    p = tensors.CASES["uneven dumbbell"]
+    centre = LESSONS.inertia_tensors.combine(*tensors.parts(LESSONS, p)).x
+    assert centre == pytest.approx(tensors.centre(p), abs=1e-15)
+
+
+@pytest.mark.parametrize("samples", samples_per_frame.SAMPLES[:3])
+def test_the_fastest_mode_of_a_net_grows_as_its_determinant_says(samples):
+    """|λ₁ λ₂| = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²;  |λ|² of a complex pair."""
+    scene, integrators = samples_per_frame, LESSONS.integrators
+    omega, c = (values[-1] for values in modes(scene.square_net(scene.CASES["net"]))[:2])
+    dt = 1.0 / (scene.FRAMES_PER_SECOND * samples)
+    A = integrators.amplification_matrix(integrators.average_velocity_step, omega, 0.5 * c / omega, dt)
+    assert np.linalg.det(A) == pytest.approx(1.0 - c * dt + 0.5 * (omega * dt) ** 2, abs=1e-12)
+
+
+@pytest.mark.parametrize(("samples", "said", "digit"), [(4, 0.03, 0.005), (16, 0.008, 0.0005)])
+def test_the_lectures_steps_err_as_the_scene_says(samples, said, digit):
+    """Its docstring rounds the error of the worst node to one digit."""
+    scene = modules.bind_scene("samples_per_frame")
+    p, steps = scene.parameters, round(samples_per_frame.FRAMES_PER_SECOND * samples * scene.duration)
+    step, dt = LESSONS.integrators.average_velocity_step, scene.duration / steps
+    end = scene.observe(scene.run(scene.lessons, step, scene.law, scene.start(p), p, dt, steps), p)
+    off = net_points(end - scene.truth(p, scene.duration), p)
+    assert np.linalg.norm(off, axis=1).max() == pytest.approx(said, abs=digit)
+
+
+@pytest.mark.parametrize("p", spring_net.CASES.values(), ids=list(spring_net.CASES))
+def test_a_net_of_the_lesson_has_the_springs_and_the_rest_state_of_the_reference(p):
+    springs, net = LESSONS.springs, spring_net.square_net(p)
+    offsets = springs.STRUCTURAL + springs.SHEAR * p.shear + springs.BEND * p.bend
+    ours = {tuple(sorted(pair)) for pair in springs.grid_pairs(p.n, p.n, offsets).tolist()}
+    assert ours == set(map(tuple, net.pairs.tolist()))
+    _, v, network = start_net(p)
+    assert np.abs(springs.spring_network_acceleration(0.0, spring_net.rest_positions(net), v, network)).max() < 1e-10
