@@ -104,9 +104,12 @@ def withheld(lesson, folder=SOLUTIONS):
 
 
 def scene_files():
-    """{name: path} of every scene: one file each in a folder per lesson."""
+    """{name: path} of every scene: one file each in a folder per lesson.
+
+    A name that begins with an underscore is no scene: `_common.py` has what the scenes of a lesson share.
+    """
     files = sorted(SCENES.glob("*/*.py"), key=lambda path: path.stem)
-    return {path.stem: path for path in files if path.stem != "__init__"}
+    return {path.stem: path for path in files if not path.stem.startswith("_")}
 
 
 def scene_names():

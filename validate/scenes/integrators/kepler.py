@@ -2,17 +2,11 @@
 
 from solutions.integrators import advance
 from solutions.support.orbits import attraction as acceleration
-from validate.engines.integrators import (
-    bullet_planet,
-    planet,
-    planet_in_space,
-    planet_runners,
-    pymunk_planet,
-    sun_and_planet,
-)
+from validate.engines.integrators import bullet_planet, pymunk_planet
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import Planet, kepler_motion, kepler_position
 from validate.scene import Scene
+from validate.scenes.integrators._common import planet, planet_in_space, planet_runners, sun_and_planet
 
 T = 100.0                    # [s]: sixteen revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 150000, 200000)

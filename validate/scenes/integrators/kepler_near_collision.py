@@ -2,14 +2,7 @@
 
 from solutions.integrators import advance, advance_adaptive, blanes_moan_step
 from solutions.support.orbits import attraction as acceleration
-from validate.engines.integrators import (
-    bullet_planet,
-    planet,
-    planet_in_space,
-    planet_runners,
-    pymunk_planet,
-    sun_and_planet,
-)
+from validate.engines.integrators import bullet_planet, pymunk_planet
 from validate.methods import ADAPTIVE, BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import (
     Planet,
@@ -20,6 +13,7 @@ from validate.reference.integrators import (
     mean_rate,
 )
 from validate.scene import Scene, ours
+from validate.scenes.integrators._common import planet, planet_in_space, planet_runners, sun_and_planet
 
 T = 20.0                     # [s]: three revolutions
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 200000)

@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.integrators import advance
-from validate.engines.bullet import Bullet, hidden_damping
-from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.engines.bullet import hidden_damping
+from validate.engines.integrators import bullet_point, pymunk_point
 from validate.methods import (
     AVERAGE_VELOCITY,
     EULER,
@@ -19,7 +19,7 @@ from validate.methods import (
     VERLET,
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, ours
 
 T = 10.0                     # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -107,42 +107,34 @@ MOTION = Motion(T, damped_law, start, lambda x, p: x, DAMPED.own_law, round_off)
 
 def pymunk_make(p, dt, ahead=0.0):
     """Use the vertical plane of the throw; positions are rotated back into space."""
-    import pymunk
-    space = pymunk_space((0.0, -p.g))
-    body = pymunk.Body(1.0, 1.0)
     heading, speed = np.arctan2(p.vy, p.vx), np.hypot(p.vx, p.vy)
-    body.velocity = (speed, p.vz - ahead * dt * p.g)
-    space.add(body)
-    ahead_x, ahead_y = np.cos(heading), np.sin(heading)
-    read = lambda: np.array([ahead_x * body.position.x, ahead_y * body.position.x, body.position.y])
-    return pymunk_world(space, dt, read)
+    read = lambda x: np.array([np.cos(heading) * x[0], np.sin(heading) * x[0], x[1]])
+    return pymunk_point((0.0, -p.g), 1.0, (speed, p.vz - ahead * dt * p.g), read, dt)
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
     """A free body under the engine's own gravity."""
-    bullet = Bullet(dt, (0.0, 0.0, -p.g))
-    body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, p.vz + ahead * dt * p.g), default)
-    return EngineRun(bullet.step, lambda: np.array(bullet.position(body)), bullet.close)
+    v = (p.vx, p.vy, p.vz + ahead * dt * p.g)
+    return bullet_point((0.0, 0.0, -p.g), 1.0, (0.0, 0.0, 0.0), v, np.array, dt, default=default)
 
 
+EXACTLY = {"order": EXACT, "limit": limits, "predicted": mean_velocity}
 RUNNERS = (
     ours(EULER, limit=limits, predicted=old_velocity),
-    *(ours(m, limit=limits, predicted=mean_velocity, order=EXACT) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
+    *(ours(m, **EXACTLY) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
     ours(SYMPLECTIC_EULER, limit=limits, predicted=new_velocity),
-    ours(VERLET, limit=limits, predicted=mean_velocity, order=EXACT),
+    ours(VERLET, **EXACTLY),
     # the implicit ones take half of the scene's time to compile, and say nothing here
     ours(IMPLICIT_EULER, limit=limits, predicted=new_velocity, in_quick=False),
-    ours(IMPLICIT_MIDPOINT, limit=limits, predicted=mean_velocity, order=EXACT, in_quick=False),
+    ours(IMPLICIT_MIDPOINT, in_quick=False, **EXACTLY),
     engine(PYMUNK, "", pymunk_make, "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
-    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt",
-           order=EXACT, limit=limits, predicted=mean_velocity),
+    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
     engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
            order=1, limit=limits, predicted=new_velocity),
-    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt",
-           order=EXACT, limit=limits, predicted=mean_velocity),
+    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
 )
 
 

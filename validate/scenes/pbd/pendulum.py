@@ -25,7 +25,7 @@ from validate.reference.pbd import (
     rattle_once,
 )
 from validate.reference.schemes import Motion
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, floor_of, ours
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -88,10 +88,6 @@ def limits(p, dt):
     return by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT]
-
-
 def rope(p):
     return Rope(np.stack((np.zeros(2), place(np.radians(p.degrees), p))), p.L, p.g)
 
@@ -101,8 +97,8 @@ def swinging(p):
     return lambda t, theta, omega: -p.g / p.L * np.sin(theta)
 
 
-BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor)
-ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor)
+BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor_of(limits))
+ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor_of(limits))
 
 
 def bullet_error(p, dt):

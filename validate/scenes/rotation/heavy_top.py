@@ -17,7 +17,7 @@ from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_K
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
-from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
+from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine, floor_of
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -104,10 +104,6 @@ def seen(R):
     return [R[0][2], R[1][2]]
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT] + 1e-11
-
-
 def mass(p):
     return p.mgl / (G * LENGTH)
 
@@ -129,7 +125,7 @@ def mujoco_make(p, dt):
     return mujoco_top(mass(p), (across, across, p.I3), LENGTH, R, p.spin, G, dt)
 
 
-BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor)
+BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor_of(limits, 1e-11))
 SWEPT = "its pivot is a constraint, and the sweeps that hold it are not modelled"
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
 RUNNERS = (

@@ -11,9 +11,9 @@ from solutions.checks import check_positive
 from solutions.integrators import advance
 from solutions.springs import angular_spring_forces
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
 from validate.reference.schemes import Model, Motion
-from validate.scene import EXACT, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import PYMUNK, Scene, by_order, engine, floor_of
+from validate.scenes.integrators._common import integrator_runners
 
 T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -103,10 +103,6 @@ def limits(p, dt):
     return {k: shrunk * limit + UNCERTAINTY for k, limit in by_order(rate, T, dt).items()}
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT] + 10.0 * UNCERTAINTY
-
-
 def law(p):
     """Return θ̈(t, θ, θ̇), apart from the lesson's."""
     return lambda t, theta, rate: -(p.kappa * theta + 0.5 * p.m * p.g * p.length * np.sin(theta)) / inertia(p)
@@ -142,7 +138,7 @@ def pymunk_rod(p, h, steps, nudge):
     return [theta]
 
 
-MOTION = Motion(T, law, released, seen, truth, floor)
+MOTION = Motion(T, law, released, seen, truth, floor_of(limits, 10.0 * UNCERTAINTY))
 
 
 def pymunk_make(p, dt):
@@ -158,7 +154,7 @@ def pymunk_make(p, dt):
 
 
 RUNNERS = (
-    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
+    *integrator_runners(MOTION, limits),
     engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias = 0",
            order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_rod))),
 )

@@ -9,10 +9,10 @@ from solutions.integrators import advance
 from solutions.springs import universal_gravity
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.engines.integrators import planet, planet_runners
 from validate.methods import INTEGRATORS
 from validate.reference.integrators import kepler_motion, kepler_position
 from validate.scene import EngineRun, Scene
+from validate.scenes.integrators._common import planet, planet_runners
 
 T = 20.0                     # [s]: six revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
