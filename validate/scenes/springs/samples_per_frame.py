@@ -7,9 +7,9 @@ import numpy as np
 
 from solutions.integrators import advance, amplification_matrix, average_velocity_step
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import NET, net_points, net_runners, observe_net, start_net
 from validate.reference.springs import SquareNet, modes, net_limits, net_steps, net_truth, square_net
 from validate.scene import Scene
+from validate.scenes.springs._common import SQUARE, net_fields, net_points, net_runners, observe_net, start_of
 
 FRAMES_PER_SECOND = 24
 SAMPLES = (1, 4, 16, 64, 256)              # steps per frame [-]
@@ -27,7 +27,7 @@ def run(step, acceleration, state, p, dt, steps):
     return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
-truth = net_truth(T)
+start_net, truth = start_of(square_net, SQUARE), net_truth(T)
 RUNNERS = net_runners(
     square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
     in_quick=False)
@@ -57,7 +57,7 @@ def sanity_checks():
 
 SCENE = Scene(
     title="1, 4, 16 samples per frame",
-    **NET,
+    **net_fields(square_net, SQUARE),
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=acceleration, run=run,
