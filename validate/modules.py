@@ -165,7 +165,7 @@ def digest_of(folder):
     """Fingerprint of every file that a module set of this subject is made of, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
     ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
-    return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.glob("*/*.py"), *folder.glob("*.py"), *ours}, compiler)
+    return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.rglob("*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
 def fingerprint(files, more=""):

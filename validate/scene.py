@@ -230,11 +230,6 @@ def by_order(rate, T, dt):
     return {**limits, EXACT: 1e-12 + T / dt * ROUND_OFF}
 
 
-def floor_of(limits, more=0.0):
-    """Return (p, dt) → the limit by order of a run with nothing but round-off, and this uncertainty of the truth."""
-    return lambda p, dt: limits(p, dt)[EXACT] + more
-
-
 def parameter_table(p):
     """[(name, value, meaning)] of the parameters of a case; the meaning is the text in the annotation of the field."""
     hints = get_type_hints(type(p), include_extras=True)

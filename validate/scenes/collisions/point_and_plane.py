@@ -10,6 +10,7 @@ from solutions.support.collisions import advance_projectiles, ball_plane_gap, ba
 from validate.engines import collisions as engines
 from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene
+from validate.scenes._common import ONE_LINK
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
@@ -107,7 +108,7 @@ SCENE = Scene(
     runners=RUNNERS,
     start=start, run=run, observe=engines.observe_balls,
     truth=truth, truth_uncertainty=balls.UNCERTAINTY,
-    sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
+    sanity_checks=sanity_checks, points=points, links=ONE_LINK,
     uses=("a straight way", "two signed distances for each step"),
     ablations={
         "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),

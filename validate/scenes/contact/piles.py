@@ -26,10 +26,10 @@ from validate.drawing import box, seen, sphere
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import ANSWER, one_reading
 
 T = 1.0
-STEPS = (1,)
 BLOCK = 10                   # steps from one look at the energy to the next
 QUIET = 1e-2                 # of the weight: what may be out of balance in a pile that has come to rest [-]
 CREEPING = 2.0 * QUIET       # four numbers of 1 % each [-]
@@ -181,7 +181,7 @@ def make(p, dt, rival, wider=1.0):
         found = numbers(p, pile, *world.places(), world.wall_force(), energies, residual)
         world.close()
         return found
-    return EngineRun(lambda: None, read, lambda: None)
+    return one_reading(read)
 
 
 def flat(p):
@@ -298,7 +298,7 @@ def links(p):
 
 SCENE = Scene(
     title="Piles", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
@@ -307,8 +307,6 @@ SCENE = Scene(
                     "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "
                     "1,000 bodies, because 50 iterations do not find the forces; the command python -m validate.piles "
                     "compares piles of 1,000 bodies",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
     points=points, links=links, our_film=our_film,

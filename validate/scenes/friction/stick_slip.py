@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
@@ -21,14 +20,14 @@ from validate.reference.friction import (
     slips,
 )
 from validate.scene import PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
 CASES = {"F = 8 cos t": DrivenBlock(), "F = 16 cos 2t, turns without a rest": DrivenBlock(force=16.0, omega=2.0)}
 
 
 def start(p):
-    for name in ("g", "m", "omega"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "g", "m", "omega")
     block = make_block((0.0, 1.0), p.mu, p.mu, (0.0, -p.g), (p.force / p.m, 0.0), p.omega)
     return np.zeros(2), np.zeros(2), block
 

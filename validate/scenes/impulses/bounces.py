@@ -7,7 +7,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from solutions.checks import check_positive
 from solutions.impulses import BouncingBall, check_restitution
 from solutions.impulses import falling_acceleration as acceleration
 from solutions.support.impulses import advance_balls
@@ -29,6 +28,7 @@ from validate.reference.impulses import (
     soft_bounce,
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import ONE_LINK, check_positives, measured
 
 T = 1.9                      # [s]: in the third flight, clear of impacts
 STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
@@ -64,8 +64,7 @@ def fallen(p):
 
 
 def start(p):
-    for name in ("h", "g", "omega"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "h", "g", "omega")
     check_restitution(p.e)
     d = 3 if p.space else 2
     up = np.zeros(d)
@@ -251,10 +250,6 @@ def points(observed, p):
     return np.array([[-0.2, 0.0], [2.6, 0.0], observed[:2]])
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def in_space(p):
     """The same motion with an unused third coordinate."""
     p = p._replace(space=1.0)
@@ -268,12 +263,11 @@ SCENE = Scene(
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     film_seconds=4.5,  # [s]: until it is at rest
     uses=("two coordinates", "one plane", "one number e for each impact"),
     ablations={
         "the third dimension": in_space,
-        "rotation: the ball has no torque": "the whole loop of lesson 10 has it, and is measured",
-        "detection": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation: the ball has no torque", "detection"),
     },
 )

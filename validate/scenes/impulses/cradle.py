@@ -5,7 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.support.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
@@ -22,6 +21,7 @@ from validate.reference.impulses import (
     rounded_steps,
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import check_positives
 
 T = 0.4                      # [s]: all impacts are over after 0.16
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -40,8 +40,7 @@ CASES = {"with gaps": Params(), "touching": Params(gap=0.0)}
 
 
 def start(p):
-    for name in ("away", "v", "R"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "away", "v", "R")
     x, v = np.zeros((COPIES, BALLS, 2)), np.zeros((COPIES, BALLS, 2))
     x[:, 1:, 0] = 2.0 * p.R + p.away + (2.0 * p.R + p.gap) * np.arange(BALLS - 1)
     x[:, 0, 0] = p.v * delays(WINDOW)

@@ -5,7 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.impulses import check_restitution
 from solutions.support.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
@@ -23,6 +22,7 @@ from validate.reference.impulses import (
     struck,
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import check_positives
 
 T = 1.0                      # [s]: they meet before half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -44,8 +44,7 @@ CASES = {"discs": Params(), "spheres": Params(space=1.0)}
 
 
 def start(p):
-    for name in ("m1", "m2", "v", "R", "away"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m1", "m2", "v", "R", "away")
     check_restitution(p.e)
     x, v = np.zeros((COPIES, 2, 3 if p.space else 2)), np.zeros((COPIES, 2, 3 if p.space else 2))
     x[:, 0, 0] = p.v * delays(WINDOW) - p.away

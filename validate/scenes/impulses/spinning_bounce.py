@@ -5,7 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.friction import check_friction
 from solutions.impulses import check_restitution
 from solutions.impulses import falling_acceleration as acceleration
@@ -25,6 +24,7 @@ from validate.reference.impulses import (
     rounded_steps,
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import check_positives
 
 T = 1.0                      # [s]: it hits the floor after half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 10000)
@@ -52,8 +52,7 @@ CASES = {
 
 
 def start(p):
-    for name in ("shape", "R", "m", "h", "fall"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "shape", "R", "m", "h", "fall")
     check_restitution(p.e)
     check_friction(p.mu)
     before = delays(WINDOW)

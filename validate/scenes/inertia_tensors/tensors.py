@@ -11,7 +11,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.inertia_tensors import (
     box_inertia,
     capsule_inertia,
@@ -24,9 +23,9 @@ from solutions.inertia_tensors import (
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives, one_reading
 
 T = 1.0
-STEPS = (1,)
 
 
 class Params(NamedTuple):
@@ -60,8 +59,7 @@ MARGIN = 0.001                                                 # that pybullet a
 
 
 def start(p):
-    for name in ("m", "a"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "a")
     return (p,)
 
 
@@ -410,7 +408,7 @@ def pymunk_make(p, dt):
             shape.density = p.m / (np.pi * (p.a**2 + p.b**2))
         space.add(body, *shapes)
         moment = body.moment
-    return EngineRun(lambda: None, lambda: np.array([moment]), lambda: None)
+    return one_reading(lambda: np.array([moment]))
 
 
 def only(*shapes):
@@ -499,13 +497,11 @@ def links(p):
 
 SCENE = Scene(
     title="Inertia tensors", lesson="inertia_tensors",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth,
     truth_uncertainty=1e-14,  # of sums and quadratures of at most a hundred terms, each rounded by 1.1e-16
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (0.072, 0.072, 0.072, 0.0, 0.0, 0.0), 1e-14),),  # ⅖ m R² of the ball
     sanity_checks=sanity_checks,

@@ -21,6 +21,7 @@ from validate.methods import (
 from validate.reference.integrators import EVEN, FINEST, FINEST_RK4, early_limit, kepler_limits, perihelion
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_NEW_FORCE, OLD_VELOCITY_OLD_FORCE
 from validate.scene import LATE_LEAPFROG, PYBULLET, PYMUNK, engine, ours
+from validate.scenes._common import check_positives
 
 
 def integrator_runners(motion, limits, compiled=()):
@@ -106,8 +107,7 @@ def as_pair(x, p):
 
 def planet(p):
     """Return (x, v) of the planet at its perihelion.  Raises BadInput for what is no ellipse."""
-    for name in ("mu", "a"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "mu", "a")
     if not 0.0 <= p.e < 1.0:
         raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
     return perihelion(p)

@@ -13,6 +13,7 @@ from validate.reference.integrators import (
     mean_rate,
 )
 from validate.scene import Scene, ours
+from validate.scenes._common import coordinates
 from validate.scenes.integrators._common import planet, planet_in_space, planet_runners, sun_and_planet
 
 T = 20.0                     # [s]: three revolutions
@@ -33,10 +34,6 @@ def run(step, acceleration, state, p, dt, steps):
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
-def observe(state, p):
-    return state[0][:2]
-
-
 def limit(p, dt):
     """The rate at the nearest point, √(μ/r³), is 32 times the mean: equal steps are wasted far away.  An adaptive step
     keeps the product of rate and dt the same everywhere.  This product is its share.
@@ -54,7 +51,7 @@ SCENE = Scene(
     title="Kepler, near collision", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=planet, run=run, observe=observe,
+    acceleration=acceleration, start=planet, run=run, observe=coordinates(2),
     truth=kepler_position,
     truth_uncertainty=1e-12,    # of the reference solution, as in kepler: 1e-13
     published_states=((20.0, (-1.295266251, 0.400393896), 1e-9),),

@@ -7,7 +7,8 @@ import numpy as np
 from solutions.integrators import advance
 from validate.engines.bullet import hidden_damping
 from validate.reference.schemes import Motion
-from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine, floor_of
+from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine
+from validate.scenes._common import coordinates, floor_of, measured
 from validate.scenes.integrators._common import Point, as_pair, integrator_runners, one_point
 
 T = 1.97599434               # [s]: at which it is back at the initial height
@@ -46,10 +47,6 @@ start = POINT.start("k")
 def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0][:2]
 
 
 def truth(p, t):
@@ -119,7 +116,7 @@ SCENE = Scene(
     title="Linear drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(2),
     truth=truth,
     # (1 − e^(−kt)) and gt are ten times as large as their difference
     truth_uncertainty=1e-14,
@@ -128,7 +125,6 @@ SCENE = Scene(
     uses=("one point in the plane", "one step function"),
     ablations={
         "the third dimension": POINT.in_space,
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
-        "detection of the ground": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation", "detection of the ground"),
     },
 )

@@ -5,7 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import Oscillator, advance
 from solutions.integrators import oscillator_acceleration as acceleration
 from validate.engines.bullet import hidden_damping
@@ -13,7 +12,8 @@ from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.integrators import bullet_point
 from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine, floor_of, ours
+from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import damped
 
 T = 2.0                      # [s]: three periods
@@ -41,18 +41,13 @@ def oscillator(p):
 
 
 def start(p):
-    for name in ("m", "k"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "k")
     return np.array([p.x0]), np.zeros(1)
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, oscillator(p))
-
-
-def observe(state, p):
-    return state[0][:1]
 
 
 def truth(p, t):
@@ -155,10 +150,6 @@ def points(observed, p):
     return np.array([[-2.0, 0.0], [observed[0], 0.0]])
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def in_space(p):
     """The same motion with unused y and z coordinates."""
     return (np.array([p.x0, 0.0, 0.0]), np.zeros(3)), p
@@ -170,13 +161,12 @@ SCENE = Scene(
     lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(1),
     truth=truth, truth_uncertainty=1e-14,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
-        "detection of contacts": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation", "detection of contacts"),
     },
 )

@@ -7,7 +7,8 @@ import numpy as np
 from solutions.integrators import advance
 from validate.engines.bullet import hidden_damping
 from validate.reference.schemes import Motion
-from validate.scene import Scene, by_order, floor_of
+from validate.scene import Scene, by_order
+from validate.scenes._common import coordinates, floor_of, measured
 from validate.scenes.integrators._common import Point, integrator_runners
 
 T = 3.0                      # [s]: three times the time to reach the terminal speed without air
@@ -43,10 +44,6 @@ start = POINT.start("m", "c", "g")
 def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0][:1]
 
 
 def terminal_speed(p):
@@ -113,13 +110,12 @@ SCENE = Scene(
     title="Quadratic drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(1),
     truth=truth, truth_uncertainty=1e-14,
     # the depth; the speed is then 9.852684396 m/s
     published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,
     uses=("one coordinate", "one step function"),
     ablations={"the second and third dimension": POINT.in_space,
-              "rotation": "the whole loop of lesson 10 has it, and is measured",
-              "detection of the ground": "the whole loop of lesson 10 has it, and is measured"},
+              **measured("rotation", "detection of the ground")},
 )

@@ -20,9 +20,11 @@ from validate.methods import (
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
 from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import coordinates, measured, round_off
 
 T = 10.0                     # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
+rounded = round_off(T)
 # One step with a constant a moves the stone by dt v + ½dt² a, and changes its velocity by dt a.  Every method gets the
 # velocity right.  Methods that move the position with the mean of old and new velocity, or with the one in the middle,
 # also get the position right.
@@ -54,20 +56,12 @@ def run(step, acceleration, state, p, dt, steps):
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
-def observe(state, p):
-    return state[0]
-
-
 def truth(p, t):
     """x(t) = v₀ t − ½ g t² ẑ
 
     Source: Galilei 1638, fourth day; a = −g ẑ integrated twice.
     """
     return np.array([p.vx * t, p.vy * t, p.vz * t - 0.5 * p.g * t * t])
-
-
-def round_off(p, dt):
-    return by_order(0.0, T, dt)[EXACT]
 
 
 def limits(p, dt):
@@ -77,7 +71,7 @@ def limits(p, dt):
     upwards, pybullet with the new and errs downwards: their mean is exact.  Half a step of gravity in the first
     velocity removes the error.
     """
-    return {1: 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + round_off(p, dt), EXACT: round_off(p, dt)}
+    return {1: 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
 def damped_limit(p, dt):
@@ -90,7 +84,7 @@ def damped_limit(p, dt):
 
 def old_velocity(p, dt, side=1.0):
     """+½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and zero for all others, to round-off."""
-    return Prediction(np.array([0.0, 0.0, 0.5 * side * p.g * dt * T]), round_off(p, dt))
+    return Prediction(np.array([0.0, 0.0, 0.5 * side * p.g * dt * T]), rounded(p, dt))
 
 
 new_velocity, mean_velocity = partial(old_velocity, side=-1.0), partial(old_velocity, side=0.0)
@@ -102,7 +96,7 @@ def damped_law(p):
 
 
 DAMPED = hidden_damping(acceleration, start)
-MOTION = Motion(T, damped_law, start, lambda x, p: x, DAMPED.own_law, round_off)
+MOTION = Motion(T, damped_law, start, lambda x, p: x, DAMPED.own_law, rounded)
 
 
 def pymunk_make(p, dt, ahead=0.0):
@@ -148,7 +142,7 @@ SCENE = Scene(
     title="Throw", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(3),
     truth=truth, truth_uncertainty=1e-15,
     # by hand, exactly: only round-off may differ
     published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),
@@ -156,7 +150,6 @@ SCENE = Scene(
     uses=("one point in space", "one step function"),
     ablations={
         "air": "the scenes with linear and quadratic drag have it",
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
-        "detection of the ground": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation", "detection of the ground"),
     },
 )

@@ -10,12 +10,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 1.0
 MOVED = 1e-5                 # along a direction, to either side [rad]
@@ -49,8 +49,7 @@ def directions(p):
 
 def start(p):
     """Angles beside those of the target: for each direction ahead and behind."""
-    for name in ("l_1", "l_2", "l_3"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2", "l_3")
     v = directions(p)[2]
     return tuple(ANGLES + sign * MOVED * v[i] for i in (0, 1) for sign in (1.0, -1.0))
 

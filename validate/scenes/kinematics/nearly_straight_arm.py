@@ -26,6 +26,7 @@ from validate.reference.kinematics import (
     searched,
 )
 from validate.scene import EXACT, PYBULLET, Departure, Scene, engine, ours
+from validate.scenes._common import constantly
 
 MOST = 4000                  # iterations
 ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]
@@ -141,10 +142,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["way that is left, over the reach [-]"]
-
-
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
@@ -157,7 +154,7 @@ SCENE = Scene(
     title="A nearly straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["way that is left, over the reach [-]"]),
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
     ablations={"the bend": "without it no method but CCD moves: see the straight arm"},

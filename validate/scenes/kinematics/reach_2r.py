@@ -10,13 +10,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes._common import check_positives, constantly
 
 T = 1.0
 ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]
@@ -50,8 +50,7 @@ def target_of(p):
 
 def start(p):
     """(angles with the elbow to one side, angles with it to the other)."""
-    for name in ("l_1", "l_2"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2")
     bearing = np.arctan2(p.y, p.x)
     return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND]) for side in (1.0, -1.0))
 
@@ -175,10 +174,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["θ₁, elbow to the right [rad]", "θ₂ [rad]", "θ₁, elbow to the left [rad]", "θ₂ [rad]"]
-
-
 def sanity_checks():
     """((claim, found, expected, tolerance), …): both answers end at the target; the small arm's shortfall."""
     ends = [joints_of(angles, lengths_of(p))[-1] - target_of(p)
@@ -203,7 +198,7 @@ SCENE = Scene(
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing, because σ₂ is "
                     "small on the way there: it takes large jumps and does not arrive",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["θ₁, elbow to the right [rad]", "θ₂ [rad]", "θ₁, elbow to the left [rad]", "θ₂ [rad]"]),
     published_states=((1.0, tuple(np.radians((30.0, 90.0, 120.0, -90.0))), 5e-4),),
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(2),

@@ -10,7 +10,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import ANSWER, bullet_reach
@@ -25,6 +24,7 @@ from validate.reference.kinematics import (
     single_rounding,
 )
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 1.0
 ENOUGH = 1e-10               # |e| at which a search ends [m and rad]
@@ -59,8 +59,7 @@ def target_of(p):
 
 def start(p):
     """Angles with the elbow to one side and to the other; the hand along its direction."""
-    for name in ("l_1", "l_2", "l_3"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2", "l_3")
     wrist = target_of(p)[:2] - end_of([np.radians(p.degrees)], [p.l_3])
     bearing = np.arctan2(wrist[1], wrist[0])
     return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND,

@@ -16,6 +16,7 @@ from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bent_to, end_of, joints_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes._common import constantly
 
 ITERATIONS = 200
 LENGTHS = np.array([1.0, 0.7, 0.4])
@@ -107,10 +108,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]
-
-
 def sanity_checks():
     """((claim, found, expected, tolerance), …): the gradient of ½|e|² on the straight arm, by complex numbers."""
     levers = 1j * np.cumsum(LENGTHS[::-1])[::-1]
@@ -132,7 +129,7 @@ SCENE = Scene(
     title="A straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]),
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),

@@ -9,12 +9,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
 from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes._common import check_positives, constantly
 
 ITERATIONS = 3000            # of each method
 BENT = 0.5                   # all angles at the start [rad]
@@ -48,8 +48,7 @@ def missing(p):
 
 
 def start(p):
-    for name in ("l_1", "l_2", "l_3"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2", "l_3")
     return (np.full(3, BENT),)
 
 
@@ -137,10 +136,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["distance that is left [m]", "end, x [m]", "end, y [m]"]
-
-
 def sanity_checks():
     """((claim, found, expected, tolerance), …): no angles on a fine grid come nearer to the target than the ring."""
     near = []
@@ -177,7 +172,7 @@ SCENE = Scene(
     omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
                     "without bound, and it never comes to rest; the transpose is left out where it needs more than "
                     "3,000 iterations",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["distance that is left [m]", "end, x [m]", "end, y [m]"]),
     published_states=((1.0, (np.sqrt(11.25) - 2.1, -2.1 * 2.0 / np.sqrt(5.0), 2.1 / np.sqrt(5.0)), 1e-14),),
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.integrators import advance
 from solutions.support.pbd import make_constraint_network
 from solutions.support.pbd import network_gravity as acceleration
@@ -13,6 +13,7 @@ from validate.drawing import seen
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest
 from validate.scene import Scene, by_order, ours
+from validate.scenes._common import check_positives
 
 T = 0.3                      # [s]
 STEPS = (5, 10, 25, 50, 100, 510, 1000)
@@ -53,8 +54,7 @@ def reference(p):
 
 
 def start(p):
-    for name in ("n", "spacing", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "n", "spacing", "m", "g")
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     flat = cloth(p)

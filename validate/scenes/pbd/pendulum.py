@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.integrators import advance
 from solutions.support.pbd import make_constraint_network
 from solutions.support.pbd import network_gravity as acceleration
@@ -25,7 +25,8 @@ from validate.reference.pbd import (
     rattle_once,
 )
 from validate.reference.schemes import Motion
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, floor_of, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import ONE_LINK, check_positives, floor_of
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -47,8 +48,7 @@ def place(theta, p):
 
 
 def start(p):
-    for name in ("L", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "L", "m", "g")
     if not 0.0 < p.degrees < 180.0:
         raise BadInput("the initial angle [°]", p.degrees, "give a number between 0 and 180")
     x = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
@@ -163,10 +163,6 @@ def points(observed, p):
     return np.stack((np.zeros(2), observed))
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def in_space(p):
     """The same motion with an unused third coordinate."""
     x, v, network = start(p)
@@ -186,7 +182,7 @@ SCENE = Scene(
         (2.367841948, (1.0, 0.0), 5e-9),
     ),
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     uses=("two coordinates", "one link", "one step function"),
     ablations={
         "the third dimension": in_space,

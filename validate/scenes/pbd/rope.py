@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.integrators import advance
 from solutions.support.pbd import make_constraint_network
 from solutions.support.pbd import network_gravity as acceleration
@@ -25,6 +25,7 @@ from validate.reference.pbd import (
     rope_rates,
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, by_order, engine, ours
+from validate.scenes._common import check_positives
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 600, 1000, 2000, 5000)
@@ -47,8 +48,7 @@ def straight(p):
 
 
 def start(p):
-    for name in ("links", "l", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "links", "l", "m", "g")
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     x, n = np.concatenate((np.zeros((1, 2)), straight(p))), np.arange(p.links)

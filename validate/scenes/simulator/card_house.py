@@ -9,13 +9,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_friction, check_positive
+from solutions.checks import BadInput, check_friction
 from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
 from solutions.simulator import weight as acceleration
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
+from validate.scenes._common import check_positives
 
 T = 1.0                      # [s]
 STEPS = (8, 20, 60, 120, 240, 480, 960)
@@ -83,8 +84,7 @@ def least(p):
 
 
 def start(p):
-    for name in ("rough", "degrees", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "rough", "degrees", "g")
     if not 5.0 <= p.degrees <= 30.0:
         raise BadInput("degrees", p.degrees, "let the cards lean by 5° to 30°: the roof must reach from tent to tent")
     check_friction(p.rough * least(p))

@@ -24,6 +24,7 @@ from validate.reference.impulses import delays
 from validate.reference.orientation import about
 from validate.reference.simulator import rocking
 from validate.scene import PYBULLET, PYMUNK, EngineRun, Scene, engine, no_limit, ours
+from validate.scenes._common import check_positives
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
@@ -77,8 +78,7 @@ def moments():
 
 
 def start(p):
-    for name in ("width", "height", "omega", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "width", "height", "omega", "g")
     check_positive("gap between dominoes [m]", p.pitch - p.width)
     check_friction(p.mu)
     if p.n < 1:

@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_friction, check_positive
+from solutions.checks import BadInput, check_friction
 from solutions.simulator import (
     advance_contact,
     box_bounds_2d,
@@ -24,6 +24,7 @@ from solutions.springs import spring_tension
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
+from validate.scenes._common import check_positives
 
 T = 10.0                     # [s]
 UNKNOWN = "unknown"          # an order
@@ -82,8 +83,7 @@ def acceleration(t, x, q, v, omega, p):
 
 
 def start(p):
-    for name in ("blow", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "blow", "g")
     check_friction(p.mu)
     if p.seen not in KINDS:
         raise BadInput("what is observed", p.seen, f"choose from: {', '.join(KINDS)}")

@@ -9,7 +9,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
 from solutions.simulator import weight as acceleration
 from validate.engines.bullet import CONTACT_ERP
@@ -18,6 +17,7 @@ from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_bod
 from validate.methods import LOOP_2D, LOOP_WITH_MEANS
 from validate.reference.simulator import wedge_pushed_out
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 0.4                      # [s]
 STEPS = (8, 16, 40, 80, 160, 400, 800)
@@ -57,8 +57,7 @@ def places(p):
 
 def start(p):
     """(PileState, Bodies).  The wedge cannot turn: a moment of inertia without bound stands for its wide foot."""
-    for name in ("degrees", "m", "M", "half", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "degrees", "m", "M", "half", "g")
     moments, half = np.array([np.inf, 2.0 / 3.0 * p.m * p.half**2]), np.array([(LONG, THICK), (p.half, p.half)])
     return make_bodies_2d(places(p), np.full(2, -slope(p)), np.array([p.M, p.m]), moments, half,
                           np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), 0.0, SWEEPS, MARGIN)

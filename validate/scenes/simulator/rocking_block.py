@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.integrators import rk4_step
 from solutions.simulator import (
     RockingBlock,
@@ -35,6 +35,7 @@ from validate.methods import LOOP_2D, ROCKING
 from validate.reference.orientation import about
 from validate.reference.simulator import rocking
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, EngineRun, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 0.6                      # [s]; the first impact is at about 0.35 s
 STEPS = (24, 48, 120, 240, 480, 1200, 2400)
@@ -70,8 +71,7 @@ def place(p):
 
 def start(p):
     """(angle (1,), rate (1,)): positive to the left."""
-    for name in ("b", "h", "share", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "b", "h", "share", "g")
     if p.share >= 1.0:
         raise BadInput("first lean over the angle at which it tips [-]", p.share, "give less than 1")
     return np.array([p.share * alpha(p)]), np.zeros(1)

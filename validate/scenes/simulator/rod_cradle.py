@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_not_negative, check_positive
+from solutions.checks import BadInput, check_not_negative
 from solutions.simulator import advance_contact, disc_bounds, make_bodies_2d, make_joints, round_contacts
 from solutions.simulator import weight as acceleration
 from validate import drawing
@@ -17,6 +17,7 @@ from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
 from validate.reference.simulator import cradle_motion
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 0.7                      # [s]: all impacts are over after 0.6
 STEPS = (5, 10, 20, 50, 100, 200, 500)
@@ -63,8 +64,7 @@ def centres(theta, p):
 
 def start(p):
     """(PileState, JointedBodies) of the balls; each turns with its rod."""
-    for name in ("angle", "L", "R", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "angle", "L", "R", "g")
     check_not_negative("gap", p.gap)
     if not 1 <= p.lifted <= BALLS or p.angle >= 0.5 * np.pi:
         raise BadInput("balls and angle", (p.lifted, p.angle), f"lift 1 to {BALLS} balls by less than a right angle")

@@ -7,7 +7,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.rotation import supported_weight as acceleration
 from solutions.simulator import CarriedBall, advance_contact, ball_bounds, make_bodies, round_contacts, weight
 from solutions.support.rotation import advance_rigid_body
@@ -16,6 +15,7 @@ from validate.drawing import pose
 from validate.engines.simulator import pybullet_turntable
 from validate.methods import CARRIED, LOOP
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 5.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -49,8 +49,7 @@ def ball(p):
 
 def start(p):
     """(x, q, v, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
-    for name in ("spin", "shape", "R", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "spin", "shape", "R", "m", "g")
     x, v, r = np.array([p.x0, 0.0, p.R]), np.array([0.0, p.v0, 0.0]), np.array([0.0, 0.0, -p.R])
     omega = np.cross(r, np.cross(table(p), x) - v) / p.R**2
     state, rows = make_bodies(x[None], UPRIGHT[None], p.m, np.full((1, 3), p.shape * p.m * p.R**2),

@@ -2,20 +2,19 @@
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.springs import make_spring_network
 from validate.engines.springs import pymunk_net
 from validate.methods import EXPLICIT, IMPLICIT_MESH
 from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
 from validate.scene import PYMUNK, engine, ours
+from validate.scenes._common import check_positives, measured
 from validate.scenes.integrators._common import integrator_runners
 
 
 def start_of(net, positive):
     """Return start(p) → (x, v, network) of net(p); it raises BadInput unless these parameters are positive."""
     def start(p):
-        for name in positive:
-            check_positive(name, getattr(p, name))
+        check_positives(p, *positive)
         return state_of(net(p), make_spring_network)
     return start
 
@@ -50,11 +49,7 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
         "links": lambda p: net(p).pairs.tolist(),
         "link_look": "spring",
         "uses": ("two coordinates", "springs with dampers", "one step function"),
-        "ablations": {
-            "the third dimension": in_space(net),
-            "rotation": "the whole loop of lesson 10 has it, and is measured",
-            contact: "the whole loop of lesson 10 has it, and is measured",
-        },
+        "ablations": {"the third dimension": in_space(net), **measured("rotation", contact)},
         **other,
     }
 

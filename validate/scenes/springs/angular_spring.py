@@ -7,12 +7,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
 from solutions.springs import angular_spring_forces
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.reference.schemes import Model, Motion
-from validate.scene import PYMUNK, Scene, by_order, engine, floor_of
+from validate.scene import PYMUNK, Scene, by_order, engine
+from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
 
 T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
@@ -53,18 +53,13 @@ def acceleration(t, x, v, p):
 
 
 def start(p):
-    for name in ("m", "length"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "length")
     return np.array([p.theta0]), np.zeros(1)
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0][:1]
 
 
 def truth(p, t):
@@ -165,10 +160,6 @@ def points(observed, p):
     return p.length * np.array([[0.0, 0.0], [np.sin(theta), -np.cos(theta)]])
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …): special values for a test to assert.
 
@@ -186,11 +177,10 @@ SCENE = Scene(
     title="Angular spring", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(1),
     truth=truth, truth_uncertainty=UNCERTAINTY,
-    sanity_checks=sanity_checks, points=points, links=links,
+    sanity_checks=sanity_checks, points=points, links=ONE_LINK,
     uses=("one angle", "the moment of its spring", "one step function"),
     ablations={"the hinge as a constraint": "lesson 8 builds it",
-              "rotation in space": "the whole loop of lesson 10 has it, and is measured",
-              "detection of contacts": "the whole loop of lesson 10 has it, and is measured"},
+              **measured("rotation in space", "detection of contacts")},
 )

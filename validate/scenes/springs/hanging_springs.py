@@ -10,7 +10,8 @@ from validate.engines.springs import pymunk_net
 from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
-from validate.scene import PYMUNK, Scene, engine, floor_of, ours
+from validate.scene import PYMUNK, Scene, engine, ours
+from validate.scenes._common import floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
 from validate.scenes.springs._common import in_space, net_fields
 
@@ -147,8 +148,7 @@ SCENE = Scene(
     **net_fields(net, ("springs", "m", "k", "rest"), observe=observe, points=points,
                  uses=("one coordinate", "springs with dampers", "one step function"),
                  ablations={"the second and third dimension": in_space(net),
-                            "rotation": "the whole loop of lesson 10 has it, and is measured",
-                            "contact between masses": "the whole loop of lesson 10 has it, and is measured"}),
+                            **measured("rotation", "contact between masses")}),
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=acceleration, run=run,

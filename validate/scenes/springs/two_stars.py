@@ -4,7 +4,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
 from solutions.springs import universal_gravity
 from validate.engines.bullet import Bullet
@@ -12,6 +11,7 @@ from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS
 from validate.reference.integrators import kepler_motion, kepler_position
 from validate.scene import EngineRun, Scene
+from validate.scenes._common import check_positives
 from validate.scenes.integrators._common import planet, planet_runners
 
 T = 20.0                     # [s]: six revolutions
@@ -48,8 +48,7 @@ def acceleration(t, x, v, p):
 
 
 def start(p):
-    for name in ("m_a", "m_b", "G"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m_a", "m_b", "G")
     r, v = planet(p)
     return both(r, p), both(v, p)
 

@@ -7,7 +7,8 @@ import numpy as np
 from solutions.integrators import advance
 from solutions.springs import air_force
 from validate.reference.schemes import Motion
-from validate.scene import Scene, by_order, floor_of
+from validate.scene import Scene, by_order
+from validate.scenes._common import coordinates, floor_of
 from validate.scenes.integrators._common import Point, as_pair, integrator_runners, one_point
 
 T = 2.0                      # [s]
@@ -46,10 +47,6 @@ start = POINT.start("m", "k_v")
 def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0]
 
 
 def drift(p):
@@ -102,7 +99,7 @@ SCENE = Scene(
     title="Against the wind", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(2),
     truth=truth, truth_uncertainty=1e-14,
     sanity_checks=sanity_checks, points=one_point,
     uses=("one point in the plane", "the force of the air", "one step function"),
