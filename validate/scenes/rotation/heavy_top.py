@@ -12,12 +12,13 @@ from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import top as mujoco_top
-from validate.engines.rotation import turn_runners
 from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
-from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine, floor_of
+from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
+from validate.scenes._common import ONE_LINK, floor_of
+from validate.scenes.rotation._common import turn_runners
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -143,10 +144,6 @@ def points(observed, p):
     return np.vstack((np.zeros(2), observed))
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def bodies(p):
     """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line over the point."""
     reach = np.sin(p.tilt)
@@ -190,7 +187,7 @@ SCENE = Scene(
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     bodies=bodies, poses=poses, arrows=arrows,
     trail=1,  # the tip
     uses=("one orientation", "one angular momentum", "one torque", "one step function"),
