@@ -12,8 +12,10 @@ _computing = []              # [{key: number}] of the block `computed_anew`
 @cache
 def numbers(scene):
     """{key: number} that were stored for a scene."""
-    path = RECORDED / f"{scene}.json"
-    return json.loads(path.read_text(encoding="utf-8")).get("numbers", {}) if path.is_file() else {}
+    try:
+        return json.loads((RECORDED / f"{scene}.json").read_text(encoding="utf-8")).get("numbers", {})
+    except (OSError, ValueError):        # measure/traces.py names a damaged file, when it reads the engine's runs
+        return {}
 
 
 def stored(scene, function, *arguments):
