@@ -11,11 +11,11 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
-from validate.scenes._common import check_positives
+from validate.scenes._common import ANSWER, check_positives
 
 T = 1.0
 MOVED = 1e-5                 # along a direction, to either side [rad]
@@ -197,7 +197,7 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Rates of convergence", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="Rates of convergence", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="CCD and FABRIK have no factor that follows from J alone; pymunk has no inverse kinematics",
     quantity_names=quantity_names,

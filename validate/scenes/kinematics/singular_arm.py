@@ -11,16 +11,15 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.drawing import two_arms_and_target_links
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import bent_to, end_of, joints_of
+from validate.reference.kinematics import end_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes._common import constantly
+from validate.scenes._common import ANSWER, constantly
+from validate.scenes.kinematics._common import LENGTHS, REACH, draw_straight
 
 ITERATIONS = 200
-LENGTHS = np.array([1.0, 0.7, 0.4])
-REACH = 2.1                  # [m]
 
 
 class Params(NamedTuple):
@@ -119,14 +118,11 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
-    target = (p.x, 0.0)
-    arms = [joints_of(angles, LENGTHS) for angles in (np.zeros(3), bent_to(target, LENGTHS))]
-    return arms_and_target(arms, target, 0.04)
+    return draw_straight(np.zeros(3), (p.x, 0.0))
 
 
 SCENE = Scene(
-    title="A straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="A straight arm", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
     quantity_names=constantly(["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]),

@@ -10,11 +10,11 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes._common import check_positives, constantly
+from validate.scenes._common import ANSWER, check_positives, constantly
 
 ITERATIONS = 3000            # of each method
 BENT = 0.5                   # all angles at the start [rad]
@@ -167,7 +167,7 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Out of reach", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="Out of reach", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
                     "without bound, and it never comes to rest; the transpose is left out where it needs more than "
