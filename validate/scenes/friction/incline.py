@@ -9,7 +9,7 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block
-from validate.engines.friction import block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.engines.friction import bullet_block, pymunk_block
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
 from validate.methods import EVENT, SLIDING
@@ -17,6 +17,7 @@ from validate.reference.friction import CLOSE, NOTHING_LEFT, SoftBlock
 from validate.reference.schemes import summed
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
 from validate.scenes._common import round_off
+from validate.scenes.friction._common import block_on, slab_on_box, slab_on_line
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)

@@ -5,7 +5,7 @@ import numpy as np
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
-from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.engines.friction import MASS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import (
     DrivenBlock,
@@ -21,6 +21,7 @@ from validate.reference.friction import (
 )
 from validate.scene import PYBULLET, PYMUNK, Scene, engine, ours
 from validate.scenes._common import check_positives
+from validate.scenes.friction._common import block_on, slab_on_box, slab_on_line
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
 CASES = {"F = 8 cos t": DrivenBlock(), "F = 16 cos 2t, turns without a rest": DrivenBlock(force=16.0, omega=2.0)}

@@ -9,12 +9,13 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block
-from validate.engines.friction import bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.engines.friction import bullet_block, pymunk_block
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
 from validate.scenes._common import ONE_LINK, coordinates, measured, round_off
+from validate.scenes.friction._common import slab_on_box, slab_on_line
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)

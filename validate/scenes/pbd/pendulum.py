@@ -27,6 +27,7 @@ from validate.reference.pbd import (
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
 from validate.scenes._common import ONE_LINK, check_positives, floor_of
+from validate.scenes.pbd._common import in_space
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -163,13 +164,6 @@ def points(observed, p):
     return np.stack((np.zeros(2), observed))
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    x, v, network = start(p)
-    wide = lambda y: np.concatenate((y, np.zeros((2, 1))), axis=1)
-    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
-
-
 SCENE = Scene(
     title="Pendulum", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
@@ -185,7 +179,7 @@ SCENE = Scene(
     points=points, links=ONE_LINK,
     uses=("two coordinates", "one link", "one step function"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(start),
         "rotation of the bob": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -26,6 +26,7 @@ from validate.reference.pbd import (
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, by_order, engine, ours
 from validate.scenes._common import check_positives
+from validate.scenes.pbd._common import in_space
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 600, 1000, 2000, 5000)
@@ -203,13 +204,6 @@ def links(p):
     return [(n, n + 1) for n in range(p.links)]
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    x, v, network = start(p)
-    wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
-    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
-
-
 SCENE = Scene(
     title="Rope", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
@@ -224,7 +218,7 @@ SCENE = Scene(
     points=points, links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(start),
         "contact of the rope with itself": "the whole loop of lesson 10 looks for it, and is measured",
         "bending stiffness": "cloth_step of this lesson has it",
     },
