@@ -29,14 +29,7 @@ from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import SOFT
 from validate.engines.mujoco import tower as mujoco_tower
 from validate.methods import DIRECT, PILE, PILE_IN_SPACE, SWEEPS
-from validate.reference.contact import (
-    Settling,
-    Towers,
-    rounded_force,
-    rounded_overlap,
-    sway_of_tower,
-    unrest_in_pymunk,
-)
+from validate.reference.contact import Settling, Towers, rounded_force, rounded_overlap, sway_of_tower, unrest_in_pymunk
 from validate.reference.stored import stored
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, engine, ours
 from validate.scenes._common import ANSWER, check_positives, one_reading

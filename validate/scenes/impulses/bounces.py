@@ -12,16 +12,7 @@ from solutions.support.impulses import advance_balls
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
-from validate.reference.impulses import (
-    APART,
-    COPIES,
-    LATE,
-    all_dropped,
-    delays,
-    pushed,
-    rounded_steps,
-    soft_bounce,
-)
+from validate.reference.impulses import APART, COPIES, LATE, all_dropped, delays, pushed, rounded_steps, soft_bounce
 from validate.scene import EXACT, Departure, EngineRun, Prediction, Scene, by_order, ours
 from validate.scenes._common import ONE_LINK, check_positives, measured
 from validate.scenes.impulses._common import impact_runners, in_space

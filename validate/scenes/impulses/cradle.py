@@ -8,13 +8,7 @@ from solutions.support.impulses import Discs, advance_discs
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
-from validate.reference.impulses import (
-    APART,
-    COPIES,
-    delays,
-    passed_on,
-    rounded_steps,
-)
+from validate.reference.impulses import APART, COPIES, delays, passed_on, rounded_steps
 from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
 from validate.scenes._common import check_positives
 from validate.scenes.impulses._common import impact_runners

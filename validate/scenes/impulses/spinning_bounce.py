@@ -11,13 +11,7 @@ from solutions.support.impulses import SpinningBall, advance_spinning_balls
 from validate.engines.bullet import IMPACT_ITERATIONS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
-from validate.reference.impulses import (
-    APART,
-    COPIES,
-    all_dropped,
-    delays,
-    rounded_steps,
-)
+from validate.reference.impulses import APART, COPIES, all_dropped, delays, rounded_steps
 from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
 from validate.scenes._common import check_positives
 from validate.scenes.impulses._common import impact_runners

@@ -16,13 +16,7 @@ from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import two_arms_and_target_links
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import (
-    bullet_ik,
-    bullet_search,
-    end_of,
-    search_errors,
-    searched,
-)
+from validate.reference.kinematics import bullet_ik, bullet_search, end_of, search_errors, searched
 from validate.scene import EXACT, PYBULLET, Departure, Scene, engine, ours
 from validate.scenes._common import ANSWER, constantly
 from validate.scenes.kinematics._common import LENGTHS, REACH, draw_straight

@@ -23,14 +23,7 @@ from solutions.simulator import (
 from solutions.simulator import weight as acceleration
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_world
-from validate.engines.simulator import (
-    ITERATIONS,
-    OVERLAP,
-    pybullet_box,
-    pybullet_slab,
-    pymunk_body,
-    pymunk_floor_space,
-)
+from validate.engines.simulator import ITERATIONS, OVERLAP, pybullet_box, pybullet_slab, pymunk_body, pymunk_floor_space
 from validate.methods import LOOP_2D, ROCKING
 from validate.reference.orientation import about
 from validate.reference.simulator import rocking
