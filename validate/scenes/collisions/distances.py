@@ -20,6 +20,7 @@ from solutions.support.collisions import (
     points_plane,
     polygon_contacts,
 )
+from validate.drawing import outlines
 from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
 from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
@@ -451,7 +452,7 @@ def picture(name):
             ring = ring[0] + r * np.stack((np.cos(around), np.sin(around)), axis=1)
         first = sum(map(len, drawn))
         drawn.append(ring)
-        pairs += [(first + i, first + (i + 1) % len(ring)) for i in range(len(ring))]
+        pairs += outlines(len(ring), 1, first)
     return np.concatenate(drawn), pairs
 
 

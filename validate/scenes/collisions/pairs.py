@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.collisions import check_boxes
+from validate.drawing import outlines
 from validate.engines.collisions import bullet_closest_pairs, bullet_query_pairs
 from validate.methods import BRUTE_FORCE, TREES
 from validate.reference.collisions import all_touching
@@ -143,7 +144,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(min(p.n, 100)) for i in range(4)]
+    return outlines(4, min(p.n, 100))
 
 
 SCENE = Scene(

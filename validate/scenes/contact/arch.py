@@ -12,6 +12,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.contact import make_contacts
+from validate.drawing import outlines
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
@@ -219,7 +220,7 @@ def points(observed, p):
 
 def links(p):
     m = 2 * ARC
-    return [(m * k + i, m * k + (i + 1) % m) for k in range(p.n) for i in range(m)] + [(m * p.n, m * p.n + 1)]
+    return [*outlines(m, p.n), (m * p.n, m * p.n + 1)]
 
 
 SCENE = Scene(

@@ -12,6 +12,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.contact import make_contacts
+from validate.drawing import circle
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
@@ -363,8 +364,7 @@ def sanity_checks():
 
 def shapes():
     """[(corners (k, 2), closed)]: the discs, the ladder, the box on its slope and the overhang, side by side."""
-    arc = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
-    drawn = [(x + 0.5 * np.stack((np.cos(arc), np.sin(arc)), axis=1), True) for x in places_of(CASES[DISCS], 1.0)[1:]]
+    drawn = [(x + 0.5 * circle(24), True) for x in places_of(CASES[DISCS], 1.0)[1:]]
     end = ladder_end(CASES[LADDER])
     foot = np.array([2.0 - end[0], 0.0])
     drawn += [(np.stack((foot, foot + 2.0 * end)), False), (np.array([(2.25, 0.0), (2.25, 1.2)]), False)]

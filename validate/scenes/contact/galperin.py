@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_not_negative, check_positive
+from validate.drawing import outlines
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space
 from validate.methods import ONE_BY_ONE, REFLECTION
@@ -197,7 +198,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(0, 1)] + [(first + i, first + (i + 1) % 4) for first in (2, 6) for i in range(4)]
+    return [(0, 1), *outlines(4, 2, 2)]
 
 
 SCENE = Scene(

@@ -22,6 +22,7 @@ from solutions.contact import (
     make_pile_2d,
     mass_ratio_contraction,
 )
+from validate.drawing import outlines
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
@@ -388,8 +389,7 @@ def points(observed, p):
 
 
 def links(p):
-    boxes = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(2) for i in range(4)]
-    return boxes + [(8 + 2 * k, 9 + 2 * k) for k in range(4)]
+    return outlines(4, 2) + [(8 + 2 * k, 9 + 2 * k) for k in range(4)]
 
 
 SCENE = Scene(

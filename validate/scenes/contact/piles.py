@@ -22,7 +22,7 @@ from solutions.contact import (
 )
 from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
-from validate.drawing import box, seen, sphere
+from validate.drawing import box, outlines, seen, sphere
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
@@ -292,8 +292,7 @@ def points(poses, p):
 
 
 def links(p):
-    around = [(SIDES * k + i, SIDES * k + (i + 1) % SIDES) for k in range(p.n) for i in range(SIDES)]
-    return around + [(SIDES * p.n + i, SIDES * p.n + (i + 1) % 4) for i in range(4)]
+    return outlines(SIDES, p.n) + outlines(4, 1, SIDES * p.n)
 
 
 SCENE = Scene(

@@ -24,6 +24,7 @@ from solutions.contact import (
     make_pile,
     make_pile_2d,
 )
+from validate.drawing import outlines
 from validate.engines.bullet import CONTACT_ERP, WARM
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import SOFT
@@ -307,8 +308,7 @@ def points(observed, p):
 
 
 def links(p):
-    edges = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(p.n) for i in range(4)]
-    return edges + [(4 * p.n + k, 5 * p.n + k) for k in range(p.n)]
+    return outlines(4, p.n) + [(4 * p.n + k, 5 * p.n + k) for k in range(p.n)]
 
 
 SCENE = Scene(

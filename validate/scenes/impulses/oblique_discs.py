@@ -6,12 +6,13 @@ import numpy as np
 
 from solutions.impulses import check_restitution
 from solutions.support.impulses import Discs, advance_discs
+from validate.drawing import circle, outlines
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
 from validate.reference.impulses import APART, COPIES, delays, rounded_steps, struck
 from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
-from validate.scenes._common import check_positives
+from validate.scenes._common import check_positives, constantly
 from validate.scenes.impulses._common import impact_runners, in_space
 
 T = 1.0                      # [s]: they meet before half of it
@@ -156,13 +157,8 @@ def sanity_checks():
 
 def points(observed, p):
     """Draw the first pair, each with six corners for its rim."""
-    around = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]
-    rim = p.R * np.stack((np.cos(around), np.sin(around)), axis=1)
+    rim = p.R * circle(6)
     return np.round(np.concatenate((observed[0:2] + rim, observed[4:6] + rim)), 4)
-
-
-def links(p):
-    return [(i + k, i + (k + 1) % 6) for i in (0, 6) for k in range(6)]
 
 
 def with_discs_that_miss(p):
@@ -181,7 +177,7 @@ SCENE = Scene(
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=constantly(outlines(6, 2)),
     uses=("two coordinates", "two radii", "one number e for the impact"),
     full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are: another motion",
     ablations={

@@ -20,6 +20,7 @@ from solutions.inertia_tensors import (
     sphere_inertia,
     world_inertia,
 )
+from validate.drawing import outlines
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
@@ -482,7 +483,7 @@ def gallery():
         shape, first = silhouette(p), sum(map(len, drawn))
         low, high = shape.min(axis=0), shape.max(axis=0)
         drawn.append(shape + np.array([across - low[0], down - 0.5 * (low[1] + high[1])]))
-        pairs += [(first + i, first + (i + 1) % len(shape)) for i in range(len(shape))]
+        pairs += outlines(len(shape), 1, first)
         across += high[0] - low[0] + 0.25
     return np.concatenate(drawn), pairs
 

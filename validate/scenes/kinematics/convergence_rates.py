@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from validate.drawing import circle, outlines
 from validate.engines.kinematics import bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
@@ -187,13 +188,12 @@ def points(observed, p):
     """The arm, and the ellipse of velocities at its end, a quarter of its size."""
     arm = joints_of(ANGLES, lengths_of(p))
     u, sigma, _ = directions(p)
-    arc = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
-    ring = arm[-1] + 0.25 * np.stack((np.cos(arc), np.sin(arc)), axis=1) * sigma @ u.T
+    ring = arm[-1] + 0.25 * circle(40) * sigma @ u.T
     return np.round(np.concatenate((arm, ring)), 5)
 
 
 def links(p):
-    return [(0, 1), (1, 2), (2, 3)] + [(4 + k, 4 + (k + 1) % 40) for k in range(40)]
+    return [(0, 1), (1, 2), (2, 3), *outlines(40, 1, 4)]
 
 
 SCENE = Scene(

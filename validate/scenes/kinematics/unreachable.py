@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from validate.drawing import circle, outlines
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
@@ -156,14 +157,12 @@ def points(observed, p):
     inner, outer = annulus(lengths)
     bearing = np.arctan2(end[1], end[0])
     folded = np.array([bearing, np.pi if np.hypot(*end) < 0.5 * (inner + outer) else 0.0, 0.0])
-    arc = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
-    ring = [radius * np.stack((np.cos(arc), np.sin(arc)), axis=1) for radius in (outer, inner)]
+    ring = [radius * circle(40) for radius in (outer, inner)]
     return np.round(np.concatenate((joints_of(folded, lengths), [target_of(p)], *ring)), 5)
 
 
 def links(p):
-    circles = [(first + k, first + (k + 1) % 40) for first in (5, 45) for k in range(40)]
-    return [(k, k + 1) for k in range(4)] + circles
+    return [(k, k + 1) for k in range(4)] + outlines(40, 2, 5)
 
 
 SCENE = Scene(

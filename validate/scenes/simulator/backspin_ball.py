@@ -13,7 +13,7 @@ from solutions.checks import check_positive
 from solutions.rotation import supported_weight as acceleration
 from solutions.support.rotation import advance_rigid_body
 from validate import drawing
-from validate.drawing import pose
+from validate.drawing import circle, outlines, pose
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.rotation import rolling_ball
 from validate.engines.simulator import OVERLAP, pymunk_body, pymunk_floor_space
@@ -142,9 +142,6 @@ RUNNERS = (
 )
 
 
-ROUND = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]       # corners of the circle that stands for the ball in the picture
-
-
 def turned(observed, p):
     """Angle of the ball [rad]: (rim² − rim₀²)/(2μg mR²/I) R while it slides, then the way of the ball over R."""
     x, v, rim = observed
@@ -159,14 +156,14 @@ def points(observed, p):
     """Draw the ball from the side, with a spoke, and the speeds of its centre and of its rim as arrows beside it."""
     x, v, rim = observed
     centre, angle = np.array([x, p.R]), turned(observed, p)
-    ring = centre + p.R * np.stack((np.cos(ROUND), np.sin(ROUND)), axis=1)
+    ring = centre + p.R * circle(24)
     spoke = centre + p.R * np.array([(np.sin(angle), np.cos(angle)), (0.0, 0.0)])
     speeds = centre + np.array([(0.0, 0.15), (0.1 * v, 0.15), (0.0, 0.2), (0.1 * rim, 0.2)])
     return np.vstack((ring, spoke, speeds, ((-0.7, 0.0), (1.5, 0.0))))
 
 
 def links(p):
-    return [(k, (k + 1) % 24) for k in range(24)] + [(24, 25), (26, 27), (28, 29), (30, 31)]
+    return [*outlines(24), (24, 25), (26, 27), (28, 29), (30, 31)]
 
 
 def bodies(p):

@@ -12,6 +12,7 @@ import numpy as np
 from solutions.checks import BadInput, check_friction
 from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
 from solutions.simulator import weight as acceleration
+from validate.drawing import outlines
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
@@ -192,7 +193,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(7) for i in range(4)] + [(28, 29)]
+    return [*outlines(4, 7), (28, 29)]
 
 
 SCENE = Scene(

@@ -17,6 +17,7 @@ from solutions.contact import box_bounds_2d, box_contacts_2d, make_pile_2d
 from solutions.simulator import advance_contact
 from solutions.simulator import weight as acceleration
 from solutions.support.bodies import Bodies
+from validate.drawing import outlines
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import PILE, SETTLED_LOOP
@@ -261,7 +262,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(p.n) for i in range(4)] + [(4 * p.n, 4 * p.n + 1)]
+    return [*outlines(4, p.n), (4 * p.n, 4 * p.n + 1)]
 
 
 SCENE = Scene(

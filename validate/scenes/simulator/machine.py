@@ -21,6 +21,7 @@ from solutions.simulator import (
     weight,
 )
 from solutions.springs import spring_tension
+from validate.drawing import outlines
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
@@ -236,8 +237,7 @@ def points(observed, p):
 
 def links(p):
     n = 4 * len(HALF)
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(len(HALF)) for i in range(4)] + [
-        (n + k, n + k + 1) for k in range(12)] + [(n + 13, n + 14)]
+    return outlines(4, len(HALF)) + [(n + k, n + k + 1) for k in range(12)] + [(n + 13, n + 14)]
 
 
 SCENE = Scene(

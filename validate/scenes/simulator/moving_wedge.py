@@ -11,6 +11,7 @@ import numpy as np
 
 from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
 from solutions.simulator import weight as acceleration
+from validate.drawing import outlines
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
@@ -235,7 +236,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(first + k, first + (k + 1) % 4) for first in (0, 4) for k in range(4)] + [(8, 9)]
+    return [*outlines(4, 2), (8, 9)]
 
 
 def sanity_checks():

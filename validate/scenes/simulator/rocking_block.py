@@ -21,6 +21,7 @@ from solutions.simulator import (
     make_bodies_2d,
 )
 from solutions.simulator import weight as acceleration
+from validate.drawing import outlines
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import ITERATIONS, OVERLAP, pybullet_box, pybullet_slab, pymunk_body, pymunk_floor_space
@@ -171,7 +172,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(k, (k + 1) % 4) for k in range(4)] + [(4, 5)]
+    return [*outlines(4), (4, 5)]
 
 
 def sanity_checks():

@@ -11,7 +11,7 @@ from solutions.checks import BadInput, check_not_negative
 from solutions.simulator import advance_contact, disc_bounds, make_bodies_2d, make_joints, round_contacts
 from solutions.simulator import weight as acceleration
 from validate import drawing
-from validate.drawing import pose
+from validate.drawing import circle, outlines, pose
 from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
 from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
@@ -186,14 +186,11 @@ def points(observed, p):
     """The pivots and the balls; touching balls at the start, because only sums are observed."""
     theta = np.asarray(observed)[:BALLS] if p.gap > 0.0 else angles(p)
     x = centres(theta, p)
-    ring = np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
-    circle = p.R * np.stack((np.cos(ring), np.sin(ring)), axis=1)
-    return np.round(np.vstack((pivots(p), x, (x[:, None] + circle).reshape(-1, 2))), 4)
+    return np.round(np.vstack((pivots(p), x, (x[:, None] + p.R * circle(12)).reshape(-1, 2))), 4)
 
 
 def links(p):
-    rods = [(k, BALLS + k) for k in range(BALLS)]
-    return rods + [(2 * BALLS + 12 * k + i, 2 * BALLS + 12 * k + (i + 1) % 12) for k in range(BALLS) for i in range(12)]
+    return [(k, BALLS + k) for k in range(BALLS)] + outlines(12, BALLS, 2 * BALLS)
 
 
 def bodies(p):

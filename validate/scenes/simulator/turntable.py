@@ -11,7 +11,7 @@ from solutions.rotation import supported_weight as acceleration
 from solutions.simulator import CarriedBall, advance_contact, ball_bounds, make_bodies, round_contacts, weight
 from solutions.support.rotation import advance_rigid_body
 from validate import drawing
-from validate.drawing import pose
+from validate.drawing import circle, outlines, pose
 from validate.engines.simulator import pybullet_turntable
 from validate.methods import CARRIED, LOOP
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
@@ -167,14 +167,12 @@ RUNNERS = (
 
 def points(observed, p):
     """Draw the rim of the table from above, the ball, and its velocity."""
-    angles = np.linspace(0.0, 2.0 * np.pi, 37)[:-1]
-    ring = np.stack((np.cos(angles), np.sin(angles)), axis=1)
-    here = observed[:2]
+    ring, here = circle(36), observed[:2]
     return np.vstack((1.2 * ring, here + p.R * ring, here, here + 0.5 * observed[2:]))
 
 
 def links(p):
-    return [(first + k, first + (k + 1) % 36) for first in (0, 36) for k in range(36)] + [(72, 73)]
+    return [*outlines(36, 2), (72, 73)]
 
 
 def bodies(p):
