@@ -12,7 +12,6 @@ SWEPT_SETTINGS = (f"useMaximalCoordinates, ccdSweptSphereRadius {SWEPT:g} r, con
                   "and contactSlop 0")
 
 
-
 def across(x):
     """Return the coordinates (1, 2) of positions x (n, 3), in one row, because there is no motion along x."""
     return np.ravel(x[:, 1:])
