@@ -204,9 +204,8 @@ def test_a_class_list_that_contradicts_itself_is_refused(tmp_path):
 # ---------------------------------------------------------------------- the command
 
 
-def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(tmp_path):
-    sandbox.for_tests(pytest.skip, pytest.fail)
-    top = tmp_path / "class"
+def handed_in(top):
+    """Make the folder of a class whose files come as folders, archives, single files and under an odd name."""
     blank = (modules.ROOT / "lessons" / "integrators.py").read_bytes()
     folder(top / "ada", "integrators")
     zipped(top / "ada.zip")
@@ -216,23 +215,15 @@ def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(t
     (top / NFD).mkdir()
     (top / NFD / "integrators.py").write_bytes(blank)
     (top / "list.csv").write_text(f"student_id\nada\nbob\ncem\n{NFC}\n", encoding="utf-8")
-    run = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "validate.grading",
-            str(top),
-            "--out",
-            str(tmp_path / "out"),
-            "--lesson",
-            "integrators",
-            "--roster",
-            str(top / "list.csv"),
-        ],
-        cwd=modules.ROOT,
-        capture_output=True,
-        text=True,
-    )
+
+
+def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(tmp_path):
+    sandbox.for_tests(pytest.skip, pytest.fail)
+    top = tmp_path / "class"
+    handed_in(top)
+    command = [sys.executable, "-m", "validate.grading", str(top), "--out", str(tmp_path / "out"),
+               "--lesson", "integrators", "--roster", str(top / "list.csv")]
+    run = subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True)
     assert run.returncode == 1, run.stdout + run.stderr  # somebody has no points yet
     page = (tmp_path / "out" / "index.html").read_text()
     for word in ("ada.zip", "bob.tar.gz", "notes.txt"):

@@ -383,8 +383,6 @@ def test_more_than_a_frame_that_no_one_asked_for_breaks_the_rules():
     process.stderr.close()
 
 
-
-
 @pytest.mark.long
 def test_a_second_answer_is_seen_however_late_it_comes():
     with opened(TWO_ANSWERS) as place:

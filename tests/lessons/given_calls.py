@@ -20,6 +20,9 @@ def around(*shape):
     return rng.uniform(-1.0, 1.0, shape)
 
 
+TRIANGLE, SEGMENT = tuple(around(3, 3)), tuple(around(4, 3))
+
+
 def turned():
     """A rotation (3, 3)."""
     q = rng.normal(size=4)
@@ -92,108 +95,148 @@ def contact_steps(worlds, bounds, narrow):
     return [(simulator.weight, bounds, narrow, 0.0, state, 0.01, p) for state, p in worlds]
 
 
-def given_calls():
-    """{lesson: {function: calls}}."""
-    turn, roll, throw = scenes.TURNS, scenes.ROLLING, scenes.OSCILLATION
+def of_integrators():
+    throw = scenes.OSCILLATION
+    return {
+        "blanes_moan_step": [(throw[0], 0.0, *throw[2:5], throw[6])],
+        "inner_product": [(around(3), around(3))],
+        "spectral_radius": [(around(2, 2),) for _ in range(4)]}
+
+
+def of_springs():
+    return {"randomised": [(2.0, 0.3, around(4))]}
+
+
+def of_friction():
+    return {
+        "pyramid_step": [(friction.driven_acceleration, 0.0, scenes.still, around(3), 0.1, scenes.block)],
+        "event_step": [(friction.driven_acceleration, 0.0, scenes.still, v, 0.1, scenes.block)
+                       for v in (scenes.still, 0.01 * scenes.block.drive)]}
+
+
+def of_rotation():
+    turn, roll = scenes.TURNS, scenes.ROLLING
     rotating = (*turn[:5], turn[6])
-    free, spinning = scenes.DROP, scenes.SPIN
+    return {
+        **{name: [rotating] for name in (
+            "midpoint_step", "splitting_step", "matrix_step", "axis_angle_step", "quaternion_step",
+            "gyroscopic_step", "implicit_gyroscopic_step", "runge_kutta_step", "composed_splitting_step",
+            "composed_midpoint_step")},
+        "supported_weight": [(*roll[1:6], roll[8])],
+        "no_torque": [(0.0, scenes.q, scenes.L, turn[6])]}
+
+
+def of_collisions():
+    flight = (*scenes.FLIGHT[:3], scenes.up, -9.0 * scenes.up, 0.1, scenes.FLIGHT[-1])
+    flock = collisions.make_flock(0.1, 1.0, 2.0, 0.3, 0.4)
+    return {
+        "ball_plane": [(around(3), 0.3, scenes.plane)],
+        "cylinder_hit": [(0.0, 0.1, 3.0 * around(3), 3.0 * around(3), 0.2, 0.5) for _ in range(8)],
+        "ball_plane_gap": [(around(3), flight[-1])],
+        "ball_plane_time": [(0.0, 0.1, scenes.up, -scenes.up, flight[-1])],
+        "ball_cylinder_gap": [(around(3), flight[-1])],
+        "ball_cylinder_time": [(0.0, 0.1, 3.0 * scenes.up, -scenes.up, flight[-1])],
+        "discrete_step": [flight], "continuous_step": [flight],
+        "ball_triangle": [(around(3), 0.1, *TRIANGLE)],
+        "nearer_pair": [tuple(around(4, 3))],
+        "closest_segments": [tuple(around(4, 3)) for _ in range(SHOWN)],
+        "capsule_capsule": [(*SEGMENT[:2], 0.1, *SEGMENT[2:], 0.2)],
+        "ball_capsule": [(around(3), 0.1, *SEGMENT[:2], 0.2)],
+        "points_plane": [(around(6, 3), scenes.plane)],
+        "against_face": [(around(4, 3), scenes.up, 0.2 * around(3), flipped) for flipped in (False, True)],
+        "separating_edge": [(polygon(), polygon()) for _ in range(SHOWN)],
+        "polygon_contacts": [(polygon(), polygon()) for _ in range(SHOWN)],
+        "box_separation": list(boxes_near_each_other()),
+        "box_box": list(boxes_near_each_other()),
+        "gjk": [(around(8, 3), around(6, 3) + 1.5 * around(3)) for _ in range(SHOWN)],
+        "flock_acceleration": [(0.0, around(5, 2), around(5, 2), flock)],
+        "flock_energy": [(2.0 * around(5, 2), around(5, 2), flock)]}
+
+
+def of_impulses():
+    free, spinning, pair = scenes.DROP, scenes.SPIN, scenes.pair[0]
     fall = (free[0], 0.0, 0.1 * scenes.up, -scenes.up, 0.3, scenes.drop)
     spin = (spinning[0], 0.0, 0.1 * scenes.up, -scenes.up + 0.3, np.ones(3), 0.3, scenes.spinner)
-    flight = (*scenes.FLIGHT[:3], scenes.up, -9.0 * scenes.up, 0.1, scenes.FLIGHT[-1])
+    K = impulses.contact_matrix(scenes.arms[0], 1.0, scenes.solid.inv_inertia)
+    return {
+        "contact_impulse": [(scenes.solid.v, scenes.up, K, 0.5, 0.3)],
+        "penalty_step": [fall], "project_to_plane": [(around(3), scenes.drop)],
+        "spinning_impact": [(-scenes.up + 0.3, np.ones(3), scenes.spinner)],
+        "position_projection_spin_step": [spin], "backtracking_spin_step": [spin],
+        "advance_to_plane": [(scenes.up, -scenes.up, scenes.down, 1.0, scenes.drop)],
+        "disc_impact": [(pair, -pair, 1, 0, scenes.discs)],
+        "position_projection_discs_step": [(pair, -pair, 0.2, scenes.discs)],
+        "backtracking_discs_step": [(pair, -pair, 0.2, scenes.discs)],
+        "check_over_plane": [(scenes.drop, 3)],
+        "relative_velocity": [(scenes.solid, scenes.solid._replace(v=-scenes.up), *scenes.arms)]}
+
+
+def of_pbd():
     cloth, balloon = a_cloth(), a_balloon()
-    pair, pile = scenes.pair[0], contact.make_pile_2d(*scenes.boxes)
-    state, p = jointed()
-    arm, arm_3d = scenes.arm, scenes.STARTED["kinematics"]["make_arm_3d"][0]
-    plane_arm, space_arm = kinematics.make_arm_2d(*arm), kinematics.make_arm_3d(*arm_3d)
     rods = pbd.make_constraint_network(scenes.rope, 0.1, [0], scenes.links, 0.0, 1.0, scenes.weight, 4)
-    flock = collisions.make_flock(0.1, 1.0, 2.0, 0.3, 0.4)
+    return {
+        "rattle_step": [(pbd.network_gravity, 0.0, scenes.rope, 0.0 * scenes.rope, 0.01, rods)],
+        "fold_sweep": [cloth],
+        "cloth_step": [(pbd.network_gravity, 0.0, cloth[0], 0.0 * cloth[0], 0.01, cloth[1])],
+        "balloon_step": [(pbd.network_gravity, 0.0, balloon[0], 0.0 * balloon[0], 0.01, balloon[1])],
+        "pivoted_body_step": [(0.0, np.array([0.0, 0.0, -0.5]), scenes.q, np.zeros(3), np.array([0.3, 1.0, 0.2]),
+                               0.01, pbd.PivotedBody(1.0, scenes.I_body, scenes.down, np.zeros(3),
+                                                     np.array([0.0, 0.0, 0.5]), 3))]}
+
+
+def of_contact():
+    pile = contact.make_pile_2d(*scenes.boxes)
     _, *begin, _, p_boxes = scenes.STARTED["simulator"]["advance_contact"][0]
     touching = simulator.contact_step_2d(*begin, p_boxes).contacts
-    K = impulses.contact_matrix(scenes.arms[0], 1.0, scenes.solid.inv_inertia)
-    triangle, segment = tuple(around(3, 3)), tuple(around(4, 3))
+    return {
+        "contact_targets": [(0.1 * around(6), *rng.uniform(0.0, 1.0, (2, 6)), 0.004, pile[1])],
+        "separation_speeds": [(touching, pile[1])],
+        "pile_trajectory": [(contact.advance_pile_2d, *scenes.STARTED["contact"]["advance_pile_2d"][0])]}
+
+
+def of_simulator():
+    state, p = jointed()
     joint = (simulator.weight, 0.0, state.x, state.q, state.v, state.omega, 0.01, p)
     return {
-        "integrators": {
-            "blanes_moan_step": [(throw[0], 0.0, *throw[2:5], throw[6])],
-            "inner_product": [(around(3), around(3))],
-            "spectral_radius": [(around(2, 2),) for _ in range(4)]},
-        "springs": {"randomised": [(2.0, 0.3, around(4))]},
-        "friction": {
-            "pyramid_step": [(friction.driven_acceleration, 0.0, scenes.still, around(3), 0.1, scenes.block)],
-            "event_step": [(friction.driven_acceleration, 0.0, scenes.still, v, 0.1, scenes.block)
-                           for v in (scenes.still, 0.01 * scenes.block.drive)]},
-        "rotation": {
-            **{name: [rotating] for name in (
-                "midpoint_step", "splitting_step", "matrix_step", "axis_angle_step", "quaternion_step",
-                "gyroscopic_step", "implicit_gyroscopic_step", "runge_kutta_step", "composed_splitting_step",
-                "composed_midpoint_step")},
-            "supported_weight": [(*roll[1:6], roll[8])],
-            "no_torque": [(0.0, scenes.q, scenes.L, turn[6])]},
-        "collisions": {
-            "ball_plane": [(around(3), 0.3, scenes.plane)],
-            "cylinder_hit": [(0.0, 0.1, 3.0 * around(3), 3.0 * around(3), 0.2, 0.5) for _ in range(8)],
-            "ball_plane_gap": [(around(3), flight[-1])],
-            "ball_plane_time": [(0.0, 0.1, scenes.up, -scenes.up, flight[-1])],
-            "ball_cylinder_gap": [(around(3), flight[-1])],
-            "ball_cylinder_time": [(0.0, 0.1, 3.0 * scenes.up, -scenes.up, flight[-1])],
-            "discrete_step": [flight], "continuous_step": [flight],
-            "ball_triangle": [(around(3), 0.1, *triangle)],
-            "nearer_pair": [tuple(around(4, 3))],
-            "closest_segments": [tuple(around(4, 3)) for _ in range(SHOWN)],
-            "capsule_capsule": [(*segment[:2], 0.1, *segment[2:], 0.2)],
-            "ball_capsule": [(around(3), 0.1, *segment[:2], 0.2)],
-            "points_plane": [(around(6, 3), scenes.plane)],
-            "against_face": [(around(4, 3), scenes.up, 0.2 * around(3), flipped) for flipped in (False, True)],
-            "separating_edge": [(polygon(), polygon()) for _ in range(SHOWN)],
-            "polygon_contacts": [(polygon(), polygon()) for _ in range(SHOWN)],
-            "box_separation": list(boxes_near_each_other()),
-            "box_box": list(boxes_near_each_other()),
-            "gjk": [(around(8, 3), around(6, 3) + 1.5 * around(3)) for _ in range(SHOWN)],
-            "flock_acceleration": [(0.0, around(5, 2), around(5, 2), flock)],
-            "flock_energy": [(2.0 * around(5, 2), around(5, 2), flock)]},
-        "impulses": {
-            "contact_impulse": [(scenes.solid.v, scenes.up, K, 0.5, 0.3)],
-            "penalty_step": [fall], "project_to_plane": [(around(3), scenes.drop)],
-            "spinning_impact": [(-scenes.up + 0.3, np.ones(3), scenes.spinner)],
-            "position_projection_spin_step": [spin], "backtracking_spin_step": [spin],
-            "advance_to_plane": [(scenes.up, -scenes.up, scenes.down, 1.0, scenes.drop)],
-            "disc_impact": [(pair, -pair, 1, 0, scenes.discs)],
-            "position_projection_discs_step": [(pair, -pair, 0.2, scenes.discs)],
-            "backtracking_discs_step": [(pair, -pair, 0.2, scenes.discs)],
-            "check_over_plane": [(scenes.drop, 3)],
-            "relative_velocity": [(scenes.solid, scenes.solid._replace(v=-scenes.up), *scenes.arms)]},
-        "pbd": {
-            "rattle_step": [(pbd.network_gravity, 0.0, scenes.rope, 0.0 * scenes.rope, 0.01, rods)],
-            "fold_sweep": [cloth],
-            "cloth_step": [(pbd.network_gravity, 0.0, cloth[0], 0.0 * cloth[0], 0.01, cloth[1])],
-            "balloon_step": [(pbd.network_gravity, 0.0, balloon[0], 0.0 * balloon[0], 0.01, balloon[1])],
-            "pivoted_body_step": [(0.0, np.array([0.0, 0.0, -0.5]), scenes.q, np.zeros(3), np.array([0.3, 1.0, 0.2]),
-                                   0.01, pbd.PivotedBody(1.0, scenes.I_body, scenes.down, np.zeros(3),
-                                                         np.array([0.0, 0.0, 0.5]), 3))]},
-        "contact": {
-            "contact_targets": [(0.1 * around(6), *rng.uniform(0.0, 1.0, (2, 6)), 0.004, pile[1])],
-            "separation_speeds": [(touching, pile[1])],
-            "pile_trajectory": [(contact.advance_pile_2d, *scenes.STARTED["contact"]["advance_pile_2d"][0])]},
-        "simulator": {
-            "contact_step_2d": contact_steps(piles_2d(), simulator.box_bounds_2d, simulator.box_contacts_2d),
-            "contact_step": contact_steps(heaps(), simulator.box_bounds, simulator.box_contacts),
-            "settled_contact_step_2d": contact_steps(list(piles_2d())[:4], simulator.box_bounds_2d,
-                                                     simulator.box_contacts_2d),
-            "mean_contact_step_2d": contact_steps(list(piles_2d())[:4], simulator.box_bounds_2d,
-                                                  simulator.box_contacts_2d),
-            "joint_step_2d": [joint], "composed_joint_step_2d": [joint],
-            "joint_contact_step_2d": [(simulator.weight, simulator.box_bounds_2d, simulator.box_contacts_2d, 0.0, state,
-                                       0.01, p)],
-            "rods_acceleration": [(0.0, around(3), around(3), simulator.RodsInAngles(0.5, 0.3, 0.004, 9.81))],
-            "rocking_step": [(integrators.rk4_step, 0.0, np.array([x]), np.array([-0.5]), 0.05, scenes.rocker)
-                             for x in (0.1, 0.01)]},
-        "kinematics": {
-            "reach_2d": [(scenes.bent, scenes.goal, plane_arm)],
-            "pose_2d": [(scenes.bent, np.array([0.9, 0.8, 0.3]), plane_arm)],
-            "reach_3d": [(scenes.bent, around(3), space_arm)],
-            "pose_3d": [(scenes.bent, np.concatenate((around(3), scenes.q)), space_arm)],
-            "end_pose": [(scenes.bent, space_arm)],
-            "pseudo_inverse_step": [(kinematics.reach_2d, scenes.bent, scenes.goal, plane_arm)],
-            "angles_of": [(around(4, 2),)],
-            "fabrik_step": [(kinematics.reach_2d, scenes.bent, scenes.goal, plane_arm)]},
+        "contact_step_2d": contact_steps(piles_2d(), simulator.box_bounds_2d, simulator.box_contacts_2d),
+        "contact_step": contact_steps(heaps(), simulator.box_bounds, simulator.box_contacts),
+        "settled_contact_step_2d": contact_steps(list(piles_2d())[:4], simulator.box_bounds_2d,
+                                                 simulator.box_contacts_2d),
+        "mean_contact_step_2d": contact_steps(list(piles_2d())[:4], simulator.box_bounds_2d,
+                                              simulator.box_contacts_2d),
+        "joint_step_2d": [joint], "composed_joint_step_2d": [joint],
+        "joint_contact_step_2d": [(simulator.weight, simulator.box_bounds_2d, simulator.box_contacts_2d, 0.0, state,
+                                   0.01, p)],
+        "rods_acceleration": [(0.0, around(3), around(3), simulator.RodsInAngles(0.5, 0.3, 0.004, 9.81))],
+        "rocking_step": [(integrators.rk4_step, 0.0, np.array([x]), np.array([-0.5]), 0.05, scenes.rocker)
+                         for x in (0.1, 0.01)]}
+
+
+def of_kinematics():
+    plane_arm = kinematics.make_arm_2d(*scenes.arm)
+    space_arm = kinematics.make_arm_3d(*scenes.STARTED["kinematics"]["make_arm_3d"][0])
+    return {
+        "reach_2d": [(scenes.bent, scenes.goal, plane_arm)],
+        "pose_2d": [(scenes.bent, np.array([0.9, 0.8, 0.3]), plane_arm)],
+        "reach_3d": [(scenes.bent, around(3), space_arm)],
+        "pose_3d": [(scenes.bent, np.concatenate((around(3), scenes.q)), space_arm)],
+        "end_pose": [(scenes.bent, space_arm)],
+        "pseudo_inverse_step": [(kinematics.reach_2d, scenes.bent, scenes.goal, plane_arm)],
+        "angles_of": [(around(4, 2),)],
+        "fabrik_step": [(kinematics.reach_2d, scenes.bent, scenes.goal, plane_arm)]}
+
+
+def given_calls():
+    """{lesson: {function: calls}}."""
+    return {
+        "integrators": of_integrators(),
+        "springs": of_springs(),
+        "friction": of_friction(),
+        "rotation": of_rotation(),
+        "collisions": of_collisions(),
+        "impulses": of_impulses(),
+        "pbd": of_pbd(),
+        "contact": of_contact(),
+        "simulator": of_simulator(),
+        "kinematics": of_kinematics(),
     }

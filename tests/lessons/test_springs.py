@@ -319,6 +319,15 @@ def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson, draw):
 @exercise("2.9", points=1,
           hint="a step of lesson 1 does this: pass spring_network_acceleration to it, and the network as p")
 def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_hangs(lesson, draw):
+    falls_freely(lesson, draw)
+    m, k, k_d, k_v = draw(0.40, 0.50), draw(40.0, 60.0), draw(4.0, 6.0), draw(2.0, 2.2)
+    weight = (m, k, k_d, k_v, draw(0.7, 0.9), draw(9.5, 10.0))
+    dt = moves_on_a_spring(lesson, draw, *weight)
+    comes_to_rest(lesson, draw, dt, *weight)
+
+
+def falls_freely(lesson, draw):
+    """Two points without a spring, one of them fixed: both move as they must."""
     steps = draw.whole(8, 12)
     dt = draw(0.08, 0.12)
     g = np.array([draw(-1.0, 1.0), -draw(5.0, 10.0)])
@@ -335,10 +344,9 @@ def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_ha
           given)
     close("v after a free fall [m/s]", v, [v0 + T * g, drawn], 1e-13, given)
 
-    m = draw(0.40, 0.50)
-    k, k_d, k_v = draw(40.0, 60.0), draw(4.0, 6.0), draw(2.0, 2.2)
-    rest = draw(0.7, 0.9)
-    g = draw(9.5, 10.0)
+
+def moves_on_a_spring(lesson, draw, m, k, k_d, k_v, rest, g):
+    """One step of a weight on a spring; return the step."""
     deep, fast, dt = draw(0.1, 0.3), draw(1.0, 3.0), draw(0.020, 0.024)
     on_a_spring = mesh_of(lesson, [0.0, 1.0 / m], [(0, 1, rest, k, k_d)], [0.0, -g], k_v=k_v)
     before = np.array([[0.0, 0.0], [0.0, -rest - deep]]), np.array([[0.0, 0.0], [0.0, -fast]])
@@ -350,7 +358,11 @@ def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_ha
     close("v after one step on a spring [m/s]", v[1], [0.0, v_new], 1e-13)
     close("x after one step on a spring [m]: moved by dt times the mean velocity", x[1], [0.0, x_new], 1e-13)
     close("input x and v after the call: return new arrays", np.array(before), kept, 0.0)
+    return dt
 
+
+def comes_to_rest(lesson, draw, dt, m, k, k_d, k_v, rest, g):
+    """The weight in the wind comes to rest in the direction of the pull."""
     wind = np.array([draw(-2.0, 2.0), draw(-0.5, 0.5)])
     pull = wind + np.array([0.0, -m * g])
     hanging = mesh_of(lesson, [0.0, 1.0 / m], [(0, 1, rest, k, k_d)], [0.0, -g], wind, k_v)

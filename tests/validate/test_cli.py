@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -94,7 +95,7 @@ def with_scene(monkeypatch, tmp_path):
     def add(text, name="broken"):
         (tmp_path / "springs").mkdir(exist_ok=True)
         (tmp_path / "springs" / f"{name}.py").write_text(text)
-        files, folder = modules.scene_files(), sys.modules["validate.scenes.springs"]
+        files, folder = modules.scene_files(), import_module("validate.scenes.springs")
         monkeypatch.setattr(modules, "scene_files", lambda: {**files, name: tmp_path / "springs" / f"{name}.py"})
         monkeypatch.setattr(folder, "__path__", [*folder.__path__, str(tmp_path / "springs")])
         sys.modules.pop(f"validate.scenes.springs.{name}", None)
@@ -117,7 +118,7 @@ def test_a_scene_that_does_not_load_is_named_and_hides_no_other(capsys, tmp_path
     assert code == 2 and "broken.py" in error and ("errors", "spring_net") in pretended     # after the others have run
 
 
-RECORD = (modules.SCENES / "springs" / "hanging_springs.py").read_text()
+RECORD = (modules.SCENES / "springs" / "two_stars.py").read_text()
 
 
 @pytest.mark.parametrize(("text", "says"), [

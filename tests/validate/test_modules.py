@@ -217,3 +217,9 @@ def test_a_plain_copy_of_the_solutions_raises_the_errors_that_scenes_expect(tmp_
     with pytest.raises(Diverged):
         advance(lost, lambda t, x, v, p: x, 0.0, np.ones(1), np.ones(1), 0.1, 1, None)
     assert type(modules.PLAIN.lesson("checks").finite_array) is type(lambda: None)        # ours stay as they are
+
+
+def test_what_the_scenes_of_a_lesson_share_is_no_scene():
+    shared = sorted(path.parent.name for path in modules.SCENES.glob("*/_*.py") if path.stem == "_common")
+    assert {"integrators", "springs"} <= set(shared)
+    assert not [name for name in modules.scene_names() if name.startswith("_")]

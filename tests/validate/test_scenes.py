@@ -2,7 +2,9 @@
 and a wrong method would be seen.
 """
 
+import ast
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +14,7 @@ from solutions import integrators
 from solutions.checks import BadInput
 from validate import measure, methods
 from validate.check import Verdict, is_right
-from validate.measure.accuracy import ASYMPTOTIC, engine_curve
+from validate.measure.accuracy import ASYMPTOTIC, engine_curve, theory
 from validate.measure.selection import select
 from validate.measure.timing import time_to_error
 from validate.report import words
@@ -243,3 +245,32 @@ def test_no_two_curves_of_a_scene_look_alike():
                       [methods.engine_look(e, witnesses) for e in witnesses]):
             assert len(set(looks)) == len(looks), name
         assert not {m.colour for m in ours} & {product.colour for product in PRODUCTS}
+
+
+# things that scenes are about: what one scene says of its limits must not speak of the things of another
+THINGS = set("arch ball block bowl box card chain cloth cradle cylinder disc domino house machine mesh net particle "
+             "pendulum pile planet rod rope spring stack star top triangle turntable wedge".split())
+
+
+def things_in(text):
+    """The THINGS that a text names, in singular or plural."""
+    found = re.findall(r"[a-z]+", text.lower())
+    return THINGS & {one for word in found for one in (word, word.removesuffix("s"), word.removesuffix("es"))}
+
+
+def own_things(name):
+    """The THINGS that the texts in the file of a scene name: docstrings, titles, meanings and reasons."""
+    tree = ast.parse(modules.scene_files()[name].read_text(encoding="utf-8"))
+    return things_in(" ".join(node.value for node in ast.walk(tree)
+                              if isinstance(node, ast.Constant) and isinstance(node.value, str)))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_page_speaks_of_its_own_scene_where_it_explains_its_limits(name):
+    """The report prints the docstrings of the functions, and some of these serve several scenes."""
+    assert things_in(theory(modules.bind_scene(name))) <= own_things(name)
+
+
+def test_a_word_of_another_scene_is_noticed():
+    text = "In a rope its sweeps do not finish, and the band is half of the error."
+    assert things_in(text) == {"rope"} <= own_things("rope") and not {"rope"} <= own_things("pendulum")

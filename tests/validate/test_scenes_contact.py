@@ -6,8 +6,10 @@ import pytest
 from validate import measure
 from validate.check import is_right
 from validate.engines.contact import pymunk_tower
-from validate.measure import film
-from validate.reference.contact import Settling, Towers, sway_of_tower, unrest_in_pymunk
+from validate.measure import film, record
+from validate.measure.selection import can_do
+from validate.reference.contact import Towers, sway_of_tower, unrest_in_pymunk
+from validate.reference.stored import numbers
 from validate.scenes.contact import mass_ratio, piles, stack
 from validate.subject import modules
 
@@ -40,16 +42,31 @@ def test_a_wrong_answer_departs(tmp_path, scene, case, method, right, wrong):
     assert verdicts[method] is False, verdicts
 
 
+TOWERS = pytest.mark.parametrize("scene", [stack, mass_ratio], ids=["stack", "mass_ratio"])
+
+
 @pytest.mark.long
-def test_the_sway_of_the_piles_is_that_of_the_reference():
-    """To half of it, since rounding in another order changes what is left of the rocking; 0 stands for round-off."""
-    for n, known in stack.SWAY.items():
-        assert sway_of_tower((1.0,) * n, 1.0, 9.81, stack.SETTLED) == pytest.approx(known, rel=0.5, abs=1e-14)
-    for r, known in mass_ratio.SWAY.items():
-        p = mass_ratio.Params(r=r)
-        substeps, hertz, seconds = mass_ratio.solver(p)
-        how = Settling(mass_ratio.DT, substeps, hertz, mass_ratio.ZETA, mass_ratio.MU, seconds)
-        assert sway_of_tower(tuple(mass_ratio.masses(p)), 1.0, 9.81, how) == pytest.approx(known, rel=0.5, abs=1e-14)
+@TOWERS
+def test_the_stored_numbers_of_towers_are_those_of_the_reference(scene):
+    """To half of them, since rounding in another order changes what is left of the rocking."""
+    found, known = record.numbers_of(scene.SCENE), numbers(scene.__name__.rpartition(".")[2])
+    assert found.keys() == known.keys()
+    assert [found[key] for key in known] == pytest.approx(list(known.values()), rel=0.5, abs=1e-12)
+
+
+@TOWERS
+def test_the_limits_of_towers_compute_no_number_that_is_stored(scene, monkeypatch):
+    def refuse(function):
+        def refused(*arguments):
+            raise AssertionError(f"{function.__name__}{arguments}")
+        refused.__name__ = function.__name__
+        return refused
+    for function in (sway_of_tower, unrest_in_pymunk):
+        monkeypatch.setattr(scene, function.__name__, refuse(function))
+    for runner in scene.SCENE.runners:
+        assert all(runner.largest_error(p, 1.0) > 0.0 for p in scene.CASES.values() if can_do(runner, p))
+    with pytest.raises(AssertionError, match="sway_of_tower"):
+        scene.sway(scene.Params(size=2.0))
 
 
 @pytest.mark.parametrize("case", ["12 spheres", "30 discs"])
@@ -63,20 +80,6 @@ def test_a_pile_is_filmed_inside_the_edges_of_its_container(case):
     assert np.min(gaps, axis=0) == pytest.approx(0.0, abs=1e-12)
     radii = [body["r"] for body in piles.bodies(p)]
     assert np.max(edges[:, 2]) == pytest.approx(np.max(first[:, 2] + radii), abs=1e-12)
-
-
-@pytest.mark.long
-def test_the_unrest_of_pymunks_towers_is_that_of_the_reference():
-    """To half of it, as for the piles; 0 stands for less than the roundings that the limit allows besides."""
-    for (n, *settings), known in stack.UNREST.items():
-        joints = stack.tower(stack.Params(n=n)).joint_frictions()
-        how = Towers(stack.DT, *settings, stack.OVERLAP, joints, stack.WAITING)
-        assert unrest_in_pymunk((1.0,) * n, 1.0, 9.81, how) == pytest.approx(known, rel=0.5, abs=1e-14)
-    for r, known in mass_ratio.UNREST.items():
-        p = mass_ratio.Params(r=r)
-        joints = mass_ratio.tower(p).joint_frictions()
-        how = Towers(stack.DT, **mass_ratio.FINE, overlap=stack.OVERLAP, frictions=joints, seconds=3.0)
-        assert unrest_in_pymunk(tuple(mass_ratio.masses(p)), 1.0, 9.81, how) == pytest.approx(known, abs=1e-12)
 
 
 @pytest.mark.parametrize("steps", [1, 4, 24])

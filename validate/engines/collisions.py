@@ -1,48 +1,20 @@
-"""Moving points, swept balls and pairs of boxes in pybullet, and what the scenes of moving points share."""
+"""Moving points, swept balls and pairs of boxes in pybullet."""
 
-from functools import partial
 
 import numpy as np
 
-from solutions.checks import check_positive
-from solutions.collisions import Plane
-from solutions.given.collisions import Target
 from validate.engines.bullet import Bullet
-from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, ONLY_ROUND_OFF
-from validate.scene import EXACT, PYBULLET, EngineRun, engine, ours
-
-PLACE_APART = 1.0            # metre between two copies along the x axis
-
-ENGINE_SPEEDS = (1.0, 1e2, 1e4)  # of the balls in an engine [m/s]: the lowest, the middle, the highest
+from validate.scene import EngineRun
 
 # radius that pybullet sweeps over that of the ball [-]: with all of it a ball sticks to a surface that it grazes
 SWEPT = 0.8
 SWEPT_SETTINGS = (f"useMaximalCoordinates, ccdSweptSphereRadius {SWEPT:g} r, contactProcessingThreshold, contactERP "
                   "and contactSlop 0")
 
-# how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  Rays approach from outside;
-# twenty tested beforehand ended up to 1.2 mm early, and this permits eight times that
-RAY_ENDS = 1e-2
-
 
 def across(x):
     """Return the coordinates (1, 2) of positions x (n, 3), in one row, because there is no motion along x."""
     return np.ravel(x[:, 1:])
-
-
-def start_balls(place, positive):
-    """Return start(p) of the balls (x, v) = place(p); it raises BadInput unless these parameters are positive."""
-    def start(p):
-        for name in positive:
-            check_positive(name, getattr(p, name))
-        return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
-    return start
-
-
-def observe_balls(state, p):
-    """Return the places of the balls that may hit, in one row."""
-    return across(state[0][:COPIES])
 
 
 def target(bullet, p, grown=0.0):
@@ -112,29 +84,6 @@ def bullet_swept(p, dt, place):
     return EngineRun(step, lambda: across(at), bullet.close)
 
 
-def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
-    """Return the runners of a scene of balls that stop at an obstacle: our methods, and pybullet's two ways.
-
-    place(p) → (x, v), each (n, 3)       fastest [m/s] with which the discrete test can deal
-    limits, late    of our methods: limits, and the field `predicted` of the discrete test
-    obstacle        of the rays, in words
-    rays, swept     {field: its value} of the Runner of each way of pybullet
-    """
-    def slow_enough(p):
-        return p.speed <= fastest
-
-    def some_speeds(p):
-        return p.speed in ENGINE_SPEEDS
-    return (
-        ours(CONTINUOUS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
-        ours(DISCRETE, limit=limits, predicted=late, supports=slow_enough),
-        engine(PYBULLET, "rays", partial(bullet_rays, place=place), f"one rayTestBatch per step, at a {obstacle}",
-               supports=some_speeds, most_steps=100, **rays),
-        engine(PYBULLET, "swept", partial(bullet_swept, place=place), SWEPT_SETTINGS,
-               supports=some_speeds, most_steps=200, **swept),
-    )
-
-
 def swept_radius(p, dt):
     """Return the radius [m] of the sphere that bullet_swept sweeps in a step; None for steps that are not swept.
 
@@ -142,15 +91,6 @@ def swept_radius(p, dt):
     radius; btDiscreteDynamicsWorld::integrateTransforms.
     """
     return SWEPT * p.r if p.speed * dt >= 0.5 * SWEPT * p.r else None
-
-
-def swept_limit(p, dt):
-    """Return the largest distance [m] between the position of bullet_swept and the place of impact.
-
-    Without a sweep a ball is at most v dt deep.  With one it ends where the swept sphere touches, with the ball
-    (1 − SWEPT) r deep, or earlier, where the ball itself is found less deep.
-    """
-    return p.speed * dt if swept_radius(p, dt) is None else (1.0 - SWEPT) * p.r
 
 
 def bullet_boxes(low, high):

@@ -1,4 +1,4 @@
-"""A block on a plane, and a particle, in the two engines: the comparison runs of lesson 3, and what blocks share.
+"""A block on a plane, and a particle, in the two engines: the comparison runs of lesson 3.
 
 Both engines hold a resting block by impulses, as our sliding_step does, and differ from it in the order of motion:
 pybullet moves with the new velocity, pymunk with the old one.  The contact exists from the first step if the block
@@ -7,7 +7,7 @@ begins with the overlap that its engine tolerates.  Otherwise it first falls tha
 
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.reference.friction import HALF, block_in_space
+from validate.reference.friction import HALF
 from validate.scene import EngineRun
 
 # half its height [m]: friction acts that far below the centre, and moves the load forward by μ LOW.  With a cube and
@@ -65,38 +65,6 @@ def bullet_block(gravity, mu, v, fastest, dt, read, push=None, pyramid=False):
     if push is not None:
         step = pushed(bullet.step, dt, lambda F: bullet.push(slab, F, bullet.position(slab)), push)
     return EngineRun(step, lambda: read(bullet.position(slab)), bullet.close)
-
-
-def along_the_plane(state, p):
-    """Return the way of the block along its plane [m]."""
-    return state[0][:1]
-
-
-def block_on(ground, start):
-    """Return the fields that the scenes of a block share; ground: "floor" or "slope", start: that of the scene."""
-    return {
-        "lesson": "friction",
-        "start": start,
-        "observe": along_the_plane,
-        "links": lambda p: [(0, 1)],
-        "uses": ("two coordinates", "a normal", "one step of a block that stays on its plane"),
-        "ablations": {
-            "the third dimension": lambda p: (block_in_space(*start(p)), p),
-            "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
-            f"detection: it does not leave the {ground}": "the whole loop of lesson 10 has it, and is measured",
-        },
-    }
-
-
-def slab_on_line(before="", after=""):
-    """Return pymunk's settings; the words before and after the slab say what a scene does with it."""
-    return f"{before}a slab of 2 m on a line{after}; {SWEEPS} iterations, collision_slop 1e-5"
-
-
-def slab_on_box(before="", after=""):
-    """Return pybullet's settings likewise."""
-    return (f"{before}a slab of 2 m on a box{after}; maximal coordinates, solverResidualThreshold 0, "
-            f"{SWEEPS} iterations")
 
 
 def pushed(step, dt, apply, push):

@@ -1,53 +1,54 @@
-"""A planet: where it starts, how it is drawn, and the same in both engines."""
-
-from functools import partial
+"""A point in a field of forces, and a planet, in both engines."""
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
-
-from ..methods import (
-    BLANES_MOAN,
-    EXPLICIT,
-    IMPLICIT_MIDPOINT,
-    ONE_OF_EACH_ORDER,
-    RK4,
-    SYMPLECTIC_EULER,
-    VERLET,
-)
-from ..reference.integrators import (
-    EVEN,
-    FINEST,
-    FINEST_RK4,
-    attraction,
-    early_limit,
-    kepler_limits,
-    perihelion,
-)
-from ..reference.schemes import OLD_VELOCITY_NEW_FORCE
-from ..scene import LATE_LEAPFROG, PYBULLET, PYMUNK, EngineRun, engine, ours
+from ..reference.integrators import attraction, perihelion
+from ..scene import EngineRun
 from .bullet import Bullet
 from .chipmunk import pymunk_space, pymunk_world
 
 
-def planet(p):
-    """Return (x, v) of the planet at its perihelion.  Raises BadInput for what is no ellipse."""
-    for name in ("mu", "a"):
-        check_positive(name, getattr(p, name))
-    if not 0.0 <= p.e < 1.0:
-        raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
-    return perihelion(p)
+def pymunk_point(gravity, m, v, read, dt, force=None, damping=0.0):
+    """Make an EngineRun of a point that starts in the origin; gravity and v (2,); read(position).
+
+    force(x, v) → (2,) [N], in floats, is applied before each step.  Chipmunk moves first and then applies it: this
+    forward Euler is harmless where the force depends on v alone, so x is None.
+    damping [1/s] is the space's own: it keeps e^(−damping) of the velocity after one second.
+    """
+    import pymunk
+    space, body = pymunk_space(gravity), pymunk.Body(m, 1.0)
+    space.damping = np.exp(-damping)
+    body.velocity = tuple(map(float, v))
+    space.add(body)
+    advance = space.step
+
+    def step():
+        body.force = force(None, body.velocity)                  # the step clears it
+        advance(dt)
+
+    return EngineRun(step if force else lambda: advance(dt), lambda: read(body.position), lambda: None)
 
 
-def planet_in_space(p):
-    """The same motion with an unused z coordinate."""
-    x, v = planet(p)
-    return (np.append(x, 0.0), np.append(v, 0.0)), p
+def bullet_point(gravity, m, x, v, read, dt, force=None, damping=0.0, default=False):
+    """Make an EngineRun of a point; gravity, x and v (3,); read(position).
 
+    force(x, v) → (2,) [N], in floats, is applied along x and y, from the state before each step.
+    damping [1/s] is the body's own: it takes the share 1 − e^(−damping) of the velocity in one second.
+    default: the body is as createMultiBody makes it.
+    """
+    bullet = Bullet(dt, gravity)
+    body = bullet.point_mass(m, x, v, default)
+    if damping:
+        bullet.pb.changeDynamics(body, -1, linearDamping=-np.expm1(-damping))
+    position, velocity, push, advance = bullet.position, bullet.velocity, bullet.push, bullet.step
 
-def sun_and_planet(observed, p):
-    """Draw the sun and the planet."""
-    return np.array([[0.0, 0.0], [observed[0], observed[1]]])
+    def step():
+        here = position(body)
+        along, up = force(here, velocity(body))
+        push(body, (along, up, 0.0), here)
+        advance()
+
+    return EngineRun(step if force else advance, lambda: read(position(body)), bullet.close)
 
 
 def pymunk_planet(p, dt, ahead=0.0):
@@ -87,29 +88,3 @@ def bullet_planet(p, dt, ahead=0.0):
         bullet.step()
 
     return EngineRun(step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
-
-
-def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
-    """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
-
-    The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
-    symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
-    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large
-    most_steps             of an engine
-    """
-    T, limits = motion.T, kepler_limits(motion.T)
-    symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
-    errors = {m: motion.predict(m.table, finest=FINEST_RK4 if m is RK4 else FINEST[m.order],
-                                powers=EVEN[m.order] if m in symmetric else None) for m in methods}
-    pymunk_errors = motion.predict(OLD_VELOCITY_NEW_FORCE, finest=FINEST[1])
-    leapfrog = {"order": 2, "limit": limits, "predicted": errors[VERLET], "most_steps": most_steps}
-    return (
-        *(ours(m, limit=limits, predicted=errors[m], order=LATE_LEAPFROG if m is SYMPLECTIC_EULER else m.order,
-               in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in EXPLICIT) for m in errors),
-        engine(PYMUNK, "", pymunk_make, "attraction in velocity_func",
-               order=LATE_LEAPFROG, limit=early_limit(T), predicted=pymunk_errors, most_steps=most_steps),
-        engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
-        engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
-               order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
-        engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
-    )

@@ -1,4 +1,4 @@
-"""pybullet's inverse kinematics of arms, and what scenes of arms share.  IK_SDLS would end the process in 3.2.7."""
+"""pybullet's inverse kinematics of arms.  IK_SDLS would end the process in 3.2.7."""
 
 import numpy as np
 
@@ -62,12 +62,3 @@ def bullet_reach(lengths, starts, observe, target, direction=None, **settings):
     arm = BulletArm(lengths)
     read = lambda: observe([arm.solve(theta, target, direction, **settings) for theta in starts])
     return EngineRun(lambda: None, read, arm.close)
-
-
-ANSWER = {                   # fields that the scenes of one answer share: nothing moves, and nothing can be refined
-    "lesson": "kinematics",
-    "moves": False,
-    "duration": 1.0,
-    "refinement": "",
-    "steps": (1,),
-}

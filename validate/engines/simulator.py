@@ -37,16 +37,6 @@ def pymunk_body(space, m, I, x, angle, make):
     return body
 
 
-def pybullet_spinning_ball(ball, v, omega, dt):
-    """Make an EngineRun of a RollingBall with a first v and ω; read: distance, speed and rim speed along x."""
-    bullet = Rigid(dt, ball.gravity, iterations=ITERATIONS)
-    bullet.floor()
-    body = bullet.body(ball.m, ball.I_body, (0.0, 0.0, ball.radius), omega, True, v=v, shape=bullet.ball(ball.radius),
-                       mu=ball.mu)
-    read = lambda: np.array([bullet.position(body)[0], bullet.velocity(body)[0], ball.radius * bullet.omega(body)[1]])
-    return EngineRun(bullet.step, read, bullet.close)
-
-
 def pybullet_turntable(ball, x, v, omega, dt):
     """Make an EngineRun of a ball on a very heavy box that rotates; read: x, y and both velocities.
 

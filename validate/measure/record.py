@@ -1,16 +1,20 @@
-"""Record what pybullet does: its readings at T for every case, setting and step, its run times and its film."""
+"""Record what pybullet does: its readings at T for every case, setting and step, its run times and its film.
+
+A record also has the numbers of the reference that take seconds.
+"""
 
 import json
 import platform
+from itertools import product
 
 from ..check import jsonable
+from ..reference.stored import RECORDED, computed_anew
 from ..run.store import whole
 from ..scene import PYBULLET
 from .accuracy import run_engine_to_end
 from .film import FRAMES, engine_frames
-from .selection import Plan, select
+from .selection import Plan, can_do, select
 from .timing import Timed, interleaved, time_engine
-from .traces import RECORDED
 
 LONGEST = 0.2                # a run that takes longer is not timed [s]
 
@@ -36,11 +40,22 @@ def record(name):
         "seconds": {e.label: [{"steps": i.steps, **t} for i, t in timed if i.label == e.label] for e in witnesses},
         "frames": frames(scene, witnesses[-1], p) if scene.moves else [],
     }
+    if numbers := numbers_of(scene):
+        record["numbers"] = numbers
     RECORDED.mkdir(exist_ok=True)
     path = RECORDED / f"{name}.json"
     with whole(path) as draft:
         draft.write_text(json.dumps(jsonable(record), separators=(",", ":")) + "\n")
     return path
+
+
+def numbers_of(scene):
+    """Return {key: number}: what `stored` computes for the limits of all cases, at the coarsest step."""
+    with computed_anew() as found:
+        for runner, p in product(scene.runners, scene.cases.values()):
+            if can_do(runner, p):
+                runner.largest_error(p, scene.duration / scene.steps[0])
+    return found
 
 
 def readings(selection, engine, p):

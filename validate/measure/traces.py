@@ -1,13 +1,10 @@
 """Read the recorded runs of pybullet, for machines without it; `record.py` writes them."""
 
-from pathlib import Path
-
 from solutions.checks import BadInput
 
 from ..check import Role
+from ..reference.stored import RECORDED
 from ..run.store import read_whole
-
-RECORDED = Path(__file__).resolve().parent.parent / "recorded"
 
 
 def trace(name):

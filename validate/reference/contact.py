@@ -8,6 +8,7 @@ from scipy.optimize import brentq, linprog
 
 # ---------------------------------------------------------------------- a heavy body on a light one
 
+
 def sweeps_needed(r, omega, small):
     """Return the number of relaxed sweeps from zero after which two forces are right to `small`, relative.
 

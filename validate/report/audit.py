@@ -143,45 +143,59 @@ def of_times(result, counts):
     times = result["times"]
     errors = {(c["label"], row["steps"]): row["error"] for case in list(result["cases"].values())[:1]
               for c in case["ours"] + case["engines"] for row in c["rows"]}
+    counts["times"] += len(times["rows"])
     for row in times["rows"]:
-        counts["times"] += 1
-        place = f"the time of {row['label']}, {row['speed']}, {row['steps']} steps"
-        if row["speed"] != "recorded" and not row.get("repeats"):
-            yield f"{place} has no repeats"
-        elif row["speed"] != "recorded" and any(differs(row[key], of(row["repeats"])) for key, of in
-                                                (("seconds", median), ("low", min), ("high", max))):
-            yield f"{place} is not the median or the range of its repeats"
-        if differs(row["error"], errors.get((row["label"], row["steps"]))):
-            yield f"{place} stands beside an error that is not that of its run"
+        yield from of_time(row, errors.get((row["label"], row["steps"])))
     for label, targets in times["time_to_error"].items():
-        mine = [row for row in times["rows"] if f"{row['label']} ({row['speed']})" == label]
-        points = [(row["error"], row["seconds"]) for row in mine]
-        if len(targets) != len(TARGETS) or not points:
-            yield f"the times to an error of {label} have no rows"
-        for target, seconds in targets.items():
-            if differs(seconds, least_time(points, float(target))):
-                yield f"the time of {label} to an error of {target} does not follow from its rows"
+        yield from of_targets(label, targets, times["rows"])
     for one in times["advantage"]:
         yield from of_advantage(one, times["rows"])
+    yield from of_costs(times)
+
+
+def of_time(row, error):
+    """What is wrong with the time of one run, and with the error that stands beside it."""
+    place = f"the time of {row['label']}, {row['speed']}, {row['steps']} steps"
+    if row["speed"] != "recorded" and not row.get("repeats"):
+        yield f"{place} has no repeats"
+    elif row["speed"] != "recorded" and any(differs(row[key], of(row["repeats"])) for key, of in
+                                            (("seconds", median), ("low", min), ("high", max))):
+        yield f"{place} is not the median or the range of its repeats"
+    if differs(row["error"], error):
+        yield f"{place} stands beside an error that is not that of its run"
+
+
+def of_targets(label, targets, rows):
+    """What is wrong with the times that one curve takes to given errors."""
+    mine = [row for row in rows if f"{row['label']} ({row['speed']})" == label]
+    points = [(row["error"], row["seconds"]) for row in mine]
+    if len(targets) != len(TARGETS) or not points:
+        yield f"the times to an error of {label} have no rows"
+    for target, seconds in targets.items():
+        if differs(seconds, least_time(points, float(target))):
+            yield f"the time of {label} to an error of {target} does not follow from its rows"
+
+
+def of_costs(times):
+    """What is wrong with the cost of what a scene, our whole loop or an engine leaves out."""
     for row in times["ablations"]:
-        if row["cost"] is None:
-            continue
-        full, lean = (median(repeats) for repeats in row["repeats"])
-        if differs(row["cost"], full / lean) or row["same"] != (distance(*row["observed"]) < SAME):
+        if row["cost"] is not None and not follows(row, "cost"):
             yield f"what it costs to put in {row['what']!r} does not follow from its repeats"
-
-
     left_out = times.get("left_out") or {"ratio": None}
-    if left_out["ratio"] is not None:
-        full, lean = (median(repeats) for repeats in left_out["repeats"])
-        if differs(left_out["ratio"], full / lean) or left_out["same"] != (distance(*left_out["observed"]) < SAME):
-            yield "what the whole loop costs does not follow from its repeats"
+    if left_out["ratio"] is not None and not follows(left_out, "ratio"):
+        yield "what the whole loop costs does not follow from its repeats"
     for row in times.get("engine_parts") or ():
         full, lean = (median(repeats) for repeats in row["repeats"])
         before, after = row["observed"]
         change = None if before is None or after is None else distance(after, before)
         if differs(row["cost"], full / lean) or differs(row["change"], change):
             yield f"what {row['part']!r} costs in {row['engine']} does not follow from its repeats"
+
+
+def follows(row, key):
+    """Whether a ratio of times is that of its repeats, and `same` says whether both runs observed the same."""
+    full, lean = (median(repeats) for repeats in row["repeats"])
+    return not differs(row[key], full / lean) and row["same"] == (distance(*row["observed"]) < SAME)
 
 
 def least_time(points, target):

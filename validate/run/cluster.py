@@ -72,22 +72,8 @@ class Cluster(Affinity):
             seen = time.monotonic() if there else seen
             if time.monotonic() - seen > WORKERLESS:
                 raise BadInput(f"--executor {self.address}", "gone", "start it again: the same command goes on")
-            for future, (worker, key, call) in list(busy.items()):
-                if there and worker not in there:                      # Dask would wait for that worker to come back
-                    del busy[future]
-                    future.cancel()
-                    waiting.append((key, call))
-            at_work = {worker for worker, _, _ in busy.values()}
-            free = [worker for worker in (one_of_each_machine(there) if alone else there) if worker not in at_work]
-            while waiting and free:
-                worker, (key, call) = min(product(free, waiting),
-                                          key=lambda pair: self.costs(pair[0], kinds.get(pair[1][0])))
-                free.remove(worker)
-                waiting.remove((key, call))
-                self.seen.setdefault(worker, set()).add(kinds.get(key))
-                future = self.client.submit(asked, self.run, self.parcel(call), pure=False, workers=[worker])
-                busy[future] = worker, key, call
-                future.add_done_callback(finished.put)
+            waiting += taken_back(busy, there)
+            self.hand_out(waiting, busy, finished, one_of_each_machine(there) if alone else there, kinds)
             try:
                 future = finished.get(timeout=LOOK_AFTER)
             except queue.Empty:
@@ -110,6 +96,20 @@ class Cluster(Affinity):
                 waiting.append((key, call))
                 continue
             yield key, self.opened(answer, worker)
+
+    def hand_out(self, waiting, busy, finished, workers, kinds):
+        """Submit waiting calls, until none is left or none of these workers is free; the cheapest pair comes first."""
+        at_work = {worker for worker, _, _ in busy.values()}
+        free = [worker for worker in workers if worker not in at_work]
+        while waiting and free:
+            worker, (key, call) = min(product(free, waiting),
+                                      key=lambda pair: self.costs(pair[0], kinds.get(pair[1][0])))
+            free.remove(worker)
+            waiting.remove((key, call))
+            self.seen.setdefault(worker, set()).add(kinds.get(key))
+            future = self.client.submit(asked, self.run, self.parcel(call), pure=False, workers=[worker])
+            busy[future] = worker, key, call
+            future.add_done_callback(finished.put)
 
     @staticmethod
     def opened(answer, worker):
@@ -137,6 +137,15 @@ def cluster(address, of):
                     client.run(end, found.run, on_error="ignore")
     finally:
         client.close(timeout=CONNECT_WITHIN)
+
+
+def taken_back(busy, there):
+    """Cancel the calls of workers that are gone, for which Dask would wait; return them as [(key, call)]."""
+    lost = [future for future, (worker, _, _) in busy.items() if there and worker not in there]
+    calls = [busy.pop(future)[1:] for future in lost]
+    for future in lost:
+        future.cancel()
+    return calls
 
 
 def one_of_each_machine(workers):

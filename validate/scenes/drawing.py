@@ -53,6 +53,18 @@ def axes_links(p):
     return [(0, 1), (0, 2), (0, 3)]
 
 
+def outlines(corners, count=1, first=0):
+    """Return the links of so many closed lines of so many corners each; first: number of the first point."""
+    starts = range(first, first + count * corners, corners)
+    return [(start + k, start + (k + 1) % corners) for start in starts for k in range(corners)]
+
+
+def circle(n):
+    """Return n points (n, 2) of the unit circle, counter-clockwise from (1, 0)."""
+    angles = np.linspace(0.0, 2.0 * np.pi, n + 1)[:-1]
+    return np.stack((np.cos(angles), np.sin(angles)), axis=1)
+
+
 def arms_and_target(arms, target, size):
     """Return points to draw, to 10 µm: the joints and the end of each arm, and a cross of this size at the target."""
     cross = np.asarray(target) + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])

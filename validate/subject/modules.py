@@ -106,9 +106,12 @@ def withheld(lesson, folder=SOLUTIONS):
 
 
 def scene_files():
-    """{name: path} of every scene: one file each in a folder per lesson."""
+    """{name: path} of every scene: one file each in a folder per lesson.
+
+    A name that begins with an underscore is no scene: `_common.py` has what the scenes of a lesson share.
+    """
     files = sorted(SCENES.glob("*/*.py"), key=lambda path: path.stem)
-    return {path.stem: path for path in files if path.stem != "__init__"}
+    return {path.stem: path for path in files if not path.stem.startswith("_")}
 
 
 def scene_names():
@@ -235,7 +238,7 @@ def digest_of(folder):
     """Fingerprint of every file that a module set of this subject is made of, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
     ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
-    return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.glob("*/*.py"), *folder.glob("*.py"), *ours}, compiler)
+    return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.rglob("*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
 def fingerprint(files, more=""):

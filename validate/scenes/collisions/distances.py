@@ -14,9 +14,10 @@ from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
 from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
+from validate.scenes._common import ANSWER, one_reading
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 
 
 class Params(NamedTuple):
@@ -389,7 +390,7 @@ def pymunk_make(p, dt):
             return np.array([min(c.distance for c in found.points), *(-found.normal), *on_b, len(found.points)])
         near = other.point_query(tuple(corners(a, p)[0]))
         return np.array([near.distance - p.r, *near.gradient, *near.point])
-    return EngineRun(lambda: None, read, lambda: None)
+    return one_reading(read)
 
 
 def only(*pairs):
@@ -444,7 +445,7 @@ def picture(name):
             ring = ring[0] + r * np.stack((np.cos(around), np.sin(around)), axis=1)
         first = sum(map(len, drawn))
         drawn.append(ring)
-        pairs += [(first + i, first + (i + 1) % len(ring)) for i in range(len(ring))]
+        pairs += outlines(len(ring), 1, first)
     return np.concatenate(drawn), pairs
 
 
@@ -476,12 +477,10 @@ BY_HAND = (0.40453610171, *(WORLD @ [-0.81482, -0.45268, 0.36214]), *(WORLD @ [0
 
 SCENE = Scene(
     title="Distances and contacts", lesson="collisions",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-13,  # of a linear system with a condition below 100
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, BY_HAND, 1e-4),),
     points=points, links=links,

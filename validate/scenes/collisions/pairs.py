@@ -14,10 +14,11 @@ from solutions.collisions import check_boxes
 from validate.engines.collisions import bullet_closest_pairs, bullet_query_pairs
 from validate.methods import BRUTE_FORCE, TREES
 from validate.reference.collisions import all_touching
-from validate.scene import EXACT, PYBULLET, Departure, EngineRun, Scene, engine, ours
+from validate.scene import EXACT, PYBULLET, Departure, Scene, engine, ours
+from validate.scenes._common import ANSWER, constantly, one_reading
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 MARGIN = 0.02                # that pybullet's broad phase adds around every box, its contactBreakingThreshold [m]
 MOST_BY_ENGINE = 1000        # boxes: the query takes one call from Python for each of them
 
@@ -49,10 +50,6 @@ def start(p):
     low, high = boxes(p)
     check_boxes(low, high)
     return low, high
-
-
-def quantity_names(p):
-    return "pairs that touch [-]", "too many [-]"
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -122,7 +119,7 @@ def up_to(n):
 
 def pybullet_make(p, dt, find):
     """Make an EngineRun of a function that returns the pairs of boxes that pybullet finds: one long reading."""
-    return EngineRun(lambda: None, lambda: judged(find(*boxes(p)), p), lambda: None)
+    return one_reading(lambda: judged(find(*boxes(p)), p))
 
 
 COUNTS = {"order": EXACT, "limit": limit, "predicted": "exact: counts are whole numbers"}
@@ -147,19 +144,17 @@ def points(observed, p):
 
 
 def links(p):
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(min(p.n, 100)) for i in range(4)]
+    return outlines(4, min(p.n, 100))
 
 
 SCENE = Scene(
     title="Pairs of boxes", lesson="collisions",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-16,
     slow_cases=("10,000 boxes", "100,000 boxes"),  # too slow for a quick validation
-    moves=False,
-    refinement="",
-    quantity_names=quantity_names,
+    quantity_names=constantly(("pairs that touch [-]", "too many [-]")),
     points=points, links=links,
     uses=("boxes along the axes", "a tree, rebuilt"),
     full_loop="the broad phase alone: nothing moves, so there is no loop",

@@ -7,9 +7,10 @@ solves for the first root and works with any step.
 
 import numpy as np
 
-from validate.engines import collisions as engines
+from validate.engines.collisions import swept_radius
 from validate.reference import collisions as balls
-from validate.scene import EXACT, ROUND_OFF, Scene
+from validate.scene import EXACT, Scene
+from validate.scenes.collisions import _common as common
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
@@ -26,12 +27,12 @@ def place(p):
     beside = WIDEST * (p.R + p.r) * np.sin(1.0 + 2.0 * k)
     # to the point that is nearest to the axis
     way = p.speed * balls.impact_times(T) + np.sqrt((p.R + p.r) ** 2 - beside**2)
-    along = engines.PLACE_APART * (k - 0.5 * balls.COPIES)
+    along = common.PLACE_APART * (k - 0.5 * balls.COPIES)
     x = np.outer(along, [1.0, 0.0, 0.0]) + np.outer(beside, across) - np.outer(way, e)
     return x, np.tile(p.speed * e, (balls.COPIES, 1))
 
 
-start = engines.start_balls(place, ("speed", "r", "R"))
+start = common.start_balls(place, ("speed", "r", "R"))
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -49,6 +50,10 @@ def truth(p, t):
     return balls.stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest(p), t)
 
 
+FLIGHT = common.Flight(T, place, truth, STEEP)
+per_ball, rounding = FLIGHT.per_ball, FLIGHT.rounding
+
+
 def nearest(p):
     """Return the times (COPIES,) at which the balls would be nearest to the axis."""
     x, v = place(p)
@@ -63,17 +68,9 @@ def when(p, r):
     return enters, 2.0 * middle - enters
 
 
-def rounding(p, dt):
-    """Return the largest relative error by round-off."""
-    x, v = place(p)
-    way = np.linalg.norm(balls.rounded_way(x[:, 1:], v[:, 1:], balls.impact_times(T), dt))
-    few = 12.0 * ROUND_OFF * np.sqrt(balls.COPIES) * p.speed * T
-    return (way + few) / STEEP / np.linalg.norm(truth(p, T))
-
-
 def swept_band(p, dt):
     """Return how far a swept ball may end from its prediction: as far as a ray does, by round-off without a sweep."""
-    return rounding(p, dt) if engines.swept_radius(p, dt) is None else ray_limit(p, dt)
+    return rounding(p, dt) if swept_radius(p, dt) is None else ray_limit(p, dt)
 
 
 def limits(p, dt):
@@ -92,27 +89,15 @@ def limits(p, dt):
 
 def ray_limit(p, dt):
     """A ray may end up to 1 cm in front of a round shape: where it ends is measured and not derived."""
-    return per_ball(p, engines.RAY_ENDS / STEEP) + rounding(p, dt)
+    return per_ball(p, common.RAY_ENDS / STEEP) + rounding(p, dt)
 
 
-def swept_limit(p, dt):
-    """A swept ball ends where its smaller sphere touches, with the ball a fifth of its radius deep, or earlier.  A step
-    that is too short to be swept finds it at most one step late.
-    """
-    return per_ball(p, engines.swept_limit(p, dt) / STEEP) + rounding(p, dt)
-
-
-def per_ball(p, metres):
-    """Return the relative error if every ball is off by so many metres."""
-    return np.sqrt(balls.COPIES) * metres / np.linalg.norm(truth(p, T))
-
-
-RUNNERS = engines.ball_runners(
+RUNNERS = common.ball_runners(
     place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
     "GEOM_CYLINDER of radius R + r",
     rays={"order": 0, "limit": ray_limit, "predicted": "where its rays end is measured and not derived"},
-    swept={"order": 0, "limit": swept_limit,
-           "predicted": balls.detection_errors(T, place, when, swept_band, engines.swept_radius)})
+    swept={"order": 0, "limit": FLIGHT.swept_limit,
+           "predicted": balls.detection_errors(T, place, when, swept_band, swept_radius)})
 
 
 SIDES = 36                   # of the polygon that is drawn for the circle: it differs by 0.4 % of the radius
@@ -141,7 +126,7 @@ SCENE = Scene(
     title="Point and cylinder", lesson="collisions",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    start=start, run=run, observe=engines.observe_balls,
+    start=start, run=run, observe=common.observe_balls,
     truth=truth, truth_uncertainty=balls.UNCERTAINTY,
     sanity_checks=sanity_checks, points=points, links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),

@@ -6,9 +6,11 @@ t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight. 
 
 import numpy as np
 
-from validate.engines import collisions as engines
+from validate.engines.collisions import swept_radius
 from validate.reference import collisions as balls
-from validate.scene import EXACT, ROUND_OFF, Scene
+from validate.scene import EXACT, Scene
+from validate.scenes._common import ONE_LINK
+from validate.scenes.collisions import _common as common
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
@@ -20,11 +22,11 @@ CASES = balls.at_speeds(R=0.0)
 def place(p):
     """Return (x, v), each (COPIES, 3): balls that come down side by side, tilted towards y."""
     e, k = np.array([0.0, np.sin(TILT), -np.cos(TILT)]), np.arange(balls.COPIES)
-    touch = np.stack((engines.PLACE_APART * (k - 0.5 * balls.COPIES), 0.0 * k, 0.0 * k + p.r), axis=1)
+    touch = np.stack((common.PLACE_APART * (k - 0.5 * balls.COPIES), 0.0 * k, 0.0 * k + p.r), axis=1)
     return touch - np.outer(p.speed * balls.impact_times(T), e), np.tile(p.speed * e, (balls.COPIES, 1))
 
 
-start = engines.start_balls(place, ("speed", "r"))
+start = common.start_balls(place, ("speed", "r"))
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -42,6 +44,10 @@ def truth(p, t):
     return balls.stopped(x, v, lambda y: y[2] - p.r, np.full(balls.COPIES, T), t)
 
 
+FLIGHT = common.Flight(T, place, truth, np.cos(TILT))
+per_ball, rounding = FLIGHT.per_ball, FLIGHT.rounding
+
+
 def limits(p, dt):
     """Limits relative to the root of the sum of all squares.
 
@@ -54,37 +60,17 @@ def limits(p, dt):
     return {EXACT: rounded, 1: per_ball(p, p.speed * dt) + rounded}
 
 
-def swept_limit(p, dt):
-    """A swept ball ends where its smaller sphere touches, with the ball a fifth of its radius deep, or earlier.  A step
-    that is too short to be swept finds it at most one step late.
-    """
-    return per_ball(p, engines.swept_limit(p, dt) / np.cos(TILT)) + rounding(p, dt)
-
-
-def per_ball(p, metres):
-    """Return the relative error if every ball is off by so many metres."""
-    return np.sqrt(balls.COPIES) * metres / np.linalg.norm(truth(p, T))
-
-
-def rounding(p, dt):
-    """Return the largest relative error by round-off."""
-    x, v = place(p)
-    way = np.linalg.norm(balls.rounded_way(x[:, 1:], v[:, 1:], balls.impact_times(T), dt))
-    few = 12.0 * ROUND_OFF * np.sqrt(balls.COPIES) * p.speed * T
-    return (way + few) / np.cos(TILT) / np.linalg.norm(truth(p, T))
-
-
 def when(p, r):
     """Return the times at which balls of radius r reach the plane; nothing leaves it again."""
     return balls.moments(*place(p), lambda y: y[2] - r, np.full(balls.COPIES, 2.0 * T)), np.inf
 
 
-RUNNERS = engines.ball_runners(
+RUNNERS = common.ball_runners(
     place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
     "GEOM_PLANE raised by the radius of the balls",
     rays={"order": EXACT, "limit": limits, "predicted": balls.ONLY_ROUND_OFF},
-    swept={"order": 0, "limit": swept_limit,
-           "predicted": balls.detection_errors(T, place, when, rounding, engines.swept_radius)})
+    swept={"order": 0, "limit": FLIGHT.swept_limit,
+           "predicted": balls.detection_errors(T, place, when, rounding, swept_radius)})
 
 
 def points(observed, p):
@@ -105,9 +91,9 @@ SCENE = Scene(
     title="Point and plane", lesson="collisions",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    start=start, run=run, observe=engines.observe_balls,
+    start=start, run=run, observe=common.observe_balls,
     truth=truth, truth_uncertainty=balls.UNCERTAINTY,
-    sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
+    sanity_checks=sanity_checks, points=points, links=ONE_LINK,
     uses=("a straight way", "two signed distances for each step"),
     ablations={
         "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),

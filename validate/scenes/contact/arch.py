@@ -10,16 +10,17 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.contact import make_contacts
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
 from validate.reference.contact import arch, bisected, hinged_thickness, least_friction, least_thickness
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives, one_reading, sole_array
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 G = 9.81                     # [m/s²]; no critical number depends on it
 AT_REST = 1e-6               # acceleration that counts as none [m/s², rad/s²]
 WIDTH = 1e-6                 # relative, at which bisection stops [-]
@@ -46,8 +47,7 @@ CASES = {
 
 
 def start(p):
-    for name in ("mu", "t"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "mu", "t")
     if p.n < 3:
         raise BadInput("n", p.n, "give three stones or more")
     return (np.zeros(1),)
@@ -80,10 +80,6 @@ def stands(forces, p, number):
 def run(lessons, step, acceleration, state, p, dt, steps):
     expected = truth(p, T)[0]
     return (np.array([bisected(lambda number: stands(step, p, number), 0.8 * expected, 1.3 * expected, WIDTH)]),)
-
-
-def observe(state, p):
-    return state[0]
 
 
 def truth(p, t):
@@ -167,7 +163,7 @@ def make(p, dt, holds):
     def read():
         expected = truth(p, T)[0]
         return np.array([bisected(lambda number: holds(p, number), 0.5 * expected, 2.0 * expected, 1e-3)])
-    return EngineRun(lambda: None, read, lambda: None)
+    return one_reading(read)
 
 
 def thick(p):
@@ -224,19 +220,17 @@ def points(observed, p):
 
 def links(p):
     m = 2 * ARC
-    return [(m * k + i, m * k + (i + 1) % m) for k in range(p.n) for i in range(m)] + [(m * p.n, m * p.n + 1)]
+    return [*outlines(m, p.n), (m * p.n, m * p.n + 1)]
 
 
 SCENE = Scene(
     title="Masonry arch", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
-    start=start, run=run, observe=observe,
+    start=start, run=run, observe=sole_array,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     slow_cases=tuple(CASES)[1:],
     omitted_methods="Murty's method has no friction; the pile holds boxes, not the stones of an arch",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (0.100861,), 5e-7),),
     sanity_checks=sanity_checks,

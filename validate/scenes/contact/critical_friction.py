@@ -15,10 +15,11 @@ from solutions.contact import make_contacts
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import ANSWER, one_reading, sole_array
+from validate.scenes.drawing import circle
 
 T = 1.0
-STEPS = (1,)
 G = 9.81                     # [m/s²]; no critical number depends on it
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: sweeps leave some 1e-10
 WIDTH = 1e-9                 # relative, at which bisection stops [-]
@@ -145,10 +146,6 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return (edge(lambda number: stands(step, p, number), p, WIDTH),)
 
 
-def observe(state, p):
-    return state[0]
-
-
 def truth(p, t):
     """By the balance of forces and moments, at the edge:
 
@@ -196,50 +193,65 @@ def unknown(p, dt):
 def pymunk_world(p, number):
     """(space, bodies) of a scene; friction is multiplied, and each begins OVERLAP inside what carries it."""
     import pymunk
-    space = pymunk_space(G * (leaning(number) if p.kind == "box" else DOWN))
-    bodies = []
+    space, bodies = pymunk_space(G * (leaning(number) if p.kind == "box" else DOWN)), []
 
-    def static(start, end, mu, thick=5.0):
-        shape = pymunk.Segment(space.static_body, start, end, thick)
+    def add(body, make, mu):
+        shape = make(body)
         shape.friction = mu
         space.add(shape)
 
     def movable(x, moment, make, mu):
         body = pymunk.Body(1.0, moment)
         body.position = tuple(map(float, x))
-        shape = make(body)
-        shape.friction = mu
-        space.add(body, shape)
+        space.add(body)
+        add(body, make, mu)
         bodies.append(body)
 
-    x, below = places_of(p, number), np.array([0.0, OVERLAP])
-    if p.kind.startswith("discs"):
-        between, ground = frictions_of(p, number)
-        static((-20.0, -5.0), (20.0, -5.0), ground)
-        for k, mu in ((1, 1.0), (2, 1.0), (3, between)):
-            aside = np.array([(2 * k - 3) * OVERLAP, 0.0]) if k < 3 else -2.0 * below
-            movable(x[k] - below + aside, 0.125, lambda body: pymunk.Circle(body, 0.5), mu)
-    elif p.kind == "ladder":
-        end = ladder_end(p)
-        static((-20.0, -end[1] - 5.0), (20.0, -end[1] - 5.0), number)
-        static((end[0] + 5.0, -20.0), (end[0] + 5.0, 20.0), 0.0)
-        shape = lambda body: pymunk.Segment(body, tuple(map(float, -end)), tuple(map(float, end)), OVERLAP)
-        movable(x[1], 1.0 / 12.0, shape, 1.0)
-    elif p.kind == "box":
-        static((-20.0, -5.0), (20.0, -5.0), 1.0)
-        box = lambda body: pymunk.Poly.create_box(body, (p.slim, 1.0))
-        movable(x[1] - below, (p.slim**2 + 1.0) / 12.0, box, p.mu)
-    else:
-        edge_of_table = x[-1, 0] + 0.5
-        table = pymunk.Poly(space.static_body, [(edge_of_table - 4.0, -4.0), (edge_of_table, -4.0),
-                                                (edge_of_table, 0.0), (edge_of_table - 4.0, 0.0)])
-        table.friction = 1.0
-        space.add(table)
-        for k in range(p.blocks):
-            moment = (1.0 + HEIGHT**2) / 12.0
-            block = lambda body: pymunk.Poly.create_box(body, (1.0, HEIGHT))
-            movable(x[k] - (p.blocks - k) * below, moment, block, p.mu)
+    build = {"ladder": pymunk_ladder, "box": pymunk_box, "overhang": pymunk_overhang}.get(p.kind, pymunk_discs)
+    build(p, number, places_of(p, number), lambda make, mu: add(space.static_body, make, mu), movable)
     return space, bodies
+
+
+def segment(start, end, thick):
+    """Return the function that gives a body of pymunk this shape."""
+    import pymunk
+    return lambda body: pymunk.Segment(body, tuple(map(float, start)), tuple(map(float, end)), thick)
+
+
+def pymunk_discs(p, number, x, static, movable):
+    """static(shape of a body, friction) and movable(centre, moment, shape of a body, friction) add to a world."""
+    import pymunk
+    between, ground = frictions_of(p, number)
+    static(segment((-20.0, -5.0), (20.0, -5.0), 5.0), ground)
+    below = np.array([0.0, OVERLAP])
+    for k, mu in ((1, 1.0), (2, 1.0), (3, between)):
+        aside = np.array([(2 * k - 3) * OVERLAP, 0.0]) if k < 3 else -2.0 * below
+        movable(x[k] - below + aside, 0.125, lambda body: pymunk.Circle(body, 0.5), mu)
+
+
+def pymunk_ladder(p, number, x, static, movable):
+    end = ladder_end(p)
+    static(segment((-20.0, -end[1] - 5.0), (20.0, -end[1] - 5.0), 5.0), number)
+    static(segment((end[0] + 5.0, -20.0), (end[0] + 5.0, 20.0), 5.0), 0.0)
+    movable(x[1], 1.0 / 12.0, segment(-end, end, OVERLAP), 1.0)
+
+
+def pymunk_box(p, number, x, static, movable):
+    import pymunk
+    static(segment((-20.0, -5.0), (20.0, -5.0), 5.0), 1.0)
+    box = lambda body: pymunk.Poly.create_box(body, (p.slim, 1.0))
+    movable(x[1] - np.array([0.0, OVERLAP]), (p.slim**2 + 1.0) / 12.0, box, p.mu)
+
+
+def pymunk_overhang(p, number, x, static, movable):
+    import pymunk
+    right = x[-1, 0] + 0.5
+    table = [(right - 4.0, -4.0), (right, -4.0), (right, 0.0), (right - 4.0, 0.0)]
+    static(lambda body: pymunk.Poly(body, table), 1.0)
+    block = lambda body: pymunk.Poly.create_box(body, (1.0, HEIGHT))
+    for k in range(p.blocks):
+        sunk = np.array([0.0, (p.blocks - k) * OVERLAP])
+        movable(x[k] - sunk, (1.0 + HEIGHT**2) / 12.0, block, p.mu)
 
 
 def pymunk_stands(p, number, dt, iterations, slop):
@@ -300,7 +312,7 @@ def pybullet_stands(p, number, dt, iterations, residual):
 
 def make(p, dt, holds):
     """The EngineRun of an engine in which a scene holds or not: the bisection is one long reading."""
-    return EngineRun(lambda: None, lambda: edge(lambda number: holds(p, number), p, 1e-4), lambda: None)
+    return one_reading(lambda: edge(lambda number: holds(p, number), p, 1e-4))
 
 
 def boards(p):
@@ -352,8 +364,7 @@ def sanity_checks():
 
 def shapes():
     """[(corners (k, 2), closed)]: the discs, the ladder, the box on its slope and the overhang, side by side."""
-    arc = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
-    drawn = [(x + 0.5 * np.stack((np.cos(arc), np.sin(arc)), axis=1), True) for x in places_of(CASES[DISCS], 1.0)[1:]]
+    drawn = [(x + 0.5 * circle(24), True) for x in places_of(CASES[DISCS], 1.0)[1:]]
     end = ladder_end(CASES[LADDER])
     foot = np.array([2.0 - end[0], 0.0])
     drawn += [(np.stack((foot, foot + 2.0 * end)), False), (np.array([(2.25, 0.0), (2.25, 1.2)]), False)]
@@ -386,16 +397,14 @@ def links(p):
 
 SCENE = Scene(
     title="Critical friction", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
-    start=start, run=run, observe=observe,
+    start=start, run=run, observe=sole_array,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("ladder at 40°", "ladder at 75°", "overhang of five blocks"),
     omitted_methods="Murty's method has no friction; pybullet has no discs, nor a plane in which they could stay; with "
                     "its default settings five blocks fall at a third of the overhang, because 50 iterations do not "
                     "find the forces between them",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (0.288675,), 5e-7),),
     sanity_checks=sanity_checks,

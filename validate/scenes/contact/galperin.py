@@ -14,9 +14,10 @@ from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space
 from validate.methods import ONE_BY_ONE, REFLECTION
 from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.scenes._common import ANSWER, one_reading
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 LIGHT = 1.0                  # mass of the block next to the wall [kg]
 FINEST = 2                   # digits after the first that an engine can count in reasonable time
 R, ROOM = 1.0, 0.5           # radius of the engines' blocks, and the free way between neighbours [m]
@@ -136,7 +137,7 @@ def pymunk_make(p, dt):
     light, large = (pymunk_ball(space, m, 1.0, R, (x, 0.0), (v, 0.0), 0.0, 1.0, 0.0)
                     for m, x, v in ((LIGHT, PLACES[1], 0.0), (heavy(p), PLACES[2], -p.V)))
     step, velocities = engine_step(p), lambda: (light.velocity.x, large.velocity.x)
-    return EngineRun(lambda: None, lambda: count(lambda: space.step(step), velocities, p), lambda: None)
+    return one_reading(lambda: count(lambda: space.step(step), velocities, p))
 
 
 def pybullet_make(p, dt):
@@ -197,19 +198,17 @@ def points(observed, p):
 
 
 def links(p):
-    return [(0, 1)] + [(first + i, first + (i + 1) % 4) for first in (2, 6) for i in range(4)]
+    return [(0, 1), *outlines(4, 2, 2)]
 
 
 SCENE = Scene(
     title="Galperin's π", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     omitted_methods="engines go up to 10,000 kg: two of their circles pass through each other if one moves further "
                     "than a radius in a step, so that a million kg would need four million steps",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (314.0, 0.0017, 1.0), 1e-4),),
     sanity_checks=sanity_checks,

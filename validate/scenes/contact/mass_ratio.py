@@ -10,8 +10,11 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import Diverged, check_positive
-from solutions.contact import make_contacts, make_pile_2d
+from solutions.checks import Diverged
+from solutions.contact import (
+    make_contacts,
+    make_pile_2d,
+)
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
@@ -27,10 +30,12 @@ from validate.reference.contact import (
     sweeps_needed,
     unrest_in_pymunk,
 )
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Departure, EngineRun, Scene, engine, ours
+from validate.reference.stored import stored
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives, one_reading, sole_array
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 MU = 0.5                     # nothing slides
 SMALL = 1e-3                 # error of the forces until which sweeps are counted [-]
 DT = 1.0 / 240.0             # of the pile and of the engines [s]
@@ -41,9 +46,6 @@ STANDS = 0.1                 # of a box: what has moved by less, stands [-]
 WHOLE = 1e-15                # error of a whole number, which must be exact [-]
 ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
 FINE = {"iterations": 1000, "slop": 1e-4}                    # of pymunk; slop [m]
-# by mass ratio; each by a reference that takes seconds, and a test repeats it [-]
-UNREST = dict.fromkeys((10.0, 100.0, 1e3), 0.0)              # of pymunk by unrest_in_pymunk, but for roundings
-SWAY = {10.0: 2.983e-12, 100.0: 0.0, 1e3: 1.413e-7}          # of the pile by sway_of_tower
 
 
 class Params(NamedTuple):
@@ -79,8 +81,7 @@ def masses(p):
 
 def start(p):
     """(centres (3, 2), inverse masses, inverse moments, contacts from below, load); the last body is the ground."""
-    for name in ("r", "m", "size", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "r", "m", "size", "g")
     x = p.size * np.array([(0.0, 0.5), (0.0, 1.5), (0.0, -0.5)])
     inv_mass = np.append(1.0 / masses(p), 0.0)
     places = p.size * np.array([(0.0, 0.0), (0.0, 1.0)])
@@ -155,10 +156,6 @@ def settled(lessons, advance, p):
     for b, J in zip(end.contacts.b, end.J):
         forces[0 if b == 2 else 1] += abs(J[1]) * substeps / DT
     return p.size * np.array([0.5, 1.0]) - np.diff(end.x[:2, 1], prepend=0.0), forces
-
-
-def observe(state, p):
-    return state[0]
 
 
 def weights(p):
@@ -255,19 +252,16 @@ def normal_matrix(p):
 
 
 def unrest(p):
-    """Return the relative error of pymunk's forces when they are read; the cases are known beforehand."""
-    if p._replace(r=10.0) == Params() and p.r in UNREST:
-        return UNREST[p.r]
+    """Return the relative error of pymunk's forces when they are read."""
     how = Towers(DT, **FINE, overlap=OVERLAP, frictions=tower(p).joint_frictions(), seconds=WAITING)
-    return unrest_in_pymunk(tuple(masses(p)), p.size, p.g, how)
+    return stored("mass_ratio", unrest_in_pymunk, tuple(masses(p)), p.size, p.g, how)
 
 
 def sway(p):
     """Return the largest relative error of the forces of the pile when they are read."""
     substeps, hertz, seconds = solver(p)
-    rocks = SWAY.get(p.r) if p._replace(kind="forces", r=10.0) == Params() else None
-    if rocks is None:
-        rocks = sway_of_tower(tuple(masses(p)), p.size, p.g, Settling(DT, substeps, hertz, ZETA, MU, seconds))
+    how = Settling(DT, substeps, hertz, ZETA, MU, seconds)
+    rocks = stored("mass_ratio", sway_of_tower, tuple(masses(p)), p.size, p.g, how)
     return 3.0 * rocks + rounded_force(masses(p), p.size, p.g, hertz)
 
 
@@ -288,17 +282,17 @@ def tower(p):
 
 def pymunk_make(p, dt, iterations, slop):
     wait = pymunk_tower(tower(p), iterations, slop)
-    return EngineRun(lambda: None, lambda: answer(p, *wait()), lambda: None)
+    return one_reading(lambda: answer(p, *wait()))
 
 
 def pybullet_make(p, dt, **settings):
     wait, close = bullet_tower(tower(p), **settings)
-    return EngineRun(lambda: None, lambda: answer(p, *wait()), close)
+    return one_reading(lambda: answer(p, *wait()), close)
 
 
 def mujoco_make(p, dt):
     wait = mujoco_tower(tower(p), DT)
-    return EngineRun(lambda: None, lambda: answer(p, *wait()), lambda: None)
+    return one_reading(lambda: answer(p, *wait()))
 
 
 def softly(p, t):
@@ -390,15 +384,14 @@ def points(observed, p):
 
 
 def links(p):
-    boxes = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(2) for i in range(4)]
-    return boxes + [(8 + 2 * k, 9 + 2 * k) for k in range(4)]
+    return outlines(4, 2) + [(8 + 2 * k, 9 + 2 * k) for k in range(4)]
 
 
 SCENE = Scene(
     title="Mass ratio", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
-    start=start, run=run, observe=observe,
+    start=start, run=run, observe=sole_array,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("forces, 1,000 : 1", "overlap, 1,000 : 1", "sweeps, 1,000 : 1", "relaxed sweeps, a million : 1",
                 "1,000 on 1, standing"),
@@ -406,8 +399,6 @@ SCENE = Scene(
                     "engines' default settings are judged only by whether the boxes stand and whether the engine "
                     "refuses, because no law says how far a light box is squeezed out; at 1,000 MuJoCo's contacts "
                     "would sink by 5 cm, and would not settle in the time that the others need",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (107.91, 98.1), 1e-12),),
     sanity_checks=sanity_checks,

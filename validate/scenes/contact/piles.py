@@ -17,11 +17,11 @@ from solutions.support.broad_phase import near_pairs
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
-from validate.scenes.drawing import box, seen, sphere
+from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import ANSWER, one_reading
+from validate.scenes.drawing import box, outlines, seen, sphere
 
 T = 1.0
-STEPS = (1,)
 BLOCK = 10                   # steps from one look at the energy to the next
 QUIET = 1e-2                 # of the weight: what may be out of balance in a pile that has come to rest [-]
 CREEPING = 2.0 * QUIET       # four numbers of 1 % each [-]
@@ -173,7 +173,7 @@ def make(p, dt, rival, wider=1.0):
         found = numbers(p, pile, *world.places(), world.wall_force(), energies, residual)
         world.close()
         return found
-    return EngineRun(lambda: None, read, lambda: None)
+    return one_reading(read)
 
 
 def flat(p):
@@ -284,13 +284,12 @@ def points(poses, p):
 
 
 def links(p):
-    around = [(SIDES * k + i, SIDES * k + (i + 1) % SIDES) for k in range(p.n) for i in range(SIDES)]
-    return around + [(SIDES * p.n + i, SIDES * p.n + (i + 1) % 4) for i in range(4)]
+    return outlines(SIDES, p.n) + outlines(4, 1, SIDES * p.n)
 
 
 SCENE = Scene(
     title="Piles", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
@@ -299,8 +298,6 @@ SCENE = Scene(
                     "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "
                     "1,000 bodies, because 50 iterations do not find the forces; the command "
                     "validate piles compares piles of 1,000 bodies",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
     points=points, links=links, our_film=our_film,

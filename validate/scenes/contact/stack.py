@@ -18,18 +18,13 @@ from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import SOFT
 from validate.engines.mujoco import tower as mujoco_tower
 from validate.methods import DIRECT, PILE, PILE_IN_SPACE, SWEEPS
-from validate.reference.contact import (
-    Settling,
-    Towers,
-    rounded_force,
-    rounded_overlap,
-    sway_of_tower,
-    unrest_in_pymunk,
-)
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.reference.contact import Settling, Towers, rounded_force, rounded_overlap, sway_of_tower, unrest_in_pymunk
+from validate.reference.stored import stored
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives, one_reading
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 MU = 0.5                     # nothing slides
 DT = 1.0 / 240.0             # of the pile and of the engines [s]
 SUBSTEPS, HERTZ, ZETA = 8, 240.0, 10.0       # of the pile's soft contacts: per step, frequency [1/s], damping ratio [-]
@@ -40,9 +35,6 @@ WARMER = 0.85                # share of the last impulses with which pybullet's 
 ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
 FINE, DEFAULT = {"iterations": 100, "slop": 1e-4}, {"iterations": 10, "slop": 0.1}       # of pymunk; slop [m]
 SETTLED = Settling(DT, SUBSTEPS, HERTZ, ZETA, MU, SETTLING)
-# of n boxes, iterations, slop: by unrest_in_pymunk, which takes up to ten seconds; a test repeats it [-]
-UNREST = {(10, 100, 1e-4): 7.195e-7, (10, 10, 0.1): 1.047e-4, (5, 100, 1e-4): 0.0, (5, 10, 0.1): 1.643e-8}
-SWAY = {10: 1.387e-8, 5: 0.0}  # of n boxes, by sway_of_tower, which takes two seconds; a test repeats it [-]
 
 
 class Params(NamedTuple):
@@ -66,8 +58,7 @@ def moment(p):
 
 def start(p):
     """(centres (n + 1, 2), inverse masses, inverse moments, contacts from below, load); the last body is the ground."""
-    for name in ("m", "size", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "size", "g")
     check_positive("n", float(p.n))
     k = np.arange(p.n)
     x = np.stack((np.zeros(p.n + 1), p.size * (np.append(k, -1.0) + 0.5)), axis=1)
@@ -186,18 +177,14 @@ def mujoco_limit(p, dt):
 
 
 def sway(p):
-    """Return the relative error of the forces of the pile when they are read; two cases are known beforehand."""
-    if p.size == Params().size and p.g == Params().g and p.n in SWAY:     # a greater mass changes nothing
-        return SWAY[p.n]
-    return sway_of_tower((p.m,) * p.n, p.size, p.g, SETTLED)
+    """Return the relative error of the forces of the pile when they are read."""
+    return stored("stack", sway_of_tower, (p.m,) * p.n, p.size, p.g, SETTLED)
 
 
 def unrest(p, iterations, slop):
-    """Return the relative error of pymunk's forces when they are read; the cases are known beforehand."""
-    if p.size == Params().size and p.g == Params().g and (p.n, iterations, slop) in UNREST:
-        return UNREST[p.n, iterations, slop]
+    """Return the relative error of pymunk's forces when they are read."""
     how = Towers(DT, iterations, slop, OVERLAP, tower(p).joint_frictions(), WAITING)
-    return unrest_in_pymunk((p.m,) * p.n, p.size, p.g, how)
+    return stored("stack", unrest_in_pymunk, (p.m,) * p.n, p.size, p.g, how)
 
 
 def normal_matrix(p):
@@ -220,17 +207,17 @@ def tower(p):
 
 def pymunk_make(p, dt, iterations, slop):
     wait = pymunk_tower(tower(p), iterations, slop)
-    return EngineRun(lambda: None, lambda: wait()[0], lambda: None)
+    return one_reading(lambda: wait()[0])
 
 
 def pybullet_make(p, dt, iterations, residual, warm):
     wait, close = bullet_tower(tower(p), iterations, residual, warm)
-    return EngineRun(lambda: None, lambda: wait()[0], close)
+    return one_reading(lambda: wait()[0], close)
 
 
 def mujoco_make(p, dt):
     wait = mujoco_tower(tower(p), DT)
-    return EngineRun(lambda: None, lambda: wait()[0], lambda: None)
+    return one_reading(lambda: wait()[0])
 
 
 def are_boxes(p):
@@ -308,21 +295,18 @@ def points(observed, p):
 
 
 def links(p):
-    edges = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(p.n) for i in range(4)]
-    return edges + [(4 * p.n + k, 5 * p.n + k) for k in range(p.n)]
+    return outlines(4, p.n) + [(4 * p.n + k, 5 * p.n + k) for k in range(p.n)]
 
 
 SCENE = Scene(
     title="Stack of ten", lesson="contact",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("twenty discs", "ten cubes in space", "five cubes in space"),
     omitted_methods="for ten boxes sweeps are missing: after 50,000 of them they end in Diverged, because boxes that "
                     "rock settle slowly; no case with a motion has a column of discs, which would fall over",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, tuple(9.81 * k for k in range(10, 0, -1)), 1e-13),),
     sanity_checks=sanity_checks,

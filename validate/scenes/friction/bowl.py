@@ -7,13 +7,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from solutions.checks import check_positive
 from solutions.friction import ParticleInBowl, check_friction
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
 from validate.reference.schemes import ErrorLaw
 from validate.scene import PYBULLET, Scene, by_order, engine, ours
+from validate.scenes._common import check_positives, coordinates
 
 T = 2.0                      # [s]: one oscillation; with friction it has come to rest
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -44,8 +44,7 @@ def place(p):
 
 
 def start(p):
-    for name in ("radius", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "radius", "g")
     check_friction(p.mu)
     axis = np.array([0.0, p.trough, 0.0])
     return *place(p), ParticleInBowl(1.0, p.mu, 0.0, np.array([0.0, 0.0, -p.g]), np.zeros(3), axis, p.radius)
@@ -55,10 +54,6 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     friction, (x, v, bowl) = lessons.friction, state
     x, v = friction.advance_particle(step, acceleration, friction.particle_bowl_gap, 0.0, x, v, dt, steps, bowl)
     return x, v, bowl
-
-
-def observe(state, p):
-    return state[0]
 
 
 def inward(x, p):
@@ -263,7 +258,7 @@ SCENE = Scene(
     title="Particle in a bowl", lesson="friction",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.friction.falling_acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.friction.falling_acceleration, start=start, run=run, observe=coordinates(3),
     truth=truth, truth_uncertainty=1e-9,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),

@@ -7,16 +7,19 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.engines.friction import block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.engines.friction import bullet_block, pymunk_block
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import CLOSE, NOTHING_LEFT, SoftBlock
 from validate.reference.schemes import summed
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
+from validate.scenes._common import round_off
+from validate.scenes.friction._common import block_on, slab_on_box, slab_on_line
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+rounded = round_off(T)
 
 
 class Params(NamedTuple):
@@ -70,10 +73,6 @@ def truth(p, t):
     return np.array([s + v * later + 0.5 * a * later * later])
 
 
-def round_off(p, dt):
-    return by_order(0.0, T, dt)[EXACT]
-
-
 def limits(p, dt):
     """The velocity is exact at every step.  Positions sum it at one end of each: off by at most ½ dt times its change.
 
@@ -86,7 +85,7 @@ def limits(p, dt):
     size = abs(truth(p, T)[0])
     change = abs(along + p.mu * across) * T if p.v0 == 0.0 else abs(p.v0)
     last = 0.0 if p.v0 == 0.0 else (along - p.mu * across) * dt * dt / 8.0
-    return {1: (0.5 * dt * change + last) / (size or 1.0) + round_off(p, dt), EXACT: round_off(p, dt)}
+    return {1: (0.5 * dt * change + last) / (size or 1.0) + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
 def new_velocity(p, dt, new=True):
@@ -99,7 +98,7 @@ def new_velocity(p, dt, new=True):
     if (p.v0 < 0.0 and a > 0.0) or p.v0 > 0.0:
         return None
     velocity = (lambda t: np.minimum(p.v0 + brake * t, 0.0)) if p.v0 < 0.0 else (lambda t: max(a, 0.0) * t)
-    return Prediction(np.array([summed(velocity, T, dt, new)]) - truth(p, T), round_off(p, dt))
+    return Prediction(np.array([summed(velocity, T, dt, new)]) - truth(p, T), rounded(p, dt))
 
 
 old_velocity = partial(new_velocity, new=False)

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.engines.friction import MASS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import (
     DrivenBlock,
@@ -19,14 +18,15 @@ from validate.reference.friction import (
     slips,
 )
 from validate.scene import PYBULLET, PYMUNK, Scene, engine, ours
+from validate.scenes._common import check_positives
+from validate.scenes.friction._common import block_on, slab_on_box, slab_on_line
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
 CASES = {"F = 8 cos t": DrivenBlock(), "F = 16 cos 2t, turns without a rest": DrivenBlock(force=16.0, omega=2.0)}
 
 
 def start(p):
-    for name in ("g", "m", "omega"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "g", "m", "omega")
     block = make_block((0.0, 1.0), p.mu, p.mu, (0.0, -p.g), (p.force / p.m, 0.0), p.omega)
     return np.zeros(2), np.zeros(2), block
 

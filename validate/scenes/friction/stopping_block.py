@@ -7,14 +7,17 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.engines.friction import bullet_block, pymunk_block, slab_on_box, slab_on_line
+from validate.engines.friction import bullet_block, pymunk_block
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
 from validate.reference.schemes import summed
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
+from validate.scenes._common import ONE_LINK, coordinates, measured, round_off
+from validate.scenes.friction._common import slab_on_box, slab_on_line
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+rounded = round_off(T)
 
 
 class Params(NamedTuple):
@@ -43,10 +46,6 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
-def observe(state, p):
-    return state[0][:2]
-
-
 def braked(v, t, a):
     """Return the distance [m] covered from the speed v ≥ 0 with the deceleration a [m/s²] until it stops."""
     t = np.minimum(t, v / a)
@@ -69,10 +68,6 @@ def pyramid(p, t):
     return braked(thrown(p)[:2], t, p.mu * p.g)
 
 
-def round_off(p, dt):
-    return by_order(0.0, T, dt)[EXACT]
-
-
 def limits(p, dt):
     """The velocity is exact at every step until it is zero.  Positions sum it at the wrong end of each step: ½ v₀ dt.
 
@@ -80,19 +75,19 @@ def limits(p, dt):
     left.
     """
     bias = (0.5 * p.v0 * dt + p.mu * p.g * dt * dt / 8.0) / np.linalg.norm(truth(p, T))
-    return {1: bias + round_off(p, dt), EXACT: round_off(p, dt)}
+    return {1: bias + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
 def pyramid_limit(p, dt):
     """With the pyramid this limit holds for each component, relative to a shorter distance."""
     bias = np.linalg.norm(0.5 * thrown(p)[:2] * dt + p.mu * p.g * dt * dt / 8.0) / np.linalg.norm(pyramid(p, T))
-    return bias + round_off(p, dt)
+    return bias + rounded(p, dt)
 
 
 def new_velocity(p, dt, new=True):
     """The rectangle rule, as on the incline: too short with the new velocity, too long with pymunk's old one."""
     velocity = lambda t: np.maximum(0.0, 1.0 - p.mu * p.g / p.v0 * t[:, None]) * thrown(p)[:2]
-    return Prediction(summed(velocity, T, dt, new) - truth(p, T), round_off(p, dt))
+    return Prediction(summed(velocity, T, dt, new) - truth(p, T), rounded(p, dt))
 
 
 old_velocity = partial(new_velocity, new=False)
@@ -101,7 +96,7 @@ old_velocity = partial(new_velocity, new=False)
 def new_velocities(p, dt):
     """With the pyramid the rectangle rule holds for each component."""
     velocities = lambda t: np.maximum(0.0, thrown(p)[:2] - p.mu * p.g * t[:, None])
-    return Prediction(summed(velocities, T, dt, True) - pyramid(p, T), round_off(p, dt))
+    return Prediction(summed(velocities, T, dt, True) - pyramid(p, T), rounded(p, dt))
 
 
 BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid)
@@ -151,21 +146,16 @@ def points(observed, p):
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
-def links(p):
-    return [(0, 1)]
-
-
 SCENE = Scene(
     title="Stopping block", lesson="friction",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.friction.driven_acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.friction.driven_acceleration, start=start, run=run, observe=coordinates(2),
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
-        "rotation: it does not turn or tip": "the whole loop of lesson 10 has it, and is measured",
-        "detection: it does not leave the floor": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation: it does not turn or tip", "detection: it does not leave the floor"),
     },
 )

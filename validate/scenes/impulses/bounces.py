@@ -1,32 +1,19 @@
 """A ball dropped from one metre rebounds with 0.8 of its speed: each apex is 0.64 times the one before."""
 
-from functools import partial
 from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
-from solutions.checks import check_positive
 from solutions.impulses import BouncingBall, check_restitution
-from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
-from validate.reference.impulses import (
-    APART,
-    BULLET_RULE,
-    CHIPMUNK_RULE,
-    COPIES,
-    LATE,
-    ONLY_ROUND_OFF,
-    PROJECTING_RULE,
-    all_dropped,
-    delays,
-    pushed,
-    rounded_steps,
-    soft_bounce,
-)
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.reference.impulses import APART, COPIES, LATE, all_dropped, delays, pushed, rounded_steps, soft_bounce
+from validate.scene import EXACT, Departure, EngineRun, Prediction, Scene, by_order, ours
+from validate.scenes._common import ONE_LINK, check_positives, measured
+from validate.scenes.impulses._common import impact_runners, in_space
 
 T = 1.9                      # [s]: in the third flight, clear of impacts
 STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
@@ -62,8 +49,7 @@ def fallen(p):
 
 
 def start(p):
-    for name in ("h", "g", "omega"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "h", "g", "omega")
     check_restitution(p.e)
     d = 3 if p.space else 2
     up = np.zeros(d)
@@ -216,13 +202,10 @@ RUNNERS = (
     ours(PENALTY, limit=soft_limit, predicted=pushed_back, supports=keeps_bouncing, most_in_quick=2500,
          departure=Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
                              soft)),
-    ours(PROJECTING, limit=limits, predicted=partial(late_impacts, rule=PROJECTING_RULE)),
-    # between impacts at known times the motion is a parabola
-    ours(BACKTRACKING, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
-    engine(PYMUNK, "", pymunk_make, f"{COPIES} circles on a thick segment; collision_slop 1e-5",
-           order=1, limit=limits, predicted=partial(late_impacts, rule=CHIPMUNK_RULE, far=APART * COPIES)),
-    engine(PYBULLET, "", pybullet_make, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
-           order=1, limit=limits, predicted=partial(late_impacts, rule=BULLET_RULE), most_steps=2500),
+    *impact_runners(
+        (PROJECTING, BACKTRACKING), limits, late_impacts,
+        (pymunk_make, "circles on a thick segment; collision_slop 1e-5"), (pybullet_make, "spheres on a GEOM_PLANE"),
+        pymunk_errs={"far": APART * COPIES}, most_steps=2500),
 )
 
 
@@ -249,16 +232,6 @@ def points(observed, p):
     return np.array([[-0.2, 0.0], [2.6, 0.0], observed[:2]])
 
 
-def links(p):
-    return [(0, 1)]
-
-
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    p = p._replace(space=1.0)
-    return start(p), p
-
-
 SCENE = Scene(
     title="Bounces", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
@@ -266,12 +239,11 @@ SCENE = Scene(
     acceleration=lambda lessons: lessons.impulses.falling_acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     film_seconds=4.5,  # [s]: until it is at rest
     uses=("two coordinates", "one plane", "one number e for each impact"),
     ablations={
-        "the third dimension": in_space,
-        "rotation: the ball has no torque": "the whole loop of lesson 10 has it, and is measured",
-        "detection": "the whole loop of lesson 10 has it, and is measured",
+        "the third dimension": in_space(start),
+        **measured("rotation: the ball has no torque", "detection"),
     },
 )

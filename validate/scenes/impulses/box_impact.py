@@ -4,7 +4,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.impulses import BodyState3D, check_restitution
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
@@ -12,9 +11,9 @@ from validate.methods import IN_TURN, TOGETHER
 from validate.reference.impulses import ONLY_ROUND_OFF, all_at_once, each_in_turn
 from validate.reference.orientation import leaning
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives
 
 T = 1.0
-STEPS = (1,)
 HALF = np.array([0.1, 0.2, 0.3])       # half sizes [m]
 TILT = {"corner": (0.5, 0.7), "edge": (0.5, 0.0), "face": (0.0, 0.0)}                 # about x, then about y [rad]
 OVERLAP = 1e-12              # of the engines' bodies [m], so that they find a contact
@@ -69,8 +68,7 @@ def landing(p):
 
 
 def start(p):
-    for name in ("m", "fall"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "fall")
     check_restitution(p.e)
     y, n, r, inv_inertia = landing(p)
     body = BodyState3D(y[:3], y[3:], 1.0 / p.m, np.ascontiguousarray(inv_inertia))
@@ -228,12 +226,10 @@ def links(p):
 
 SCENE = Scene(
     title="A box lands", lesson="impulses",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -1,27 +1,17 @@
 """Newton's cradle, five equal balls: with gaps mechanics says how many leave; for touching balls it does not."""
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.given.impulses import Discs
-from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
-from validate.reference.impulses import (
-    APART,
-    BULLET_RULE,
-    CHIPMUNK_RULE,
-    COPIES,
-    ONLY_ROUND_OFF,
-    PROJECTING_RULE,
-    delays,
-    passed_on,
-    rounded_steps,
-)
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.reference.impulses import APART, COPIES, delays, passed_on, rounded_steps
+from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
+from validate.scenes._common import check_positives
+from validate.scenes.impulses._common import impact_runners
 
 T = 0.4                      # [s]: all impacts are over after 0.16
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -40,8 +30,7 @@ CASES = {"with gaps": Params(), "touching": Params(gap=0.0)}
 
 
 def start(p):
-    for name in ("away", "v", "R"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "away", "v", "R")
     x, v = np.zeros((COPIES, BALLS, 2)), np.zeros((COPIES, BALLS, 2))
     x[:, 1:, 0] = 2.0 * p.R + p.away + (2.0 * p.R + p.gap) * np.arange(BALLS - 1)
     x[:, 0, 0] = p.v * delays(WINDOW)
@@ -152,14 +141,10 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-RUNNERS = (
-    ours(PROJECTING_DISCS, limit=limits, predicted=partial(late_impacts, rule=PROJECTING_RULE)),
-    ours(BACKTRACKING_DISCS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
-    engine(PYMUNK, "", pymunk_make, f"{COPIES} rows of circles; 50 iterations, collision_slop 1e-5",
-           order=1, limit=limits, predicted=partial(late_impacts, rule=CHIPMUNK_RULE)),
-    engine(PYBULLET, "", pybullet_make, f"{COPIES} rows of spheres; {IMPACT_SETTINGS}",
-           order=1, limit=limits, predicted=partial(late_impacts, rule=BULLET_RULE), most_steps=500),
-)
+RUNNERS = impact_runners(
+    (PROJECTING_DISCS, BACKTRACKING_DISCS), limits, late_impacts,
+    (pymunk_make, "rows of circles; 50 iterations, collision_slop 1e-5"), (pybullet_make, "rows of spheres"),
+    most_steps=500)
 
 
 def points(observed, p):

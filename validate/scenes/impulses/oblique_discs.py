@@ -1,28 +1,19 @@
 """A disc strikes another off-centre: without friction, only the line between their centres at contact matters."""
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.given.impulses import Discs
 from solutions.impulses import check_restitution
-from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
-from validate.reference.impulses import (
-    APART,
-    BULLET_RULE,
-    CHIPMUNK_RULE,
-    COPIES,
-    ONLY_ROUND_OFF,
-    PROJECTING_RULE,
-    delays,
-    rounded_steps,
-    struck,
-)
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.reference.impulses import APART, COPIES, delays, rounded_steps, struck
+from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
+from validate.scenes._common import check_positives, constantly
+from validate.scenes.drawing import circle, outlines
+from validate.scenes.impulses._common import impact_runners, in_space
 
 T = 1.0                      # [s]: they meet before half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -44,8 +35,7 @@ CASES = {"discs": Params(), "spheres": Params(space=1.0)}
 
 
 def start(p):
-    for name in ("m1", "m2", "v", "R", "away"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m1", "m2", "v", "R", "away")
     check_restitution(p.e)
     x, v = np.zeros((COPIES, 2, 3 if p.space else 2)), np.zeros((COPIES, 2, 3 if p.space else 2))
     x[:, 0, 0] = p.v * delays(WINDOW) - p.away
@@ -149,14 +139,10 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-RUNNERS = (
-    ours(PROJECTING_DISCS, limit=limits, predicted=partial(late_impact, rule=PROJECTING_RULE)),
-    ours(BACKTRACKING_DISCS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
-    engine(PYMUNK, "", pymunk_make, f"{COPIES} pairs of circles; no other setting matters",
-           order=1, limit=limits, predicted=partial(late_impact, rule=CHIPMUNK_RULE, far=APART * COPIES)),
-    engine(PYBULLET, "", pybullet_make, f"{COPIES} pairs of spheres; {IMPACT_SETTINGS}",
-           order=1, limit=limits, predicted=partial(late_impact, rule=BULLET_RULE), most_steps=500),
-)
+RUNNERS = impact_runners(
+    (PROJECTING_DISCS, BACKTRACKING_DISCS), limits, late_impact,
+    (pymunk_make, "pairs of circles; no other setting matters"), (pybullet_make, "pairs of spheres"),
+    pymunk_errs={"far": APART * COPIES}, most_steps=500)
 
 
 def sanity_checks():
@@ -171,19 +157,8 @@ def sanity_checks():
 
 def points(observed, p):
     """Draw the first pair, each with six corners for its rim."""
-    around = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]
-    rim = p.R * np.stack((np.cos(around), np.sin(around)), axis=1)
+    rim = p.R * circle(6)
     return np.round(np.concatenate((observed[0:2] + rim, observed[4:6] + rim)), 4)
-
-
-def links(p):
-    return [(i + k, i + (k + 1) % 6) for i in (0, 6) for k in range(6)]
-
-
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    p = p._replace(space=1.0)
-    return start(p), p
 
 
 def with_discs_that_miss(p):
@@ -202,11 +177,11 @@ SCENE = Scene(
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=constantly(outlines(6, 2)),
     uses=("two coordinates", "two radii", "one number e for the impact"),
     full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are: another motion",
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(start),
         "rotation: without friction no torque acts on a disc": "the scene spinning_bounce puts it in",
         "three discs that never come near, in all ten pairs": with_discs_that_miss,
         "detection: all pairs are tested at every step": "lesson 6 finds pairs among many",

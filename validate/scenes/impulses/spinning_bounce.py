@@ -1,29 +1,19 @@
 """A spinning ball hits the floor: friction removes as much slip as the cone permits; without slip the ball rolls."""
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.friction import check_friction
 from solutions.given.impulses import SpinningBall
 from solutions.impulses import check_restitution
-from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
+from validate.engines.bullet import IMPACT_ITERATIONS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
-from validate.reference.impulses import (
-    APART,
-    BULLET_RULE,
-    CHIPMUNK_RULE,
-    COPIES,
-    ONLY_ROUND_OFF,
-    PROJECTING_RULE,
-    all_dropped,
-    delays,
-    rounded_steps,
-)
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.reference.impulses import APART, COPIES, all_dropped, delays, rounded_steps
+from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
+from validate.scenes._common import check_positives
+from validate.scenes.impulses._common import impact_runners
 
 T = 1.0                      # [s]: it hits the floor after half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 10000)
@@ -51,8 +41,7 @@ CASES = {
 
 
 def start(p):
-    for name in ("shape", "R", "m", "h", "fall"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "shape", "R", "m", "h", "fall")
     check_restitution(p.e)
     check_friction(p.mu)
     before = delays(WINDOW)
@@ -167,15 +156,11 @@ def is_sphere(p):
     return p.shape == 0.4
 
 
-RUNNERS = (
-    ours(PROJECTING_SPIN, limit=limits, predicted=partial(late_impact, rule=PROJECTING_RULE)),
-    ours(BACKTRACKING_SPIN, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
-    engine(PYMUNK, "", pymunk_make, f"{COPIES} circles on a thick segment; {IMPACT_ITERATIONS} iterations",
-           order=1, limit=limits, predicted=partial(late_impact, rule=CHIPMUNK_RULE, far=APART * COPIES)),
-    engine(PYBULLET, "", pybullet_make, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
-           order=1, limit=limits, predicted=partial(late_impact, rule=BULLET_RULE), supports=is_sphere,
-           most_steps=2000),
-)
+RUNNERS = impact_runners(
+    (PROJECTING_SPIN, BACKTRACKING_SPIN), limits, late_impact,
+    (pymunk_make, f"circles on a thick segment; {IMPACT_ITERATIONS} iterations"),
+    (pybullet_make, "spheres on a GEOM_PLANE"),
+    pymunk_errs={"far": APART * COPIES}, supports=is_sphere, most_steps=2000)
 
 
 def sanity_checks():

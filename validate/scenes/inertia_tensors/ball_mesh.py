@@ -5,10 +5,10 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from validate.engines.bullet import Bullet
 from validate.methods import POINTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, EngineRun, Prediction, Scene, engine, ours
+from validate.scenes._common import check_positives
 
 T = 1.0
 STEPS = (1, 2, 5, 10, 20, 50, 100)
@@ -23,8 +23,7 @@ CASES = {"ball": Params()}
 
 
 def start(p):
-    for name in ("radius", "density"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "radius", "density")
     return (p,)
 
 

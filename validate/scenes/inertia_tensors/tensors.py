@@ -11,13 +11,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives, one_reading
+from validate.scenes.drawing import outlines
 
 T = 1.0
-STEPS = (1,)
 
 
 class Params(NamedTuple):
@@ -51,8 +51,7 @@ MARGIN = 0.001                                                 # that pybullet a
 
 
 def start(p):
-    for name in ("m", "a"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "a")
     return (p,)
 
 
@@ -404,7 +403,7 @@ def pymunk_make(p, dt):
             shape.density = p.m / (np.pi * (p.a**2 + p.b**2))
         space.add(body, *shapes)
         moment = body.moment
-    return EngineRun(lambda: None, lambda: np.array([moment]), lambda: None)
+    return one_reading(lambda: np.array([moment]))
 
 
 def only(*shapes):
@@ -478,7 +477,7 @@ def gallery():
         shape, first = silhouette(p), sum(map(len, drawn))
         low, high = shape.min(axis=0), shape.max(axis=0)
         drawn.append(shape + np.array([across - low[0], down - 0.5 * (low[1] + high[1])]))
-        pairs += [(first + i, first + (i + 1) % len(shape)) for i in range(len(shape))]
+        pairs += outlines(len(shape), 1, first)
         across += high[0] - low[0] + 0.25
     return np.concatenate(drawn), pairs
 
@@ -493,13 +492,11 @@ def links(p):
 
 SCENE = Scene(
     title="Inertia tensors", lesson="inertia_tensors",
-    cases=CASES, duration=T, steps=STEPS,
+    cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth,
     truth_uncertainty=1e-14,  # of sums and quadratures of at most a hundred terms, each rounded by 1.1e-16
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (0.072, 0.072, 0.072, 0.0, 0.0, 0.0), 1e-14),),  # ⅖ m R² of the ball
     sanity_checks=sanity_checks,

@@ -1,17 +1,12 @@
 """A planet orbits its sun sixteen times on an ellipse, and every method is compared by its final position."""
 
 from solutions.support.orbits import attraction
-from validate.engines.integrators import (
-    bullet_planet,
-    planet,
-    planet_in_space,
-    planet_runners,
-    pymunk_planet,
-    sun_and_planet,
-)
+from validate.engines.integrators import bullet_planet, pymunk_planet
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import Planet, kepler_motion, kepler_position
 from validate.scene import Scene
+from validate.scenes._common import coordinates
+from validate.scenes.integrators._common import planet, planet_in_space, planet_runners, sun_and_planet
 
 T = 100.0                    # [s]: sixteen revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 150000, 200000)
@@ -25,15 +20,11 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
-def observe(state, p):
-    return state[0][:2]
-
-
 SCENE = Scene(
     title="Kepler", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
-    acceleration=lambda lessons: attraction, start=planet, run=run, observe=observe,
+    acceleration=lambda lessons: attraction, start=planet, run=run, observe=coordinates(2),
     truth=kepler_position,
     # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as a phase does: 3e-13
     truth_uncertainty=1e-12,

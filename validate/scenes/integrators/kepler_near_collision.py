@@ -1,14 +1,7 @@
 """A comet on a long ellipse, 19 times as far from the sun as at its nearest, where nearly all of the error is made."""
 
 from solutions.support.orbits import attraction
-from validate.engines.integrators import (
-    bullet_planet,
-    planet,
-    planet_in_space,
-    planet_runners,
-    pymunk_planet,
-    sun_and_planet,
-)
+from validate.engines.integrators import bullet_planet, pymunk_planet
 from validate.methods import ADAPTIVE, BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import (
     Planet,
@@ -19,6 +12,8 @@ from validate.reference.integrators import (
     mean_rate,
 )
 from validate.scene import Scene, ours
+from validate.scenes._common import coordinates
+from validate.scenes.integrators._common import planet, planet_in_space, planet_runners, sun_and_planet
 
 T = 20.0                     # [s]: three revolutions
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 200000)
@@ -38,10 +33,6 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
-def observe(state, p):
-    return state[0][:2]
-
-
 def limit(p, dt):
     """The rate at the nearest point, √(μ/r³), is 32 times the mean: equal steps are wasted far away.  An adaptive step
     keeps the product of rate and dt the same everywhere.  This product is its share.
@@ -59,7 +50,7 @@ SCENE = Scene(
     title="Kepler, near collision", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: attraction, start=planet, run=run, observe=observe,
+    acceleration=lambda lessons: attraction, start=planet, run=run, observe=coordinates(2),
     truth=kepler_position,
     truth_uncertainty=1e-12,    # of the reference solution, as in kepler: 1e-13
     published_states=((20.0, (-1.295266251, 0.400393896), 1e-9),),

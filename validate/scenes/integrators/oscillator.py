@@ -5,13 +5,15 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import Oscillator, oscillator_acceleration
-from validate.engines.bullet import Bullet, hidden_damping
+from validate.engines.bullet import hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.engines.integrators import bullet_point
 from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
+from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
+from validate.scenes.integrators._common import damped
 
 T = 2.0                      # [s]: three periods
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -38,18 +40,13 @@ def oscillator(p):
 
 
 def start(p):
-    for name in ("m", "k"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "k")
     return np.array([p.x0]), np.zeros(1)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, oscillator(p))
-
-
-def observe(state, p):
-    return state[0][:1]
 
 
 def truth(p, t):
@@ -83,18 +80,9 @@ def leapfrog_limit(p, dt):
     return limits(p, dt)[2 if p.c == 0.0 else 1]
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT]
-
-
 def law(p):
     """Return a(t, x, v) of a number x, apart from the lesson's."""
     return lambda t, x, v: -(p.k * x + p.c * v) / p.m
-
-
-def damped_law(p):
-    """Return the same with the default damping."""
-    return lambda t, x, v: -(p.k * x + p.c * v) / p.m - 0.04 * v * (1.0 + abs(v))
 
 
 def released(p):
@@ -111,7 +99,7 @@ def spring_and_damper(p):
     return lambda law, t, x, v, h: (x + h * v, (v - h * p.k / p.m * (x + h * v)) * kept(h))
 
 
-MOTION = Motion(T, law, released, seen, truth, floor)
+MOTION = Motion(T, law, released, seen, truth, floor_of(limits))
 DAMPED = hidden_damping(lambda t, x, v, p: oscillator_acceleration(t, x, v, oscillator(p)), start)
 IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # the most steps, of what is slow in plain Python
 
@@ -132,16 +120,10 @@ def pymunk_make(p, dt, ahead=0.0):
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
     """Apply the force of the spring and the damper, computed from the state before each step."""
-    bullet = Bullet(dt)
-    v0 = -ahead * dt * oscillator_acceleration(0.0, p.x0, 0.0, oscillator(p))
-    body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (v0, 0.0, 0.0), default)
-
-    def step():
-        x, v = bullet.position(body), bullet.velocity(body)
-        bullet.push(body, (-p.k * x[0] - p.c * v[0], 0.0, 0.0), x)
-        bullet.step()
-
-    return EngineRun(step, lambda: np.array([bullet.position(body)[0]]), bullet.close)
+    v0, k, c = -ahead * dt * oscillator_acceleration(0.0, p.x0, 0.0, oscillator(p)), -p.k, p.c
+    force = lambda x, v: (k * x[0] - c * v[0], 0.0)
+    return bullet_point((0.0,) * 3, p.m, (p.x0, 0.0, 0.0), (v0, 0.0, 0.0), lambda x: np.array(x[:1]), dt, force,
+                        default=default)
 
 
 RUNNERS = (
@@ -154,7 +136,7 @@ RUNNERS = (
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
     engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
            order=1, limit=limits, departure=DAMPED,
-           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped_law, follows=DAMPED.own_law)),
+           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped(law), follows=DAMPED.own_law)),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
            order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
     engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5),
@@ -165,10 +147,6 @@ RUNNERS = (
 
 def points(observed, p):
     return np.array([[-2.0, 0.0], [observed[0], 0.0]])
-
-
-def links(p):
-    return [(0, 1)]
 
 
 def in_space(p):
@@ -182,13 +160,13 @@ SCENE = Scene(
     lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.integrators.oscillator_acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.integrators.oscillator_acceleration,
+    start=start, run=run, observe=coordinates(1),
     truth=truth, truth_uncertainty=1e-14,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
-        "detection of contacts": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation", "detection of contacts"),
     },
 )

@@ -1,16 +1,14 @@
 """A parachutist falls from rest: drag grows with the square of the speed until it balances the weight."""
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
-from validate.engines.bullet import Bullet, hidden_damping
-from validate.engines.chipmunk import pymunk_space
-from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
-from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
+from validate.engines.bullet import hidden_damping
+from validate.reference.schemes import Motion
+from validate.scene import Scene, by_order
+from validate.scenes._common import coordinates, floor_of, measured
+from validate.scenes.integrators._common import Point, integrator_runners
 
 T = 3.0                      # [s]: three times the time to reach the terminal speed without air
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
@@ -32,19 +30,19 @@ def acceleration(t, x, v, p):
     return a
 
 
-def start(p):
-    for name in ("m", "c", "g"):
-        check_positive(name, getattr(p, name))
-    return np.zeros(1), np.zeros(1)
+def drag(p):
+    """Return force(x, v) → −c |v| v [N]."""
+    c = -p.c
+    return lambda x, v: (c * abs(v[0]) * v[0], 0.0)
+
+
+POINT = Point(d=1, mass=lambda p: p.m, velocity=lambda p: (0.0, 0.0), gravity=lambda p: (p.g, 0.0), force=drag)
+start = POINT.start("m", "c", "g")
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0][:1]
 
 
 def terminal_speed(p):
@@ -78,18 +76,9 @@ def damped_limits(p, dt):
     return limits(p, dt, 0.04 * (1.0 + 2.0 * terminal_speed(p)))
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT]
-
-
 def law(p):
     """Return a(t, x, v) of a number x, apart from the scene's."""
     return lambda t, x, v: p.g - p.c / p.m * v * abs(v)
-
-
-def damped_law(p):
-    """Return the same with the default damping."""
-    return lambda t, x, v: p.g - p.c / p.m * v * abs(v) - 0.04 * v * (1.0 + abs(v))
 
 
 def at_rest(p):
@@ -100,51 +89,15 @@ def seen(x, p):
     return [x]
 
 
-MOTION = Motion(T, law, at_rest, seen, truth, floor)
+MOTION = Motion(T, law, at_rest, seen, truth, floor_of(limits))
 DAMPED = hidden_damping(acceleration, start)
 
 
-def pymunk_make(p, dt):
-    """Apply drag as a force before each step.
-
-    Chipmunk moves first: forward Euler, harmless here because drag depends on v alone.
-    """
-    import pymunk
-    space = pymunk_space((p.g, 0.0))
-    body = pymunk.Body(p.m, 1.0)
-    space.add(body)
-
-    def step():
-        v = body.velocity.x
-        body.force = (-p.c * abs(v) * v, 0.0)                                    # the step clears it
-        space.step(dt)
-
-    return EngineRun(step, lambda: np.array([body.position.x]), lambda: None)
-
-
-def pybullet_make(p, dt, default=False):
-    """Apply drag as a force before each step."""
-    bullet = Bullet(dt, (p.g, 0.0, 0.0))
-    body = bullet.point_mass(p.m, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), default)
-
-    def step():
-        v = bullet.velocity(body)[0]
-        bullet.push(body, (-p.c * abs(v) * v, 0.0, 0.0), bullet.position(body))
-        bullet.step()
-
-    return EngineRun(step, lambda: np.array([bullet.position(body)[0]]), bullet.close)
-
-
 RUNNERS = (
-    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
-    engine(PYMUNK, "", pymunk_make, "force applied each step",
-           order=1, limit=limits, predicted=MOTION.predict(OLD_VELOCITY_OLD_FORCE)),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True),
-           "createMultiBody with its defaults; force applied each step",
-           order=1, limit=damped_limits, departure=DAMPED,
-           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped_law, follows=DAMPED.own_law)),
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
-           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
+    *integrator_runners(MOTION, limits),
+    POINT.in_pymunk(MOTION, limits),
+    POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
+    POINT.in_pybullet(MOTION, limits),
 )
 
 
@@ -152,22 +105,16 @@ def points(observed, p):
     return np.array([[0.0, -observed[0]]])
 
 
-def in_space(p):
-    """The same fall with two unused sideways coordinates."""
-    return (np.zeros(3), np.zeros(3)), p
-
-
 SCENE = Scene(
     title="Quadratic drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: acceleration, start=start, run=run, observe=coordinates(1),
     truth=truth, truth_uncertainty=1e-14,
     # the depth; the speed is then 9.852684396 m/s
     published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,
     uses=("one coordinate", "one step function"),
-    ablations={"the second and third dimension": in_space,
-              "rotation": "the whole loop of lesson 10 has it, and is measured",
-              "detection of the ground": "the whole loop of lesson 10 has it, and is measured"},
+    ablations={"the second and third dimension": POINT.in_space,
+              **measured("rotation", "detection of the ground")},
 )

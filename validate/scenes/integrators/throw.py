@@ -5,8 +5,8 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from validate.engines.bullet import Bullet, hidden_damping
-from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.engines.bullet import hidden_damping
+from validate.engines.integrators import bullet_point, pymunk_point
 from validate.methods import (
     AVERAGE_VELOCITY,
     EULER,
@@ -18,10 +18,12 @@ from validate.methods import (
     VERLET,
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import coordinates, measured, round_off
 
 T = 10.0                     # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
+rounded = round_off(T)
 # One step with a constant a moves the stone by dt v + ½dt² a, and changes its velocity by dt a.  Every method gets the
 # velocity right.  Methods that move the position with the mean of old and new velocity, or with the one in the middle,
 # also get the position right.
@@ -53,20 +55,12 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
 
-def observe(state, p):
-    return state[0]
-
-
 def truth(p, t):
     """x(t) = v₀ t − ½ g t² ẑ
 
     Source: Galilei 1638, fourth day; a = −g ẑ integrated twice.
     """
     return np.array([p.vx * t, p.vy * t, p.vz * t - 0.5 * p.g * t * t])
-
-
-def round_off(p, dt):
-    return by_order(0.0, T, dt)[EXACT]
 
 
 def limits(p, dt):
@@ -76,7 +70,7 @@ def limits(p, dt):
     upwards, pybullet with the new and errs downwards: their mean is exact.  Half a step of gravity in the first
     velocity removes the error.
     """
-    return {1: 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + round_off(p, dt), EXACT: round_off(p, dt)}
+    return {1: 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
 def damped_limit(p, dt):
@@ -89,7 +83,7 @@ def damped_limit(p, dt):
 
 def old_velocity(p, dt, side=1.0):
     """+½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and zero for all others, to round-off."""
-    return Prediction(np.array([0.0, 0.0, 0.5 * side * p.g * dt * T]), round_off(p, dt))
+    return Prediction(np.array([0.0, 0.0, 0.5 * side * p.g * dt * T]), rounded(p, dt))
 
 
 new_velocity, mean_velocity = partial(old_velocity, side=-1.0), partial(old_velocity, side=0.0)
@@ -101,47 +95,39 @@ def damped_law(p):
 
 
 DAMPED = hidden_damping(acceleration, start)
-MOTION = Motion(T, damped_law, start, lambda x, p: x, DAMPED.own_law, round_off)
+MOTION = Motion(T, damped_law, start, lambda x, p: x, DAMPED.own_law, rounded)
 
 
 def pymunk_make(p, dt, ahead=0.0):
     """Use the vertical plane of the throw; positions are rotated back into space."""
-    import pymunk
-    space = pymunk_space((0.0, -p.g))
-    body = pymunk.Body(1.0, 1.0)
     heading, speed = np.arctan2(p.vy, p.vx), np.hypot(p.vx, p.vy)
-    body.velocity = (speed, p.vz - ahead * dt * p.g)
-    space.add(body)
-    ahead_x, ahead_y = np.cos(heading), np.sin(heading)
-    read = lambda: np.array([ahead_x * body.position.x, ahead_y * body.position.x, body.position.y])
-    return pymunk_world(space, dt, read)
+    read = lambda x: np.array([np.cos(heading) * x[0], np.sin(heading) * x[0], x[1]])
+    return pymunk_point((0.0, -p.g), 1.0, (speed, p.vz - ahead * dt * p.g), read, dt)
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
     """A free body under the engine's own gravity."""
-    bullet = Bullet(dt, (0.0, 0.0, -p.g))
-    body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, p.vz + ahead * dt * p.g), default)
-    return EngineRun(bullet.step, lambda: np.array(bullet.position(body)), bullet.close)
+    v = (p.vx, p.vy, p.vz + ahead * dt * p.g)
+    return bullet_point((0.0, 0.0, -p.g), 1.0, (0.0, 0.0, 0.0), v, np.array, dt, default=default)
 
 
+EXACTLY = {"order": EXACT, "limit": limits, "predicted": mean_velocity}
 RUNNERS = (
     ours(EULER, limit=limits, predicted=old_velocity),
-    *(ours(m, limit=limits, predicted=mean_velocity, order=EXACT) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
+    *(ours(m, **EXACTLY) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
     ours(SYMPLECTIC_EULER, limit=limits, predicted=new_velocity),
-    ours(VERLET, limit=limits, predicted=mean_velocity, order=EXACT),
+    ours(VERLET, **EXACTLY),
     # the implicit ones take half of the scene's time to compile, and say nothing here
     ours(IMPLICIT_EULER, limit=limits, predicted=new_velocity, in_quick=False),
-    ours(IMPLICIT_MIDPOINT, limit=limits, predicted=mean_velocity, order=EXACT, in_quick=False),
+    ours(IMPLICIT_MIDPOINT, in_quick=False, **EXACTLY),
     engine(PYMUNK, "", pymunk_make, "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
-    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt",
-           order=EXACT, limit=limits, predicted=mean_velocity),
+    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
     engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
            order=1, limit=limits, predicted=new_velocity),
-    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt",
-           order=EXACT, limit=limits, predicted=mean_velocity),
+    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
 )
 
 
@@ -155,7 +141,7 @@ SCENE = Scene(
     title="Throw", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: acceleration, start=start, run=run, observe=coordinates(3),
     truth=truth, truth_uncertainty=1e-15,
     # by hand, exactly: only round-off may differ
     published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),
@@ -163,7 +149,6 @@ SCENE = Scene(
     uses=("one point in space", "one step function"),
     ablations={
         "air": "the scenes with linear and quadratic drag have it",
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
-        "detection of the ground": "the whole loop of lesson 10 has it, and is measured",
+        **measured("rotation", "detection of the ground"),
     },
 )

@@ -10,12 +10,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives
+from validate.scenes.drawing import circle, outlines
 
 T = 1.0
 MOVED = 1e-5                 # along a direction, to either side [rad]
@@ -49,8 +50,7 @@ def directions(p):
 
 def start(p):
     """Angles beside those of the target: for each direction ahead and behind."""
-    for name in ("l_1", "l_2", "l_3"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2", "l_3")
     v = directions(p)[2]
     return tuple(ANGLES + sign * MOVED * v[i] for i in (0, 1) for sign in (1.0, -1.0))
 
@@ -189,17 +189,16 @@ def points(observed, p):
     """The arm, and the ellipse of velocities at its end, a quarter of its size."""
     arm = joints_of(ANGLES, lengths_of(p))
     u, sigma, _ = directions(p)
-    arc = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
-    ring = arm[-1] + 0.25 * np.stack((np.cos(arc), np.sin(arc)), axis=1) * sigma @ u.T
+    ring = arm[-1] + 0.25 * circle(40) * sigma @ u.T
     return np.round(np.concatenate((arm, ring)), 5)
 
 
 def links(p):
-    return [(0, 1), (1, 2), (2, 3)] + [(4 + k, 4 + (k + 1) % 40) for k in range(40)]
+    return [(0, 1), (1, 2), (2, 3), *outlines(40, 1, 4)]
 
 
 SCENE = Scene(
-    title="Rates of convergence", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="Rates of convergence", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="CCD and FABRIK have no factor that follows from J alone; pymunk has no inverse kinematics",
     quantity_names=quantity_names,

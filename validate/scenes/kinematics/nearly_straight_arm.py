@@ -13,24 +13,16 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import (
-    bent_to,
-    bullet_ik,
-    bullet_search,
-    end_of,
-    joints_of,
-    search_errors,
-    searched,
-)
+from validate.reference.kinematics import bullet_ik, bullet_search, end_of, search_errors, searched
 from validate.scene import EXACT, PYBULLET, Departure, Scene, engine, ours
-from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
+from validate.scenes._common import ANSWER, constantly
+from validate.scenes.drawing import two_arms_and_target_links
+from validate.scenes.kinematics._common import LENGTHS, REACH, draw_straight
 
 MOST = 4000                  # iterations
 ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]
-LENGTHS = np.array([1.0, 0.7, 0.4])
-REACH = 2.1                  # [m]
 GAIN, LAMBDA = 0.6 / REACH**2, 0.2 * REACH               # α [1/m²], λ [m]
 CURE = {"damping": LAMBDA**2, "iterations": MOST, "threshold": 1e-8}
 
@@ -142,23 +134,17 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["way that is left, over the reach [-]"]
-
-
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
-    arms = [joints_of(angles, LENGTHS) for angles in (np.full(3, p.bent), bent_to(target_of(p), LENGTHS))]
-    return arms_and_target(arms, target_of(p), 0.04)
+    return draw_straight(np.full(3, p.bent), target_of(p))
 
 
 SCENE = Scene(
-    title="A nearly straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="A nearly straight arm", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["way that is left, over the reach [-]"]),
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
     ablations={"the bend": "without it no method but CCD moves: see the straight arm"},

@@ -10,13 +10,15 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
+from validate.scenes._common import ANSWER, check_positives, constantly
+from validate.scenes.drawing import two_arms_and_target_links
+from validate.scenes.kinematics._common import draw_answers, within_half_a_turn
+from validate.scenes.kinematics._common import from_minus_pi_to_pi as observe
 
 T = 1.0
 ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]
@@ -50,8 +52,7 @@ def target_of(p):
 
 def start(p):
     """(angles with the elbow to one side, angles with it to the other)."""
-    for name in ("l_1", "l_2"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2")
     bearing = np.arctan2(p.y, p.x)
     return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND]) for side in (1.0, -1.0))
 
@@ -70,11 +71,6 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 def arm_of(p):
     size = p.l_1 + p.l_2
     return make_arm_2d(lengths_of(p), GAIN / size**2, LAMBDA * size, -np.inf, np.inf, 0.0, 0.0)
-
-
-def observe(state, p):
-    """Both answers, each angle from −π to π [rad]."""
-    return np.angle(np.exp(1j * np.concatenate(state)))
 
 
 def truth(p, t):
@@ -149,9 +145,7 @@ def cured_searches(p):
 
 
 def turned_by(angles, p):
-    """The angles, within half a turn of the truth."""
-    answer = truth(p, T)
-    return answer + np.angle(np.exp(1j * (np.concatenate(angles) - answer)))
+    return within_half_a_turn(angles, truth(p, T))
 
 
 def default_law(p, t):
@@ -177,10 +171,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["θ₁, elbow to the right [rad]", "θ₂ [rad]", "θ₁, elbow to the left [rad]", "θ₂ [rad]"]
-
-
 def sanity_checks():
     """((claim, found, expected, tolerance), …): both answers end at the target; the small arm's shortfall."""
     ends = [joints_of(angles, lengths_of(p))[-1] - target_of(p)
@@ -195,17 +185,15 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """Both arms, and the target as a small cross."""
-    arms = [joints_of(angles, lengths_of(p)) for angles in np.asarray(observed).reshape(2, 2)]
-    return arms_and_target(arms, target_of(p), 0.03 * (p.l_1 + p.l_2))
+    return draw_answers(lengths_of(p), observed, target_of(p))
 
 
 SCENE = Scene(
-    title="Two elbows", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="Two elbows", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing, because σ₂ is "
                     "small on the way there: it takes large jumps and does not arrive",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["θ₁, elbow to the right [rad]", "θ₂ [rad]", "θ₁, elbow to the left [rad]", "θ₂ [rad]"]),
     published_states=((1.0, tuple(np.radians((30.0, 90.0, 120.0, -90.0))), 5e-4),),
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(2),

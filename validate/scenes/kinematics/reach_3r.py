@@ -10,9 +10,8 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
     bullet_ik,
@@ -24,7 +23,10 @@ from validate.reference.kinematics import (
     single_rounding,
 )
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
+from validate.scenes._common import ANSWER, check_positives
+from validate.scenes.drawing import two_arms_and_target_links
+from validate.scenes.kinematics._common import draw_answers, within_half_a_turn
+from validate.scenes.kinematics._common import from_minus_pi_to_pi as observe
 
 T = 1.0
 ENOUGH = 1e-10               # |e| at which a search ends [m and rad]
@@ -59,8 +61,7 @@ def target_of(p):
 
 def start(p):
     """Angles with the elbow to one side and to the other; the hand along its direction."""
-    for name in ("l_1", "l_2", "l_3"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2", "l_3")
     wrist = target_of(p)[:2] - end_of([np.radians(p.degrees)], [p.l_3])
     bearing = np.arctan2(wrist[1], wrist[0])
     return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND,
@@ -80,11 +81,6 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 def arm_of(p):
     size = p.l_1 + p.l_2 + p.l_3
     return make_arm_2d(lengths_of(p), 1.0 / (2.0 * size**2 + 3.0), LAMBDA * size, -np.inf, np.inf, 0.0, 0.0)
-
-
-def observe(state, p):
-    """Both answers, each angle from −π to π [rad]."""
-    return np.angle(np.exp(1j * np.concatenate(state)))
 
 
 def truth(p, t):
@@ -153,9 +149,7 @@ def searches(p, step):
 
 
 def turned_by(angles, p):
-    """The angles, within half a turn of the truth."""
-    answer = truth(p, T)
-    return answer + np.angle(np.exp(1j * (np.concatenate(angles) - answer)))
+    return within_half_a_turn(angles, truth(p, T))
 
 
 # ---------------------------------------------------------------------------------------------- engine
@@ -205,13 +199,11 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """Both arms, and the target as a small cross."""
-    arms = [joints_of(angles, lengths_of(p)) for angles in np.asarray(observed).reshape(2, 3)]
-    return arms_and_target(arms, target_of(p)[:2], 0.03 * sum(lengths_of(p)))
+    return draw_answers(lengths_of(p), observed, target_of(p)[:2])
 
 
 SCENE = Scene(
-    title="Three links and a direction", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="Three links and a direction", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="CCD and FABRIK have no direction; pymunk has no inverse kinematics",
     quantity_names=quantity_names,

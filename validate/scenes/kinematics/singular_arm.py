@@ -11,15 +11,15 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import bent_to, end_of, joints_of
+from validate.reference.kinematics import end_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes.drawing import arms_and_target, two_arms_and_target_links
+from validate.scenes._common import ANSWER, constantly
+from validate.scenes.drawing import two_arms_and_target_links
+from validate.scenes.kinematics._common import LENGTHS, REACH, draw_straight
 
 ITERATIONS = 200
-LENGTHS = np.array([1.0, 0.7, 0.4])
-REACH = 2.1                  # [m]
 
 
 class Params(NamedTuple):
@@ -108,10 +108,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]
-
-
 def sanity_checks():
     """((claim, found, expected, tolerance), …): the gradient of ½|e|² on the straight arm, by complex numbers."""
     levers = 1j * np.cumsum(LENGTHS[::-1])[::-1]
@@ -123,17 +119,14 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
-    target = (p.x, 0.0)
-    arms = [joints_of(angles, LENGTHS) for angles in (np.zeros(3), bent_to(target, LENGTHS))]
-    return arms_and_target(arms, target, 0.04)
+    return draw_straight(np.zeros(3), (p.x, 0.0))
 
 
 SCENE = Scene(
-    title="A straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="A straight arm", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]),
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),

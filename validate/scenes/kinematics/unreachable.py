@@ -9,12 +9,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.engines.kinematics import ANSWER, bullet_reach
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
+from validate.scenes._common import ANSWER, check_positives, constantly
+from validate.scenes.drawing import circle, outlines
 
 ITERATIONS = 3000            # of each method
 BENT = 0.5                   # all angles at the start [rad]
@@ -48,8 +49,7 @@ def missing(p):
 
 
 def start(p):
-    for name in ("l_1", "l_2", "l_3"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l_1", "l_2", "l_3")
     return (np.full(3, BENT),)
 
 
@@ -138,10 +138,6 @@ RUNNERS = (
 )
 
 
-def quantity_names(p):
-    return ["distance that is left [m]", "end, x [m]", "end, y [m]"]
-
-
 def sanity_checks():
     """((claim, found, expected, tolerance), …): no angles on a fine grid come nearer to the target than the ring."""
     near = []
@@ -162,23 +158,21 @@ def points(observed, p):
     inner, outer = annulus(lengths)
     bearing = np.arctan2(end[1], end[0])
     folded = np.array([bearing, np.pi if np.hypot(*end) < 0.5 * (inner + outer) else 0.0, 0.0])
-    arc = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
-    ring = [radius * np.stack((np.cos(arc), np.sin(arc)), axis=1) for radius in (outer, inner)]
+    ring = [radius * circle(40) for radius in (outer, inner)]
     return np.round(np.concatenate((joints_of(folded, lengths), [target_of(p)], *ring)), 5)
 
 
 def links(p):
-    circles = [(first + k, first + (k + 1) % 40) for first in (5, 45) for k in range(40)]
-    return [(k, k + 1) for k in range(4)] + circles
+    return [(k, k + 1) for k in range(4)] + outlines(40, 2, 5)
 
 
 SCENE = Scene(
-    title="Out of reach", **ANSWER, cases=CASES, runners=RUNNERS,
+    title="Out of reach", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
                     "without bound, and it never comes to rest; the transpose is left out where it needs more than "
                     "3,000 iterations",
-    quantity_names=quantity_names,
+    quantity_names=constantly(["distance that is left [m]", "end, x [m]", "end, y [m]"]),
     published_states=((1.0, (np.sqrt(11.25) - 2.1, -2.1 * 2.0 / np.sqrt(5.0), 2.1 / np.sqrt(5.0)), 1e-14),),
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -5,11 +5,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest
 from validate.scene import Scene, by_order, ours
+from validate.scenes._common import check_positives
 from validate.scenes.drawing import seen
 
 T = 0.3                      # [s]
@@ -51,8 +52,7 @@ def reference(p):
 
 
 def start(p):
-    for name in ("n", "spacing", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "n", "spacing", "m", "g")
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     flat = cloth(p)

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
@@ -23,7 +23,9 @@ from validate.reference.pbd import (
     rattle_once,
 )
 from validate.reference.schemes import Motion
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scenes._common import ONE_LINK, check_positives, floor_of
+from validate.scenes.pbd._common import in_space
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -45,8 +47,7 @@ def place(theta, p):
 
 
 def start(p):
-    for name in ("L", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "L", "m", "g")
     if not 0.0 < p.degrees < 180.0:
         raise BadInput("the initial angle [°]", p.degrees, "give a number between 0 and 180")
     x = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
@@ -86,10 +87,6 @@ def limits(p, dt):
     return by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT]
-
-
 def rope(p):
     return Rope(np.stack((np.zeros(2), place(np.radians(p.degrees), p))), p.L, p.g)
 
@@ -99,8 +96,8 @@ def swinging(p):
     return lambda t, theta, omega: -p.g / p.L * np.sin(theta)
 
 
-BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor)
-ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor)
+BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor_of(limits))
+ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor_of(limits))
 
 
 def bullet_error(p, dt):
@@ -165,17 +162,6 @@ def points(observed, p):
     return np.stack((np.zeros(2), observed))
 
 
-def links(p):
-    return [(0, 1)]
-
-
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    x, v, network = start(p)
-    wide = lambda y: np.concatenate((y, np.zeros((2, 1))), axis=1)
-    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
-
-
 SCENE = Scene(
     title="Pendulum", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
@@ -188,10 +174,10 @@ SCENE = Scene(
         (2.367841948, (1.0, 0.0), 5e-9),
     ),
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     uses=("two coordinates", "one link", "one step function"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(start),
         "rotation of the bob": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_sweeps, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
@@ -23,6 +23,8 @@ from validate.reference.pbd import (
     rope_rates,
 )
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, by_order, engine, ours
+from validate.scenes._common import check_positives
+from validate.scenes.pbd._common import in_space
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 600, 1000, 2000, 5000)
@@ -45,8 +47,7 @@ def straight(p):
 
 
 def start(p):
-    for name in ("links", "l", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "links", "l", "m", "g")
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     x, n = np.concatenate((np.zeros((1, 2)), straight(p))), np.arange(p.links)
@@ -201,13 +202,6 @@ def links(p):
     return [(n, n + 1) for n in range(p.links)]
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    x, v, network = start(p)
-    wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
-    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
-
-
 SCENE = Scene(
     title="Rope", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
@@ -222,7 +216,7 @@ SCENE = Scene(
     points=points, links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(start),
         "contact of the rope with itself": "the whole loop of lesson 10 looks for it, and is measured",
         "bending stiffness": "cloth_step of this lesson has it",
     },

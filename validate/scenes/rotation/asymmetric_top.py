@@ -1,12 +1,10 @@
 """A body with three different moments spins about its middle axis, slightly disturbed: it flips like a racket."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.given.rotation import check_moments
-from solutions.rotation import RigidBody
-from validate.engines.rotation import FREE_BODY, free_engines, mujoco_default, turn_runners
 from validate.methods import (
     AXIS_ANGLE,
     COMPOSED_SPLITTING,
@@ -24,6 +22,7 @@ from validate.reference.turns import free_turning
 from validate.scene import Scene
 from validate.scenes import drawing
 from validate.scenes.drawing import omega_and_L
+from validate.scenes.rotation._common import FREE_BODY, free_engines, mujoco_default, start_free, turn_runners
 
 T = 10.0                     # [s]: it flips at 6.06 s, and is about to start the next flip
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -49,11 +48,6 @@ class Params(NamedTuple):
 
 
 CASES = {"one flip": Params(), "stable about the largest moment": Params(w1=0.01, w2=0.02, w3=2.0)}
-
-
-def start(p):
-    check_moments(p.moments())
-    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), RigidBody(1.0, p.moments())
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -85,10 +79,6 @@ def bodies(p):
     return [drawing.box(np.maximum(a, 0.05 * a.max()))]
 
 
-def arrows(observed, p):
-    return omega_and_L(observed, p, 4.0)
-
-
 def sanity_checks():
     p = Params()
     top = FreeTop(p.moments(), p.omega())
@@ -107,8 +97,8 @@ SCENE = Scene(
     **FREE_BODY,
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.rotation.no_torque, start=start, run=run,
+    acceleration=lambda lessons: lessons.rotation.no_torque, start=start_free, run=run,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
-    bodies=bodies, arrows=arrows,
+    bodies=bodies, arrows=partial(omega_and_L, reach=4.0),
 )

@@ -1,14 +1,12 @@
 """A cylinder thrown without a torque precesses about its angular momentum; every method is compared by orientation."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.given.rotation import check_moments
-from solutions.rotation import RigidBody
 from validate.engines.bullet import Rigid
-from validate.engines.rotation import FREE_BODY, free_engines, turn_runners
 from validate.methods import COMPOSED_SPLITTING, MATRIX, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, L_KEPT, free_limits, freely, symmetric_top
@@ -16,6 +14,7 @@ from validate.reference.turns import free_turning
 from validate.scene import PYBULLET, Scene
 from validate.scenes import drawing
 from validate.scenes.drawing import omega_and_L
+from validate.scenes.rotation._common import FREE_BODY, free_engines, start_free, turn_runners
 
 T = 10.0                     # [s]: eight and a half revolutions about L
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000, 100000)
@@ -41,10 +40,9 @@ CASES = {"thrown": Params()}
 
 
 def start(p):
-    check_moments(p.moments())
     if not np.any(p.omega()):
         raise BadInput("the angular velocity ω [rad/s]", 0.0, "let the body turn")
-    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), RigidBody(1.0, p.moments())
+    return start_free(p)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -74,10 +72,6 @@ RUNNERS = (
 def bodies(p):
     """Draw a cylinder of one kilogram with these moments: I₃ = ½mr², I₁ = m(3r² + l²)/12."""
     return [drawing.cylinder(np.sqrt(2.0 * p.I3), np.sqrt(12.0 * p.I1 - 6.0 * p.I3))]
-
-
-def arrows(observed, p):
-    return omega_and_L(observed, p, 0.5)
 
 
 def sanity_checks():
@@ -126,5 +120,5 @@ SCENE = Scene(
     omitted_methods=("by theory ω*R with renormalised columns has the error 3,700 dt here, three times that of the "
                      "worst of the others; the asymmetric top has it"),
     sanity_checks=sanity_checks,
-    bodies=bodies, arrows=arrows,
+    bodies=bodies, arrows=partial(omega_and_L, reach=0.5),
 )

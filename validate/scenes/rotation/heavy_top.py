@@ -10,13 +10,14 @@ from solutions.given.rotation import check_moments
 from solutions.rotation import Top, exponential
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import top as mujoco_top
-from validate.engines.rotation import turn_runners
 from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
-from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
+from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
 from validate.scenes import drawing
+from validate.scenes._common import ONE_LINK, floor_of
+from validate.scenes.rotation._common import turn_runners
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -103,10 +104,6 @@ def seen(R):
     return [R[0][2], R[1][2]]
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT] + 1e-11
-
-
 def mass(p):
     return p.mgl / (G * LENGTH)
 
@@ -128,7 +125,7 @@ def mujoco_make(p, dt):
     return mujoco_top(mass(p), (across, across, p.I3), LENGTH, R, p.spin, G, dt)
 
 
-BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor)
+BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor_of(limits, 1e-11))
 SWEPT = "its pivot is a constraint, and the sweeps that hold it are not modelled"
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
 RUNNERS = (
@@ -144,10 +141,6 @@ RUNNERS = (
 
 def points(observed, p):
     return np.vstack((np.zeros(2), observed))
-
-
-def links(p):
-    return [(0, 1)]
 
 
 def bodies(p):
@@ -193,7 +186,7 @@ SCENE = Scene(
     acceleration=lambda lessons: lessons.rotation.heavy_top_torque, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=ONE_LINK,
     bodies=bodies, poses=poses, arrows=arrows,
     trail=1,  # the tip
     uses=("one orientation", "one angular momentum", "one torque", "one step function"),

@@ -5,14 +5,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.rotation import RollingBall
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
 from validate.scenes import drawing
+from validate.scenes._common import check_positives, measured
 from validate.scenes.drawing import pose
+from validate.scenes.rotation._common import observe_rolling
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -36,8 +38,7 @@ def ball(p):
 
 
 def start(p):
-    for name in ("radius", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "radius", "m", "g")
     if not p.mu >= 2.0 / 7.0 * np.tan(np.radians(p.slope)):
         raise BadInput("the friction μ", p.mu, "give 2/7 tan(slope) or more: with less it slides")
     return np.array([0.0, 0.0, p.radius]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3)
@@ -46,11 +47,6 @@ def start(p):
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, q, v, omega = state
     return lessons.rotation.advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
-
-
-def observe(state, p):
-    """Return distance down the slope s [m], speed v and rim speed rω [m/s]."""
-    return np.array([state[0][0], state[2][0], p.radius * state[3][1]])
 
 
 def truth(p, t):
@@ -91,7 +87,7 @@ mean_velocity = partial(new_velocity, share=0.0)
 
 
 def pybullet_make(p, dt, maximal=False):
-    return rolling_ball(ball(p), np.zeros(3), maximal, dt)
+    return rolling_ball(ball(p), np.zeros(3), np.zeros(3), maximal, dt)
 
 
 RUNNERS = (
@@ -156,14 +152,14 @@ SCENE = Scene(
     title="Rolling down", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.rotation.supported_weight, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.supported_weight,
+    start=start, run=run, observe=observe_rolling(lambda p: p.radius),
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,
     uses=("one ball", "one force at one point", "the lecture's loop"),
     ablations={
-        "detection of the contact": "the whole loop of lesson 10 has it, and is measured",
-        "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured",
+        **measured("detection of the contact", "a force of the support that is solved for"),
     },
 )

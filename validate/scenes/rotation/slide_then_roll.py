@@ -5,8 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
-from solutions.rotation import RollingBall
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
@@ -14,7 +12,10 @@ from validate.reference.orientation import about
 from validate.reference.schemes import summed
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
 from validate.scenes import drawing
+from validate.scenes._common import check_positives, measured
 from validate.scenes.drawing import pose
+from validate.scenes.rotation import _common as balls
+from validate.scenes.rotation._common import ball_on_floor as ball
 
 T = 1.5                      # [s]
 STEPS = (60, 120, 300, 600, 1200, 3000, 6000)
@@ -32,29 +33,14 @@ class Params(NamedTuple):
 CASES = {"sphere": Params(), "disc": Params(shape=0.5)}
 
 
-def ball(p):
-    return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))
-
-
 def start(p):
-    for name in ("shape", "R", "m", "mu", "g"):
-        check_positive(name, getattr(p, name))
-    return np.array([0.0, 0.0, p.R]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([p.v0, 0.0, 0.0]), np.zeros(3)
+    check_positives(p, "shape", "R", "m", "mu", "g")
+    return balls.bowled(p)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, q, v, omega = state
     return lessons.rotation.advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
-
-
-def observe(state, p):
-    """Return distance x [m], speed v and rim speed Rω [m/s]."""
-    return np.array([state[0][0], state[2][0], p.R * state[3][1]])
-
-
-def rolls_from(p):
-    """Return the time at which slipping ends [s]: v₀ − μg t = Rω = μg t mR²/I."""
-    return p.v0 / (p.mu * p.g * (1.0 + 1.0 / p.shape))
 
 
 def truth(p, t):
@@ -63,9 +49,7 @@ def truth(p, t):
     5/7 of the speed is left to a sphere, 2/3 to a disc.
     Source: Newton and Euler with f = μmg; first lecture deck, friction.
     """
-    sliding, brake = min(t, rolls_from(p)), p.mu * p.g
-    v = p.v0 - brake * sliding
-    return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v, brake * sliding / p.shape])
+    return balls.rolled(p, t)
 
 
 def round_off(dt):
@@ -80,7 +64,7 @@ def limits(p, dt):
     With mean velocities only that one step is inexact: at most ⅛ μg dt², if rolling begins in its middle.
     """
     brake, size = p.mu * p.g, np.linalg.norm(truth(p, T))
-    bias = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / size
+    bias = (0.5 * brake * dt * balls.rolls_from(p) + 2.0 * brake * dt * dt) / size
     return {1: bias + round_off(dt), 2: 0.125 * brake * dt * dt / size + round_off(dt)}
 
 
@@ -98,14 +82,13 @@ def new_velocity(p, dt, share=1.0, more=0.0):
 
 
 old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velocity, share=0.5)
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
 
 
 def new_velocity_of_a_sphere(p, dt):
     """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on
     the one that it is given.
     """
-    return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / SPHERE - 1.0))
+    return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / balls.SPHERE - 1.0))
 
 
 def pymunk_make(p, dt):
@@ -118,11 +101,11 @@ def pymunk_make(p, dt):
     shape, floor = pymunk.Circle(body, p.R), pymunk.Segment(space.static_body, (-10.0, 0.0), (100.0, 0.0), 0.0)
     shape.friction, floor.friction = p.mu, 1.0           # pymunk multiplies the two
     space.add(body, shape, floor)
-    return pymunk_world(space, dt, lambda: np.array([body.position.x, body.velocity.x, -p.R * body.angular_velocity]))
+    return pymunk_world(space, dt, balls.rolling_circle(body, p.R))
 
 
 def pybullet_make(p, dt, maximal=False):
-    return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), maximal, dt)
+    return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), np.zeros(3), maximal, dt)
 
 
 RUNNERS = (
@@ -175,9 +158,9 @@ def arrows(observed, p):
 def sanity_checks():
     sphere, disc = CASES["sphere"], CASES["disc"]
     return (
-        ("a sphere rolls from [s]", rolls_from(sphere), 0.728120, 5e-7),
+        ("a sphere rolls from [s]", balls.rolls_from(sphere), 0.728120, 5e-7),
         ("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
-        ("a disc rolls from [s]", rolls_from(disc), 0.849473, 5e-7),
+        ("a disc rolls from [s]", balls.rolls_from(disc), 0.849473, 5e-7),
         ("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14),
     )
 
@@ -186,7 +169,8 @@ SCENE = Scene(
     title="Slide, then roll", lesson="rotation",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.rotation.supported_weight, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.supported_weight,
+    start=start, run=run, observe=balls.observe_rolling(lambda p: p.R),
     truth=truth, truth_uncertainty=1e-15,
     sanity_checks=sanity_checks,
     points=points, links=links,
@@ -194,7 +178,6 @@ SCENE = Scene(
     ground=True,
     uses=("one ball", "one force at one point", "the lecture's loop"),
     ablations={
-        "detection of the contact": "the whole loop of lesson 10 has it, and is measured",
-        "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured",
+        **measured("detection of the contact", "a force of the support that is solved for"),
     },
 )

@@ -10,15 +10,18 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.rotation import RollingBall
 from validate.engines.chipmunk import pymunk_world
-from validate.engines.simulator import OVERLAP, pybullet_spinning_ball, pymunk_body, pymunk_floor_space
+from validate.engines.rotation import rolling_ball
+from validate.engines.simulator import OVERLAP, pymunk_body, pymunk_floor_space
 from validate.methods import AVERAGE_ROLLING, EXACT_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
 from validate.scenes import drawing
-from validate.scenes.drawing import pose
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import circle, outlines, pose
+from validate.scenes.rotation import _common as balls
+from validate.scenes.rotation._common import ball_on_floor as ball
 
 T = 3.0                      # [s]
 STEPS = (30, 60, 150, 300, 600, 1500, 3000)
@@ -38,31 +41,15 @@ CASES = {"comes back": Params(), "stops dead": Params(rim0=-5.0), "goes on": Par
          "disc": Params(shape=0.5)}
 
 
-def ball(p):
-    return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))
-
-
 def start(p):
-    for name in ("shape", "R", "m", "mu", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "shape", "R", "m", "mu", "g")
     check_positive("slip v0 − rim0", p.v0 - p.rim0)
-    spin = np.array([0.0, p.rim0 / p.R, 0.0])
-    return np.array([0.0, 0.0, p.R]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([p.v0, 0.0, 0.0]), spin
+    return balls.bowled(p, p.rim0)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, q, v, omega = state
     return lessons.rotation.advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
-
-
-def observe(state, p):
-    """Return distance x [m], speed v and rim speed Rω [m/s]."""
-    return np.array([state[0][0], state[2][0], p.R * state[3][1]])
-
-
-def rolls_from(p):
-    """Return the time at which slipping ends [s]: v₀ − μg t = rim₀ + μg t mR²/I."""
-    return (p.v0 - p.rim0) / (p.mu * p.g * (1.0 + 1.0 / p.shape))
 
 
 def truth(p, t):
@@ -71,10 +58,7 @@ def truth(p, t):
     In the end v = (v₀ + (I/mR²) rim₀)/(1 + I/mR²): backwards for a sphere whose rim is faster than 5/2 v₀.
     Source: Newton and Euler with f = μmg; deck A, friction.
     """
-    sliding, brake = min(t, rolls_from(p)), p.mu * p.g
-    v = p.v0 - brake * sliding
-    return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v,
-                     p.rim0 + brake * sliding / p.shape])
+    return balls.rolled(p, t, p.rim0)
 
 
 def rounded(p, dt):
@@ -88,7 +72,7 @@ def late_limit(p, dt, overlap=0.0):
     exact, though an engine's friction may act for one step more or less: another μg dt².
     """
     brake = p.mu * p.g
-    late = 0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt
+    late = 0.5 * brake * dt * balls.rolls_from(p, p.rim0) + 2.0 * brake * dt * dt
     return (late + overlap) / np.linalg.norm(truth(p, T)) + rounded(p, dt)
 
 
@@ -110,7 +94,7 @@ def error(p, dt, share, gain=0.0, overlap=0.0):
 
     pymunk moves with the old velocity.  The overlap with which both engines begin is their band.
     """
-    rolls = rolls_from(p) - gain / (p.mu * p.g * (1.0 + 1.0 / p.shape))
+    rolls = balls.rolls_from(p, p.rim0) - gain / (p.mu * p.g * (1.0 + 1.0 / p.shape))
     velocity = lambda t: p.v0 - p.mu * p.g * np.minimum(t, rolls)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
     off, law = share * new + (1.0 - share) * old - truth(p, T)[0], truth(p, T)
@@ -127,10 +111,7 @@ def bullet_error(p, dt):
     """pybullet does as our first loop does, but in the first step it uses the moment of its own sphere, 2/5 mR², so
     that the rim gains more there.
     """
-    return error(p, dt, 1.0, p.mu * p.g * dt * (1.0 / SPHERE - 1.0 / p.shape), OVERLAP)
-
-
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
+    return error(p, dt, 1.0, p.mu * p.g * dt * (1.0 / balls.SPHERE - 1.0 / p.shape), OVERLAP)
 
 
 def pymunk_make(p, dt):
@@ -140,12 +121,12 @@ def pymunk_make(p, dt):
     body = pymunk_body(space, p.m, p.shape * p.m * p.R**2, (0.0, p.R - OVERLAP), 0.0,
                        lambda body: pymunk.Circle(body, p.R))
     body.velocity, body.angular_velocity = (p.v0, 0.0), -p.rim0 / p.R
-    return pymunk_world(space, dt, lambda: np.array([body.position.x, body.velocity.x, -p.R * body.angular_velocity]))
+    return pymunk_world(space, dt, balls.rolling_circle(body, p.R))
 
 
 def pybullet_make(p, dt):
     _, _, v, omega = start(p)
-    return pybullet_spinning_ball(ball(p), v, omega, dt)
+    return rolling_ball(ball(p), v, omega, True, dt)
 
 
 RUNNERS = (
@@ -157,9 +138,6 @@ RUNNERS = (
     engine(PYBULLET, "", pybullet_make, "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual threshold, "
            "no slop, no damping", order=1, limit=late_limit, predicted=bullet_error),
 )
-
-
-ROUND = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]       # corners of the circle that stands for the ball in the picture
 
 
 def turned(observed, p):
@@ -176,14 +154,14 @@ def points(observed, p):
     """Draw the ball from the side, with a spoke, and the speeds of its centre and of its rim as arrows beside it."""
     x, v, rim = observed
     centre, angle = np.array([x, p.R]), turned(observed, p)
-    ring = centre + p.R * np.stack((np.cos(ROUND), np.sin(ROUND)), axis=1)
+    ring = centre + p.R * circle(24)
     spoke = centre + p.R * np.array([(np.sin(angle), np.cos(angle)), (0.0, 0.0)])
     speeds = centre + np.array([(0.0, 0.15), (0.1 * v, 0.15), (0.0, 0.2), (0.1 * rim, 0.2)])
     return np.vstack((ring, spoke, speeds, ((-0.7, 0.0), (1.5, 0.0))))
 
 
 def links(p):
-    return [(k, (k + 1) % 24) for k in range(24)] + [(24, 25), (26, 27), (28, 29), (30, 31)]
+    return [*outlines(24), (24, 25), (26, 27), (28, 29), (30, 31)]
 
 
 def bodies(p):
@@ -212,14 +190,15 @@ def sanity_checks():
              1e-14),
             ("speed in the end over that of the rim [m/s]", [end[1] - end[2] for end in ends], 0.0, 1e-14),
             ("change of the angular momentum about the floor over m R [m/s]", kept, 0.0, 1e-14),
-            ("it rolls from [s]", rolls_from(Params()), 1.164992, 5e-7))
+            ("it rolls from [s]", balls.rolls_from(Params(), Params().rim0), 1.164992, 5e-7))
 
 
 SCENE = Scene(
     title="A ball with backspin", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.rotation.supported_weight, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.rotation.supported_weight,
+    start=start, run=run, observe=balls.observe_rolling(lambda p: p.R),
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("goes on", "disc"),
     sanity_checks=sanity_checks,

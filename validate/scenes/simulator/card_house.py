@@ -9,12 +9,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_friction, check_positive
+from solutions.checks import BadInput, check_friction
 from solutions.simulator import make_bodies_2d
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import outlines
 
 T = 1.0                      # [s]
 STEPS = (8, 20, 60, 120, 240, 480, 960)
@@ -82,8 +84,7 @@ def least(p):
 
 
 def start(p):
-    for name in ("rough", "degrees", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "rough", "degrees", "g")
     if not 5.0 <= p.degrees <= 30.0:
         raise BadInput("degrees", p.degrees, "let the cards lean by 5° to 30°: the roof must reach from tent to tent")
     check_friction(p.rough * least(p))
@@ -192,7 +193,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(7) for i in range(4)] + [(28, 29)]
+    return [*outlines(4, 7), (28, 29)]
 
 
 SCENE = Scene(

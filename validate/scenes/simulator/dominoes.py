@@ -22,6 +22,8 @@ from validate.reference.impulses import delays
 from validate.reference.orientation import about
 from validate.reference.simulator import rocking
 from validate.scene import PYBULLET, PYMUNK, EngineRun, Scene, engine, no_limit, ours
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import outlines
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
@@ -75,8 +77,7 @@ def moments():
 
 
 def start(p):
-    for name in ("width", "height", "omega", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "width", "height", "omega", "g")
     check_positive("gap between dominoes [m]", p.pitch - p.width)
     check_friction(p.mu)
     if p.n < 1:
@@ -259,7 +260,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(p.n) for i in range(4)] + [(4 * p.n, 4 * p.n + 1)]
+    return [*outlines(4, p.n), (4 * p.n, 4 * p.n + 1)]
 
 
 SCENE = Scene(

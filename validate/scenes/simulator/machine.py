@@ -9,11 +9,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_friction, check_positive
-from solutions.simulator import make_bodies_2d, mechanical_energy_2d
+from solutions.checks import BadInput, check_friction
+from solutions.simulator import (
+    make_bodies_2d,
+    mechanical_energy_2d,
+)
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import outlines
 
 T = 10.0                     # [s]
 UNKNOWN = "unknown"          # an order
@@ -76,8 +81,7 @@ def acceleration(lessons):
 
 
 def start(p):
-    for name in ("blow", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "blow", "g")
     check_friction(p.mu)
     if p.seen not in KINDS:
         raise BadInput("what is observed", p.seen, f"choose from: {', '.join(KINDS)}")
@@ -232,8 +236,7 @@ def points(observed, p):
 
 def links(p):
     n = 4 * len(HALF)
-    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(len(HALF)) for i in range(4)] + [
-        (n + k, n + k + 1) for k in range(12)] + [(n + 13, n + 14)]
+    return outlines(4, len(HALF)) + [(n + k, n + k + 1) for k in range(12)] + [(n + 13, n + 14)]
 
 
 SCENE = Scene(

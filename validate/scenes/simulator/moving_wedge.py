@@ -9,7 +9,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.simulator import make_bodies_2d
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.chipmunk import pymunk_world
@@ -17,6 +16,8 @@ from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_bod
 from validate.methods import LOOP_2D, LOOP_WITH_MEANS
 from validate.reference.simulator import wedge_pushed_out
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import outlines
 
 T = 0.4                      # [s]
 STEPS = (8, 16, 40, 80, 160, 400, 800)
@@ -56,8 +57,7 @@ def places(p):
 
 def start(p):
     """(PileState, Bodies).  The wedge cannot turn: a moment of inertia without bound stands for its wide foot."""
-    for name in ("degrees", "m", "M", "half", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "degrees", "m", "M", "half", "g")
     moments, half = np.array([np.inf, 2.0 / 3.0 * p.m * p.half**2]), np.array([(LONG, THICK), (p.half, p.half)])
     return make_bodies_2d(places(p), np.full(2, -slope(p)), np.array([p.M, p.m]), moments, half,
                           np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), 0.0, SWEEPS, MARGIN)
@@ -235,7 +235,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(first + k, first + (k + 1) % 4) for first in (0, 4) for k in range(4)] + [(8, 9)]
+    return [*outlines(4, 2), (8, 9)]
 
 
 def sanity_checks():

@@ -10,22 +10,20 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
-from solutions.simulator import RockingBlock, make_bodies_2d
+from solutions.checks import BadInput
+from solutions.simulator import (
+    RockingBlock,
+    make_bodies_2d,
+)
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_world
-from validate.engines.simulator import (
-    ITERATIONS,
-    OVERLAP,
-    pybullet_box,
-    pybullet_slab,
-    pymunk_body,
-    pymunk_floor_space,
-)
+from validate.engines.simulator import ITERATIONS, OVERLAP, pybullet_box, pybullet_slab, pymunk_body, pymunk_floor_space
 from validate.methods import LOOP_2D, ROCKING
 from validate.reference.orientation import about
 from validate.reference.simulator import rocking
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, EngineRun, Scene, engine, ours
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import outlines
 
 T = 0.6                      # [s]; the first impact is at about 0.35 s
 STEPS = (24, 48, 120, 240, 480, 1200, 2400)
@@ -61,8 +59,7 @@ def place(p):
 
 def start(p):
     """(angle (1,), rate (1,)): positive to the left."""
-    for name in ("b", "h", "share", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "b", "h", "share", "g")
     if p.share >= 1.0:
         raise BadInput("first lean over the angle at which it tips [-]", p.share, "give less than 1")
     return np.array([p.share * alpha(p)]), np.zeros(1)
@@ -171,7 +168,7 @@ def points(observed, p):
 
 
 def links(p):
-    return [(k, (k + 1) % 4) for k in range(4)] + [(4, 5)]
+    return [*outlines(4), (4, 5)]
 
 
 def sanity_checks():

@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
+from solutions.checks import BadInput
 from solutions.given.simulator import RodsInAngles
 from solutions.rotation import SUZUKI
 from solutions.simulator import make_bodies, make_bodies_2d, make_joints
@@ -28,6 +28,7 @@ from validate.reference.simulator import (
 )
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, ours
 from validate.scenes import drawing
+from validate.scenes._common import check_positives
 from validate.scenes.drawing import pose
 
 T = 1.0                      # [s]
@@ -59,8 +60,7 @@ def straight(p):
 
 def start(p):
     """(x, q, v, ω, JointedBodies) in the plane, and the same in space.  Body 0 is the wall."""
-    for name in ("l", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "l", "m", "g")
     if p.rods < 1:
         raise BadInput("rods", p.rods, "give 1 or more")
     ends, n = straight(p), np.arange(1, p.rods + 1)

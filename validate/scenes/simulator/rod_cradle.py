@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_not_negative, check_positive
+from solutions.checks import BadInput, check_not_negative
 from solutions.simulator import make_bodies_2d, make_joints
 from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
 from validate.methods import JOINTED_LOOP
@@ -15,7 +15,8 @@ from validate.reference.orientation import about
 from validate.reference.simulator import cradle_motion
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Scene, engine, ours
 from validate.scenes import drawing
-from validate.scenes.drawing import pose
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import circle, outlines, pose
 
 T = 0.7                      # [s]: all impacts are over after 0.6
 STEPS = (5, 10, 20, 50, 100, 200, 500)
@@ -62,8 +63,7 @@ def centres(theta, p):
 
 def start(p):
     """(PileState, JointedBodies) of the balls; each turns with its rod."""
-    for name in ("angle", "L", "R", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "angle", "L", "R", "g")
     check_not_negative("gap", p.gap)
     if not 1 <= p.lifted <= BALLS or p.angle >= 0.5 * np.pi:
         raise BadInput("balls and angle", (p.lifted, p.angle), f"lift 1 to {BALLS} balls by less than a right angle")
@@ -186,14 +186,11 @@ def points(observed, p):
     """The pivots and the balls; touching balls at the start, because only sums are observed."""
     theta = np.asarray(observed)[:BALLS] if p.gap > 0.0 else angles(p)
     x = centres(theta, p)
-    ring = np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
-    circle = p.R * np.stack((np.cos(ring), np.sin(ring)), axis=1)
-    return np.round(np.vstack((pivots(p), x, (x[:, None] + circle).reshape(-1, 2))), 4)
+    return np.round(np.vstack((pivots(p), x, (x[:, None] + p.R * circle(12)).reshape(-1, 2))), 4)
 
 
 def links(p):
-    rods = [(k, BALLS + k) for k in range(BALLS)]
-    return rods + [(2 * BALLS + 12 * k + i, 2 * BALLS + 12 * k + (i + 1) % 12) for k in range(BALLS) for i in range(12)]
+    return [(k, BALLS + k) for k in range(BALLS)] + outlines(12, BALLS, 2 * BALLS)
 
 
 def bodies(p):

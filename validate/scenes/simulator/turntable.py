@@ -7,13 +7,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.simulator import CarriedBall, make_bodies
 from validate.engines.simulator import pybullet_turntable
 from validate.methods import CARRIED, LOOP
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
 from validate.scenes import drawing
-from validate.scenes.drawing import pose
+from validate.scenes._common import check_positives
+from validate.scenes.drawing import circle, outlines, pose
 
 T = 5.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -47,8 +47,7 @@ def ball(p):
 
 def start(p):
     """(x, q, v, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
-    for name in ("spin", "shape", "R", "m", "g"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "spin", "shape", "R", "m", "g")
     x, v, r = np.array([p.x0, 0.0, p.R]), np.array([0.0, p.v0, 0.0]), np.array([0.0, 0.0, -p.R])
     omega = np.cross(r, np.cross(table(p), x) - v) / p.R**2
     state, rows = make_bodies(x[None], UPRIGHT[None], p.m, np.full((1, 3), p.shape * p.m * p.R**2),
@@ -168,14 +167,12 @@ RUNNERS = (
 
 def points(observed, p):
     """Draw the rim of the table from above, the ball, and its velocity."""
-    angles = np.linspace(0.0, 2.0 * np.pi, 37)[:-1]
-    ring = np.stack((np.cos(angles), np.sin(angles)), axis=1)
-    here = observed[:2]
+    ring, here = circle(36), observed[:2]
     return np.vstack((1.2 * ring, here + p.R * ring, here, here + 0.5 * observed[2:]))
 
 
 def links(p):
-    return [(first + k, first + (k + 1) % 36) for first in (0, 36) for k in range(36)] + [(72, 73)]
+    return [*outlines(36, 2), (72, 73)]
 
 
 def bodies(p):

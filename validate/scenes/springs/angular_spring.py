@@ -7,11 +7,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
-from solutions.checks import check_positive
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
 from validate.reference.schemes import Model, Motion
-from validate.scene import EXACT, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import PYMUNK, Scene, by_order, engine
+from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
+from validate.scenes.integrators._common import integrator_runners
 
 T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -55,18 +55,13 @@ def acceleration(lessons):
 
 
 def start(p):
-    for name in ("m", "length"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m", "length")
     return np.array([p.theta0]), np.zeros(1)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0][:1]
 
 
 def truth(p, t):
@@ -105,10 +100,6 @@ def limits(p, dt):
     return {k: shrunk * limit + UNCERTAINTY for k, limit in by_order(rate, T, dt).items()}
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT] + 10.0 * UNCERTAINTY
-
-
 def law(p):
     """Return θ̈(t, θ, θ̇), apart from the lesson's."""
     return lambda t, theta, rate: -(p.kappa * theta + 0.5 * p.m * p.g * p.length * np.sin(theta)) / inertia(p)
@@ -144,7 +135,7 @@ def pymunk_rod(p, h, steps, nudge):
     return [theta]
 
 
-MOTION = Motion(T, law, released, seen, truth, floor)
+MOTION = Motion(T, law, released, seen, truth, floor_of(limits, 10.0 * UNCERTAINTY))
 
 
 def pymunk_make(p, dt):
@@ -160,7 +151,7 @@ def pymunk_make(p, dt):
 
 
 RUNNERS = (
-    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
+    *integrator_runners(MOTION, limits),
     engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias = 0",
            order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_rod))),
 )
@@ -169,10 +160,6 @@ RUNNERS = (
 def points(observed, p):
     theta = observed[0]
     return p.length * np.array([[0.0, 0.0], [np.sin(theta), -np.cos(theta)]])
-
-
-def links(p):
-    return [(0, 1)]
 
 
 def sanity_checks():
@@ -192,11 +179,10 @@ SCENE = Scene(
     title="Angular spring", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(1),
     truth=truth, truth_uncertainty=UNCERTAINTY,
-    sanity_checks=sanity_checks, points=points, links=links,
+    sanity_checks=sanity_checks, points=points, links=ONE_LINK,
     uses=("one angle", "the moment of its spring", "one step function"),
     ablations={"the hinge as a constraint": "lesson 8 builds it",
-              "rotation in space": "the whole loop of lesson 10 has it, and is measured",
-              "detection of contacts": "the whole loop of lesson 10 has it, and is measured"},
+              **measured("rotation in space", "detection of contacts")},
 )

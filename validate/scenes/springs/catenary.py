@@ -7,10 +7,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from validate.engines.bullet import Bullet
-from validate.engines.springs import in_space, net_runners, start_of
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
 from validate.reference.springs import ReferenceNetwork, forces, motion, net_limits, net_steps, rest_positions
 from validate.scene import PYBULLET, EngineRun, Scene, engine
+from validate.scenes.springs._common import net_fields, net_runners
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -64,16 +64,9 @@ def net(p):
     return ReferenceNetwork(x, 0.0 * x, (0, p.links), pairs, rest, p.m, p.k, p.k_d, p.k_v, gravity, wind)
 
 
-start = start_of(net, ("links", "m", "k", "rest", "span"))
-
-
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, v, network = state
     return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
-
-
-def observe(state, p):
-    return state[0][:, :2].ravel()
 
 
 @cache
@@ -122,14 +115,6 @@ RUNNERS = (
 )
 
 
-def points(observed, p):
-    return observed.reshape(-1, 2)
-
-
-def links(p):
-    return [(n, n + 1) for n in range(p.links)]
-
-
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
     p = CASES["at rest"]
@@ -150,17 +135,11 @@ def sanity_checks():
 
 
 SCENE = Scene(
-    title="Discrete catenary", lesson="springs",
+    title="Discrete catenary",
+    **net_fields(net, ("links", "m", "k", "rest", "span"), "contact between links"),
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.springs.spring_network_acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.springs.spring_network_acceleration, run=run,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
-    points=points, links=links, link_look="spring",
-    uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={
-        "the third dimension": in_space(net),
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
-        "contact between links": "the whole loop of lesson 10 has it, and is measured",
-    },
 )

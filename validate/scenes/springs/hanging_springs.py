@@ -4,11 +4,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from validate.engines.springs import in_space, pymunk_net, start_of
-from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.engines.springs import pymunk_net
+from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
-from validate.scene import EXACT, PYMUNK, Scene, engine, ours
+from validate.scene import PYMUNK, Scene, engine, ours
+from validate.scenes._common import floor_of, measured
+from validate.scenes.integrators._common import integrator_runners
+from validate.scenes.springs._common import in_space, net_fields
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -36,9 +39,6 @@ def net(p):
     pairs = np.stack((n[:-1], n[1:]), axis=1)
     rest = np.full(p.springs, p.rest)
     return ReferenceNetwork(x, 0.0 * x, (0,), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
-
-
-start = start_of(net, ("springs", "m", "k", "rest"))
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -89,10 +89,6 @@ def limits(p, dt):
     return by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT] + 10.0 * UNCERTAINTY
-
-
 def law(p):
     """Return a(t, q, q̇) of all modes at once, about rest."""
     omega, c, _ = modes(p)
@@ -114,7 +110,7 @@ def pymunk_model(p, h, steps, nudge):
     return observe((pymunk_net_model(chain._replace(x=nudged(chain.x, nudge)), h, steps),), p)
 
 
-MOTION = Motion(T, law, released, from_modes, truth, floor, advance_modes)
+MOTION = Motion(T, law, released, from_modes, truth, floor_of(limits, 10.0 * UNCERTAINTY), advance_modes)
 
 
 def pymunk_make(p, dt):
@@ -122,8 +118,7 @@ def pymunk_make(p, dt):
 
 
 RUNNERS = (
-    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER,
-           compiled_in_quick=m in EXPLICIT) for m in INTEGRATORS),
+    *integrator_runners(MOTION, limits, compiled=EXPLICIT),
     # in one coordinate springs are linear: one Newton step of the implicit mesh is all of implicit Euler
     ours(IMPLICIT_MESH, limit=limits, predicted=MOTION.predict(IMPLICIT_EULER.table), in_quick=False),
     engine(PYMUNK, "", pymunk_make, "DampedSpring between point masses", finer_in_full=(50_000,),
@@ -134,10 +129,6 @@ RUNNERS = (
 def points(observed, p):
     y = -np.concatenate(([0.0], observed + p.rest * np.arange(1, p.springs + 1)))
     return np.stack((np.zeros_like(y), y), axis=1)
-
-
-def links(p):
-    return [(n, n + 1) for n in range(p.springs)]
 
 
 def sanity_checks():
@@ -151,15 +142,14 @@ def sanity_checks():
 
 
 SCENE = Scene(
-    title="Hanging springs", lesson="springs",
+    title="Hanging springs",
+    **net_fields(net, ("springs", "m", "k", "rest"), observe=observe, points=points,
+                 uses=("one coordinate", "springs with dampers", "one step function"),
+                 ablations={"the second and third dimension": in_space(net),
+                            **measured("rotation", "contact between masses")}),
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.springs.spring_network_acceleration, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: lessons.springs.spring_network_acceleration, run=run,
     truth=truth, truth_uncertainty=UNCERTAINTY,
     sanity_checks=sanity_checks,
-    points=points, links=links, link_look="spring",
-    uses=("one coordinate", "springs with dampers", "one step function"),
-    ablations={"the second and third dimension": in_space(net),
-              "rotation": "the whole loop of lesson 10 has it, and is measured",
-              "contact between masses": "the whole loop of lesson 10 has it, and is measured"},
 )

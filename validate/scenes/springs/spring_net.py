@@ -5,7 +5,6 @@ The second case adds springs along the diagonals, the third also springs over ev
 
 import numpy as np
 
-from validate.engines.springs import NET, net_runners
 from validate.reference.springs import (
     SquareNet,
     modes,
@@ -17,6 +16,7 @@ from validate.reference.springs import (
     square_net,
 )
 from validate.scene import Scene
+from validate.scenes.springs._common import SQUARE, net_fields, net_runners, start_of
 
 T = 0.6                      # [s]: two bounces, and half an oscillation of the threads alone
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -29,7 +29,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
-truth = net_truth(T)
+start_net, truth = start_of(square_net, SQUARE), net_truth(T)
 RUNNERS = net_runners(
     square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
     finer_in_full=(10_000, 20_000), slow_cases=tuple(CASES)[1:], most_in_quick=200)
@@ -54,7 +54,7 @@ def sanity_checks():
 
 SCENE = Scene(
     title="Spring net",
-    **NET,
+    **net_fields(square_net, SQUARE),
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.springs.spring_network_acceleration, run=run,

@@ -4,13 +4,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.engines.integrators import planet, planet_runners
 from validate.methods import INTEGRATORS
 from validate.reference.integrators import kepler_motion, kepler_position
 from validate.scene import EngineRun, Scene
+from validate.scenes._common import check_positives
+from validate.scenes.integrators._common import planet, planet_runners
 
 T = 20.0                     # [s]: six revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -50,8 +50,7 @@ def acceleration(lessons):
 
 
 def start(p):
-    for name in ("m_a", "m_b", "G"):
-        check_positive(name, getattr(p, name))
+    check_positives(p, "m_a", "m_b", "G")
     r, v = planet(p)
     return both(r, p), both(v, p)
 

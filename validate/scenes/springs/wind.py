@@ -4,12 +4,10 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
-from validate.engines.bullet import Bullet
-from validate.engines.chipmunk import pymunk_space
-from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
-from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
+from validate.reference.schemes import Motion
+from validate.scene import Scene, by_order
+from validate.scenes._common import coordinates, floor_of
+from validate.scenes.integrators._common import Point, as_pair, integrator_runners, one_point
 
 T = 2.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -38,19 +36,19 @@ def acceleration(lessons):
     return blown
 
 
-def start(p):
-    for name in ("m", "k_v"):
-        check_positive(name, getattr(p, name))
-    return np.zeros(2), np.array([p.vx, p.vy])
+def push(p):
+    """Return force(x, v) of the air [N]."""
+    wind, k_v = -p.wind, p.k_v
+    return lambda x, v: (wind - k_v * v[0], -k_v * v[1])
+
+
+POINT = Point(mass=lambda p: p.m, velocity=lambda p: (p.vx, p.vy), gravity=lambda p: (0.0, -p.g), force=push)
+start = POINT.start("m", "k_v")
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     x, v = state
     return lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, p)
-
-
-def observe(state, p):
-    return state[0]
 
 
 def drift(p):
@@ -75,10 +73,6 @@ def limits(p, dt):
     return {order: size * limit for order, limit in by_order(k, T, dt).items()}
 
 
-def floor(p, dt):
-    return limits(p, dt)[EXACT]
-
-
 def law(p):
     """Return a(t, x, v) of a complex number x, apart from the lesson's."""
     return lambda t, x, v: complex(-p.wind / p.m, -p.g) - p.k_v / p.m * v
@@ -88,51 +82,10 @@ def thrown(p):
     return 0j, complex(p.vx, p.vy)
 
 
-def seen(x, p):
-    return [x.real, x.imag]
+MOTION = Motion(T, law, thrown, as_pair, truth, floor_of(limits))
 
 
-MOTION = Motion(T, law, thrown, seen, truth, floor)
-
-
-def pymunk_make(p, dt):
-    """Wind and drag as a force before each step.  Chipmunk moves first, which is harmless: the force needs only v."""
-    import pymunk
-    space, body = pymunk_space((0.0, -p.g)), pymunk.Body(p.m, 1.0)
-    body.velocity = (p.vx, p.vy)
-    space.add(body)
-
-    def step():
-        body.force = (-p.wind - p.k_v * body.velocity.x, -p.k_v * body.velocity.y)       # the step clears it
-        space.step(dt)
-
-    return EngineRun(step, lambda: np.array([body.position.x, body.position.y]), lambda: None)
-
-
-def pybullet_make(p, dt):
-    """Wind and drag as a force before each step."""
-    bullet = Bullet(dt, (0.0, -p.g, 0.0))
-    body = bullet.point_mass(p.m, (0.0, 0.0, 0.0), (p.vx, p.vy, 0.0))
-
-    def step():
-        v = bullet.velocity(body)
-        bullet.push(body, (-p.wind - p.k_v * v[0], -p.k_v * v[1], 0.0), bullet.position(body))
-        bullet.step()
-
-    return EngineRun(step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
-
-
-RUNNERS = (
-    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
-    engine(PYMUNK, "", pymunk_make, "force applied each step",
-           order=1, limit=limits, predicted=MOTION.predict(OLD_VELOCITY_OLD_FORCE)),
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
-           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
-)
-
-
-def points(observed, p):
-    return observed[None, :]
+RUNNERS = (*integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits))
 
 
 def sanity_checks():
@@ -148,9 +101,9 @@ SCENE = Scene(
     title="Against the wind", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=acceleration, start=start, run=run, observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=coordinates(2),
     truth=truth, truth_uncertainty=1e-14,
-    sanity_checks=sanity_checks, points=points,
+    sanity_checks=sanity_checks, points=one_point,
     uses=("one point in the plane", "the force of the air", "one step function"),
     ablations={
         "the third dimension": "the acceleration of this scene has two components",

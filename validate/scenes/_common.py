@@ -1,0 +1,55 @@
+"""What scenes of all lessons share: fields, checks of parameters, and what is observed and drawn most often."""
+
+from solutions.checks import check_positive
+from validate.scene import EXACT, EngineRun, by_order
+
+# fields of a scene in which nothing moves and nothing can be refined
+ANSWER = {"moves": False, "duration": 1.0, "steps": (1,), "refinement": ""}
+
+
+def check_positives(p, *names):
+    """Raise BadInput unless these parameters of a case are positive."""
+    for name in names:
+        check_positive(name, getattr(p, name))
+
+
+def measured(*parts):
+    """Return what a scene leaves out and the whole loop of lesson 10 puts in: the field `ablations`."""
+    return dict.fromkeys(parts, "the whole loop of lesson 10 has it, and is measured")
+
+
+# ---------------------------------------------------------------------------------------------- what is observed
+
+def coordinates(d):
+    """Return observe(state, p) of a point: the first d coordinates of its position."""
+    return lambda state, p: state[0][:d]
+
+
+def sole_array(state, p):
+    """Return the array that is all of a state."""
+    return state[0]
+
+
+def constantly(value):
+    """Return the function of p that is the same in every case."""
+    return lambda p: value
+
+
+ONE_LINK = constantly([(0, 1)])          # of a picture of two points
+
+
+def one_reading(read, close=lambda: None):
+    """Return the EngineRun of what takes no steps: one long reading."""
+    return EngineRun(lambda: None, read, close)
+
+
+# ---------------------------------------------------------------------------------------------- limits
+
+def floor_of(limits, more=0.0):
+    """Return (p, dt) → the limit by order of a run with nothing but round-off, and this uncertainty of the truth."""
+    return lambda p, dt: limits(p, dt)[EXACT] + more
+
+
+def round_off(T):
+    """Return (p, dt) → the relative error of a run of the time T with nothing but round-off."""
+    return lambda p, dt: by_order(0.0, T, dt)[EXACT]

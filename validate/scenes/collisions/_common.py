@@ -1,0 +1,92 @@
+"""Balls that stop where they touch an obstacle: how they start, how far they may be off, and the runners."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.collisions import Plane
+from solutions.given.collisions import Target
+from validate.engines.collisions import SWEPT, SWEPT_SETTINGS, across, bullet_rays, bullet_swept, swept_radius
+from validate.methods import CONTINUOUS, DISCRETE
+from validate.reference.collisions import COPIES, ONLY_ROUND_OFF, impact_times, rounded_way
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, engine, ours
+from validate.scenes._common import check_positives
+
+PLACE_APART = 1.0            # metre between two copies along the x axis
+ENGINE_SPEEDS = (1.0, 1e2, 1e4)  # of the balls in an engine [m/s]: the lowest, the middle, the highest
+
+# how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  Rays approach from outside;
+# twenty tested beforehand ended up to 1.2 mm early, and this permits eight times that
+RAY_ENDS = 1e-2
+
+
+class Flight(NamedTuple):
+    """Balls that stop at an obstacle, and the relative errors of where they are."""
+    T: float                 # [s]
+    place: Callable          # p → (x, v), each (n, 3)
+    truth: Callable          # (p, t) → where they are
+    steep: float             # cosine of the angle between their path and the normal, at the least [-]
+
+    def per_ball(self, p, metres):
+        """Return the relative error if every ball is off by so many metres."""
+        return np.sqrt(COPIES) * metres / np.linalg.norm(self.truth(p, self.T))
+
+    def rounding(self, p, dt):
+        """Return the largest relative error by round-off."""
+        x, v = self.place(p)
+        way = np.linalg.norm(rounded_way(x[:, 1:], v[:, 1:], impact_times(self.T), dt))
+        few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * self.T
+        return (way + few) / self.steep / np.linalg.norm(self.truth(p, self.T))
+
+    def swept_limit(self, p, dt):
+        """A swept ball ends where its smaller sphere touches, with the ball a fifth of its radius deep, or earlier.  A
+        step that is too short to be swept finds it at most one step late.
+        """
+        return self.per_ball(p, deepest(p, dt) / self.steep) + self.rounding(p, dt)
+
+
+def start_balls(place, positive):
+    """Return start(p) of the balls (x, v) = place(p); it raises BadInput unless these parameters are positive."""
+    def start(p):
+        check_positives(p, *positive)
+        return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
+    return start
+
+
+def observe_balls(state, p):
+    """Return the places of the balls that may hit, in one row."""
+    return across(state[0][:COPIES])
+
+
+def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
+    """Return the runners of a scene of balls that stop at an obstacle: our methods, and pybullet's two ways.
+
+    place(p) → (x, v), each (n, 3)       fastest [m/s] with which the discrete test can deal
+    limits, late    of our methods: limits, and the field `predicted` of the discrete test
+    obstacle        of the rays, in words
+    rays, swept     {field: its value} of the Runner of each way of pybullet
+    """
+    def slow_enough(p):
+        return p.speed <= fastest
+
+    def some_speeds(p):
+        return p.speed in ENGINE_SPEEDS
+    return (
+        ours(CONTINUOUS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+        ours(DISCRETE, limit=limits, predicted=late, supports=slow_enough),
+        engine(PYBULLET, "rays", partial(bullet_rays, place=place), f"one rayTestBatch per step, at a {obstacle}",
+               supports=some_speeds, most_steps=100, **rays),
+        engine(PYBULLET, "swept", partial(bullet_swept, place=place), SWEPT_SETTINGS,
+               supports=some_speeds, most_steps=200, **swept),
+    )
+
+
+def deepest(p, dt):
+    """Return the largest distance [m] between the position of bullet_swept and the place of impact.
+
+    Without a sweep a ball is at most v dt deep.  With one it ends where the swept sphere touches, with the ball
+    (1 − SWEPT) r deep, or earlier, where the ball itself is found less deep.
+    """
+    return p.speed * dt if swept_radius(p, dt) is None else (1.0 - SWEPT) * p.r

@@ -1,0 +1,32 @@
+"""A block on a plane: the fields of its scenes, and its runners in the engines."""
+
+
+from validate.engines.friction import SWEEPS
+from validate.reference.friction import block_in_space
+from validate.scenes._common import ONE_LINK, coordinates, measured
+
+
+def block_on(ground, start):
+    """Return the fields that the scenes of a block share; ground: "floor" or "slope", start: that of the scene."""
+    return {
+        "lesson": "friction",
+        "start": start,
+        "observe": coordinates(1),
+        "links": ONE_LINK,
+        "uses": ("two coordinates", "a normal", "one step of a block that stays on its plane"),
+        "ablations": {
+            "the third dimension": lambda p: (block_in_space(*start(p)), p),
+            **measured("rotation: it does not tip", f"detection: it does not leave the {ground}"),
+        },
+    }
+
+
+def slab_on_line(before="", after=""):
+    """Return pymunk's settings; the words before and after the slab say what a scene does with it."""
+    return f"{before}a slab of 2 m on a line{after}; {SWEEPS} iterations, collision_slop 1e-5"
+
+
+def slab_on_box(before="", after=""):
+    """Return pybullet's settings likewise."""
+    return (f"{before}a slab of 2 m on a box{after}; maximal coordinates, solverResidualThreshold 0, "
+            f"{SWEEPS} iterations")

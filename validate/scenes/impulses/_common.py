@@ -1,0 +1,37 @@
+"""Copies of impacts at different moments of a step: the runners that find them late, or in time."""
+
+from functools import partial
+
+from validate.engines.bullet import IMPACT_SETTINGS
+from validate.reference.impulses import BULLET_RULE, CHIPMUNK_RULE, COPIES, ONLY_ROUND_OFF, PROJECTING_RULE
+from validate.scene import EXACT, PYBULLET, PYMUNK, engine, ours
+
+
+def impact_runners(methods, limits, late, in_pymunk, in_pybullet, pymunk_errs=None, **pybullet):
+    """Return the runners of a scene of impacts: our methods, pymunk and pybullet.
+
+    methods        one that projects, and one that goes back to the moment of the impact
+    late           (p, dt, rule) → Prediction of what finds an impact at the end of a step
+    in_*           (make, settings) of an engine
+    pymunk_errs    further arguments of `late` for pymunk
+    pybullet       further fields of pybullet's runner
+    """
+    projecting, backtracking = methods
+    (pymunk_make, circles), (pybullet_make, spheres) = in_pymunk, in_pybullet
+    return (
+        ours(projecting, limit=limits, predicted=partial(late, rule=PROJECTING_RULE)),
+        # between impacts at known times the motion is a straight line or a parabola
+        ours(backtracking, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+        engine(PYMUNK, "", pymunk_make, f"{COPIES} {circles}",
+               order=1, limit=limits, predicted=partial(late, rule=CHIPMUNK_RULE, **pymunk_errs or {})),
+        engine(PYBULLET, "", pybullet_make, f"{COPIES} {spheres}; {IMPACT_SETTINGS}",
+               order=1, limit=limits, predicted=partial(late, rule=BULLET_RULE), **pybullet),
+    )
+
+
+def in_space(start):
+    """Return p → (state, p) of a scene whose parameter `space` is the number of unused coordinates."""
+    def wide_start(p):
+        p = p._replace(space=1.0)
+        return start(p), p
+    return wide_start

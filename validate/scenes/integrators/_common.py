@@ -1,0 +1,150 @@
+"""Planets, and points in a field of forces: how they start and are drawn, and the runners that move them."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from validate.engines.integrators import bullet_point, pymunk_point
+from validate.methods import (
+    BLANES_MOAN,
+    EXPLICIT,
+    IMPLICIT_MIDPOINT,
+    INTEGRATORS,
+    ONE_OF_EACH_ORDER,
+    RK4,
+    SYMPLECTIC_EULER,
+    VERLET,
+)
+from validate.reference.integrators import EVEN, FINEST, FINEST_RK4, early_limit, kepler_limits, perihelion
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_NEW_FORCE, OLD_VELOCITY_OLD_FORCE
+from validate.scene import LATE_LEAPFROG, PYBULLET, PYMUNK, engine, ours
+from validate.scenes._common import check_positives
+
+
+def integrator_runners(motion, limits, compiled=()):
+    """Return the runners of our integrators on a Motion; a quick run has one of each order, and compiles these."""
+    return tuple(ours(m, limit=limits, predicted=motion.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER,
+                      compiled_in_quick=m in compiled) for m in INTEGRATORS)
+
+
+def damped(law):
+    """Return the law p → a(t, x, v) of a number x with the default damping of pybullet; see `hidden_damping`."""
+    def damped_law(p):
+        a = law(p)
+        return lambda t, x, v: a(t, x, v) - 0.04 * v * (1.0 + abs(v))
+    return damped_law
+
+
+# ---------------------------------------------------------------------------------------------- points
+
+class Point(NamedTuple):
+    """A point that starts in the origin, under gravity and a force that depends on its velocity alone."""
+    velocity: Callable       # p → (2,) at the start [m/s]
+    gravity: Callable        # p → (2,) [m/s²]
+    force: Callable          # p → force(x, v) → (2,) [N], in floats: an engine calls it in each step
+    mass: Callable = lambda p: 1.0       # p → [kg]
+    d: int = 2               # coordinates that are observed
+
+    def start(self, *positive):
+        """Return start(p) → (x, v); it raises BadInput unless these parameters are positive."""
+        def start(p):
+            for name in positive:
+                check_positive(name, getattr(p, name))
+            return np.zeros(self.d), np.array(self.velocity(p)[:self.d])
+        return start
+
+    def in_space(self, p):
+        """The same motion with unused coordinates."""
+        return (np.zeros(3), np.array([*self.velocity(p), 0.0])), p
+
+    def read(self, x):
+        """Return the coordinates of an engine's position that are observed."""
+        return np.array(x[:self.d])
+
+    def pymunk(self, p, dt, **damping):
+        """Apply the force before each step, or let the space damp."""
+        push = {} if damping else {"force": self.force(p)}
+        return pymunk_point(self.gravity(p), self.mass(p), self.velocity(p), self.read, dt, **push, **damping)
+
+    def pybullet(self, p, dt, default=False, **damping):
+        """Apply the force before each step, or let the body damp."""
+        push = {} if damping else {"force": self.force(p)}
+        return bullet_point((*self.gravity(p), 0.0), self.mass(p), (0.0,) * 3, (*self.velocity(p), 0.0), self.read,
+                            dt, default=default, **push, **damping)
+
+    def in_pymunk(self, motion, limits):
+        """Return the runner of pymunk."""
+        return engine(PYMUNK, "", self.pymunk, "force applied each step",
+                      order=1, limit=limits, predicted=motion.predict(OLD_VELOCITY_OLD_FORCE))
+
+    def in_pybullet(self, motion, limits):
+        """Return the runner of pybullet."""
+        return engine(PYBULLET, "", self.pybullet, "useMaximalCoordinates=1, no damping; force applied each step",
+                      order=1, limit=limits, predicted=motion.predict(NEW_VELOCITY_OLD_FORCE))
+
+    def in_default_pybullet(self, motion, limits, departure):
+        """Return the runner of pybullet's default body, which its own damping slows."""
+        return engine(PYBULLET, "default", partial(self.pybullet, default=True),
+                      "createMultiBody with its defaults; force applied each step",
+                      order=1, limit=limits, departure=departure,
+                      predicted=motion.predict(NEW_VELOCITY_OLD_FORCE, damped(motion.law), follows=departure.own_law))
+
+
+def one_point(observed, p):
+    """Draw a point of the plane."""
+    return observed[None, :]
+
+
+def as_pair(x, p):
+    """Return the coordinates of a complex number."""
+    return [x.real, x.imag]
+
+
+# ---------------------------------------------------------------------------------------------- planets
+
+def planet(p):
+    """Return (x, v) of the planet at its perihelion.  Raises BadInput for what is no ellipse."""
+    check_positives(p, "mu", "a")
+    if not 0.0 <= p.e < 1.0:
+        raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
+    return perihelion(p)
+
+
+def planet_in_space(p):
+    """The same motion with an unused z coordinate."""
+    x, v = planet(p)
+    return (np.append(x, 0.0), np.append(v, 0.0)), p
+
+
+def sun_and_planet(observed, p):
+    """Draw the sun and the planet."""
+    return np.array([[0.0, 0.0], [observed[0], observed[1]]])
+
+
+def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
+    """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
+
+    The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
+    symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
+    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large
+    most_steps             of an engine
+    """
+    T, limits = motion.T, kepler_limits(motion.T)
+    symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
+    errors = {m: motion.predict(m.table, finest=FINEST_RK4 if m is RK4 else FINEST[m.order],
+                                powers=EVEN[m.order] if m in symmetric else None) for m in methods}
+    pymunk_errors = motion.predict(OLD_VELOCITY_NEW_FORCE, finest=FINEST[1])
+    leapfrog = {"order": 2, "limit": limits, "predicted": errors[VERLET], "most_steps": most_steps}
+    return (
+        *(ours(m, limit=limits, predicted=errors[m], order=LATE_LEAPFROG if m is SYMPLECTIC_EULER else m.order,
+               in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in EXPLICIT) for m in errors),
+        engine(PYMUNK, "", pymunk_make, "attraction in velocity_func",
+               order=LATE_LEAPFROG, limit=early_limit(T), predicted=pymunk_errors, most_steps=most_steps),
+        engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
+        engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+               order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
+        engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
+    )

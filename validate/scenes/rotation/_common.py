@@ -1,0 +1,107 @@
+"""Free bodies and rolling balls: how they start and are drawn, and the runners that turn them."""
+
+from functools import partial
+
+import numpy as np
+
+from solutions.given.rotation import check_moments
+from solutions.rotation import RigidBody, RollingBall
+from validate.engines import mujoco
+from validate.engines.rotation import free_body
+from validate.reference.orientation import quaternion_matrix
+from validate.reference.rotation import EXPLICIT, IMPLICIT, free_limits
+from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
+from validate.scene import EXACT, MUJOCO, PYBULLET, engine, ours
+from validate.scenes._common import measured
+from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
+
+
+def turn_runners(body, methods, limits, in_quick, exact=()):
+    """Return the runners of our methods on a TurningBody.
+
+    in_quick: {method that a quick run has: its most steps there, or None};    exact: methods with nothing but round-off
+    """
+    return tuple(ours(m, limit=limits, predicted=body.predict(m.table), order=EXACT if m in exact else m.order,
+                      in_quick=m in in_quick, most_in_quick=in_quick.get(m)) for m in methods)
+
+
+def free_engines(body):
+    """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a TurningBody that is free."""
+    return (
+        engine(PYBULLET, "reduced coordinates", free_body,
+               "createMultiBody with its defaults, but no damping and no clamp of velocity",
+               order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM)),
+        engine(PYBULLET, "", partial(free_body, maximal=True), "useMaximalCoordinates=1, no damping",
+               order=1, limit=free_limits(body.T, (IMPLICIT,)), predicted=body.predict(IMPLICIT_TERM)),
+        engine(MUJOCO, "", mujoco.free_body, "freejoint; Runge–Kutta 4",
+               order=4, limit=free_limits(body.T), predicted=body.predict(MUNTHE_KAAS), most_steps=5000),
+    )
+
+
+def mujoco_default(body):
+    """Return the runner of MuJoCo's own default on a TurningBody that is free."""
+    return engine(MUJOCO, "default", partial(mujoco.free_body, integrator="Euler"),
+                  "freejoint; the semi-implicit Euler step",
+                  order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM),
+                  most_steps=5000)
+
+
+def observe_rotation(state, p):
+    """Return R, nine numbers, in which q and −q are equal."""
+    return quaternion_matrix(*state[0]).ravel()
+
+
+def start_free(p):
+    """Return (q, L, RigidBody) of a body with p.moments() and p.omega() that starts at R = 1."""
+    check_moments(p.moments())
+    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), RigidBody(1.0, p.moments())
+
+
+# the fields that the scenes of a body without a torque share
+FREE_BODY = {
+    "lesson": "rotation",
+    "observe": observe_rotation,
+    "points": axes_seen,
+    "links": axes_links,
+    "poses": turned_in_place,
+    "uses": ("one orientation", "one angular momentum", "one step function"),
+    "ablations": {**measured("position"), "contacts": "the whole loop of lesson 10 has them, and is measured"},
+}
+
+
+# ---------------------------------------------------------------------------------------------- rolling balls
+
+SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
+
+
+def ball_on_floor(p):
+    """Return the RollingBall with I = shape m R² on a horizontal floor."""
+    return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))
+
+
+def bowled(p, rim=0.0):
+    """Return (x, q, v, ω) of a ball that is bowled along x; rim: first speed of its rim [m/s]."""
+    spin = np.array([0.0, rim / p.R, 0.0])
+    return np.array([0.0, 0.0, p.R]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([p.v0, 0.0, 0.0]), spin
+
+
+def observe_rolling(radius):
+    """Return observe(state, p) of a ball with radius(p): distance x [m], speed v and rim speed Rω [m/s]."""
+    return lambda state, p: np.array([state[0][0], state[2][0], radius(p) * state[3][1]])
+
+
+def rolls_from(p, rim=0.0):
+    """Return the time at which slipping ends [s]: v₀ − μg t = rim + μg t mR²/I."""
+    return (p.v0 - rim) / (p.mu * p.g * (1.0 + 1.0 / p.shape))
+
+
+def rolled(p, t, rim=0.0):
+    """Return distance, speed and rim speed of a bowled ball at t."""
+    sliding, brake = min(t, rolls_from(p, rim)), p.mu * p.g
+    v = p.v0 - brake * sliding
+    return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v, rim + brake * sliding / p.shape])
+
+
+def rolling_circle(body, R):
+    """Return the read of pymunk's EngineRun of a circle that rolls: the same three."""
+    return lambda: np.array([body.position.x, body.velocity.x, -R * body.angular_velocity])

@@ -1,0 +1,76 @@
+"""Nets of springs: how they start and are drawn, and the runners that move them."""
+
+import numpy as np
+
+from solutions.springs import make_spring_network
+from validate.engines.springs import pymunk_net
+from validate.methods import EXPLICIT, IMPLICIT_MESH
+from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
+from validate.scene import PYMUNK, engine, ours
+from validate.scenes._common import check_positives, measured
+from validate.scenes.integrators._common import integrator_runners
+
+
+def start_of(net, positive):
+    """Return start(p) → (x, v, network) of net(p); it raises BadInput unless these parameters are positive."""
+    def start(p):
+        check_positives(p, *positive)
+        return state_of(net(p), make_spring_network)
+    return start
+
+
+def in_space(net):
+    """Return p → (state, p) of the ReferenceNetwork net(p): the same motion with three coordinates."""
+    return lambda p: (state_of(net(p).padded(), make_spring_network), p)
+
+
+def observe_net(state, p):
+    """Return the places of all nodes, seen from the front."""
+    return state[0][:, :2].ravel()
+
+
+def net_points(observed, p):
+    """Draw every node."""
+    return observed.reshape(-1, 2)
+
+
+def net_fields(net, positive, contact="contact of the net with itself", **other):
+    """Return the fields that the scenes of the ReferenceNetwork net(p) share.
+
+    positive    names of parameters that must be positive
+    contact     what the scene leaves out, in words
+    other       fields that this scene has in place of the usual ones
+    """
+    return {
+        "lesson": "springs",
+        "start": start_of(net, positive),
+        "observe": observe_net,
+        "points": net_points,
+        "links": lambda p: net(p).pairs.tolist(),
+        "link_look": "spring",
+        "uses": ("two coordinates", "springs with dampers", "one step function"),
+        "ablations": {"the third dimension": in_space(net), **measured("rotation", contact)},
+        **other,
+    }
+
+
+def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
+    """Return the runners of a scene of the ReferenceNetwork net(p): our methods, and pymunk.
+
+    motion           the Motion of net(p)
+    limits           (p, dt) → {order: largest relative error}
+    finer_in_full    of pymunk
+    mesh_in_quick    fields of the Runner of the implicit mesh, whose step takes seconds to compile
+    The implicit methods of lesson 1 are left to a full run: they build a dense matrix at every correction.
+    """
+    return (
+        *integrator_runners(motion, limits, compiled=EXPLICIT),
+        ours(IMPLICIT_MESH, limit=limits, predicted=motion.predict_model(net_model(net, implicit_net)),
+             **mesh_in_quick),
+        engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), "DampedSpring between point masses",
+               finer_in_full=finer_in_full, order=1, limit=limits,
+               predicted=motion.predict_model(net_model(net, pymunk_net_model))),
+    )
+
+
+SQUARE = ("n", "spacing", "m", "k")      # parameters of a SquareNet that must be positive
