@@ -44,6 +44,10 @@ class Checks(list):
         """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
+    def count(self, claim, quantity, done, of, saw):
+        """Add a Finding that so many did something, of so many that should; `saw` continues "3 of 3 …"."""
+        self(claim, f"{quantity} [of {of}]", law=of, found=done, within=0.0, saw=f"{done} of {of} {saw}")
+
     def laws(self, lesson, laws, *, seed, times):
         """Add a Finding for each Law: it holds in so many random cases, which it draws from a seed of its own."""
         for number, law in enumerate(laws, 100 * seed):
