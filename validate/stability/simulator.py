@@ -16,12 +16,10 @@ from validate.stability.case import DOTS, LINE, Picture, bisect, case, random_la
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
 UP, UPRIGHT = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0, 0.0)      # a floor in the plane; no rotation
-SHAPES = {                   # {shape: names of the step, the bounds and the contacts}
-    "disc": ("contact_step_2d", "disc_bounds", "round_contacts"),
-    "box": ("contact_step_2d", "box_bounds_2d", "box_contacts_2d"),
-    "ball": ("contact_step", "ball_bounds", "round_contacts"),
-    "cube": ("contact_step", "box_bounds", "box_contacts"),
-}
+DISC = "contact_step_2d", "disc_bounds", "round_contacts"           # names of the step, the bounds and the contacts
+BOX = "contact_step_2d", "box_bounds_2d", "box_contacts_2d"
+BALL = "contact_step", "ball_bounds", "round_contacts"
+CUBE = "contact_step", "box_bounds", "box_contacts"
 
 
 def round_bodies(lesson, x, r, m, inertia, gravity, mu, sweeps, margin=0.01, angle=0.0):
@@ -36,13 +34,13 @@ def round_bodies(lesson, x, r, m, inertia, gravity, mu, sweeps, margin=0.01, ang
 
 def advanced(lesson, shape, state, p, dt, steps, load=None, step=None):
     """Return the PileState after so many steps of advance_contact."""
-    usual, bounds, contacts = (getattr(lesson, name) for name in SHAPES[shape])
+    usual, bounds, contacts = (getattr(lesson, name) for name in shape)
     return lesson.advance_contact(step or usual, load or lesson.weight, bounds, contacts, 0.0, state, dt, steps, p)
 
 
 def stepped(lesson, shape, state, p, dt, steps):
     """Return the PileState after so many steps, without the checks of advance_contact."""
-    step, bounds, contacts = (getattr(lesson, name) for name in SHAPES[shape])
+    step, bounds, contacts = (getattr(lesson, name) for name in shape)
     for n in range(steps):
         state = step(lesson.weight, bounds, contacts, n * dt, state, dt, p)
     return state
@@ -62,7 +60,7 @@ def deepest(lesson, speed, margin, dt):
         height = 0.1 + (margin + (k + 0.5) / 16.0 * speed * dt)
         state, p = round_bodies(lesson, [(0.0, height)], 0.1, 1.0, 0.005, (0.0, 0.0), 0.0, 5, margin)
         state = state._replace(v=np.array([(0.0, -speed), (0.0, 0.0)]))
-        depths.append(0.1 - stepped(lesson, "disc", state, p, dt, 4).x[0, 1])
+        depths.append(0.1 - stepped(lesson, DISC, state, p, dt, 4).x[0, 1])
     return max(0.0, *depths)
 
 
@@ -104,7 +102,7 @@ def speed_in_the_loop(lesson, dt, steps):
     """Return the speed [m/s] of the ball after so many steps of the whole loop."""
     state, p = round_bodies(lesson, [PLACE_0], RADIUS, 1.0, MOMENT, (0.0, 0.0, -G), 10.0, 40, 0.02)
     state = state._replace(v=np.array([V_0, np.zeros(3)]), omega=np.array([OMEGA_0, TABLE]))
-    return np.linalg.norm(stepped(lesson, "ball", state, p, dt, steps).v[0])
+    return np.linalg.norm(stepped(lesson, BALL, state, p, dt, steps).v[0])
 
 
 def speed_ahead(lesson, dt, steps):
@@ -202,7 +200,7 @@ def refusals(lesson, check):
 
     def moved(dt, **more):
         state, p = made()
-        return advanced(lesson, "disc", state._replace(**more), p, dt, 3)
+        return advanced(lesson, DISC, state._replace(**more), p, dt, 3)
     asked = ((lambda: made(m=-1.0), "-1.0"), (lambda: made(m=0.0), "0.0"), (lambda: made(inertia=np.nan), "nan"),
              (lambda: made(half=[(0.5, 0.0)]), "0.0"), (lambda: made(planes=[(0.0, 2.0, 0.0)]), "2.0"),
              (lambda: made(mu=-0.3), "-0.3"), (lambda: made(sweeps=0), "0"), (lambda: made(margin=0.0), "0.0"),
@@ -497,7 +495,7 @@ def landing(lesson, rng, d):
     state, p = make([place], [q], m, moments if d == 2 else [moments], [half], [(*n, 0.0)], np.zeros(d), 0.0, 1, 0.01)
     v = 0.3 * np.eye(d)[0] + fall * n
     state = state._replace(v=np.array([v, 0.0 * v]))
-    end = stepped(lesson, "box" if d == 2 else "cube", state, p, dt, 1)
+    end = stepped(lesson, BOX if d == 2 else CUBE, state, p, dt, 1)
 
     r = lowest - 0.5 * ahead * n
     lever = r[:1] if d == 2 else axes.T @ np.cross(r, n)                 # in the body's coordinates
@@ -586,7 +584,7 @@ def on_a_slope(lesson, d, mu):
     """Return the PileState of a disc or a sphere after twelve steps on a slope from rest."""
     gravity = DOWN * np.eye(d)[0] - INTO * np.eye(d)[-1]
     state, p = round_bodies(lesson, [R * np.eye(d)[-1]], R, MASS, INERTIA, gravity, mu, 3 if d == 2 else 60, angle=0.7)
-    return advanced(lesson, "disc" if d == 2 else "ball", state, p, ROLLING_DT, ROLLING)
+    return advanced(lesson, DISC if d == 2 else BALL, state, p, ROLLING_DT, ROLLING)
 
 
 def column_at_rest(lesson, d, n, steps):
@@ -595,7 +593,7 @@ def column_at_rest(lesson, d, n, steps):
     """
     heights, dt = R * (1.0 + 2.0 * np.arange(n)), 1e-4
     state, p = round_bodies(lesson, heights[:, None] * np.eye(d)[-1], R, MASS, INERTIA, -G * np.eye(d)[-1], 0.0, 1)
-    end = advanced(lesson, "disc" if d == 2 else "ball", state, p, dt, steps)
+    end = advanced(lesson, DISC if d == 2 else BALL, state, p, dt, steps)
     return np.sort(np.abs(end.J[:, -1])) / (MASS * G * dt), largest(end.v) / (G * dt)
 
 
@@ -666,15 +664,15 @@ def turn_of_a_carried_ball(lesson, check):
 
 # ---------------------------------------------------------------------------------------------- release
 
-BALL = (0.2, 1.0, 1.1)       # of a puck on a ball: angle at the start [rad], speed [m/s], distance of the centres [m]
+PUCK = (0.2, 1.0, 1.1)       # of a puck on a ball: angle at the start [rad], speed [m/s], distance of the centres [m]
 STIFFNESS, DEPTH = 100.0, 0.3    # of the spring under a platform [N/m], below equilibrium at the start [m]
 HEAVY, LIGHT = 1.0, 0.5      # masses of the platform and of the box on it [kg]
 
 
 def puck_on_a_ball(lesson, ahead):
     """(load, shapes, PileState, Bodies) of a puck on a fixed disc, with the velocity that it has at t = −ahead."""
-    start, speed, R = BALL
-    angle, back = slides_on_ball(*BALL, G, -ahead) if ahead > 0.0 else (start, speed)
+    start, speed, R = PUCK
+    angle, back = slides_on_ball(*PUCK, G, -ahead) if ahead > 0.0 else (start, speed)
     state, p = lesson.make_bodies_2d([(0.0, 0.0), (R * np.sin(start), R * np.cos(start))], np.zeros(2), [np.inf, 1.0],
                                      [np.inf, np.inf], [(1.0, 1.0), (0.1, 0.1)], [], (0.0, -G), 0.0, 10, 0.2)
     v = back * np.array([(0.0, 0.0), (np.cos(angle), -np.sin(angle))])
@@ -714,11 +712,11 @@ class Held(NamedTuple):
 
 def supports():
     """The puck and the box, with their theories."""
-    start, speed, R = BALL
+    start, speed, R = PUCK
     rate = np.sqrt(STIFFNESS / (HEAVY + LIGHT))
 
     def on_the_ball(t):
-        angle, v = slides_on_ball(*BALL, G, t)
+        angle, v = slides_on_ball(*PUCK, G, t)
         return G * np.cos(angle) - v * v / R
     return (Held("a puck leaves a ball", puck_on_a_ball, np.sqrt(G / R), G * np.sin(start), on_the_ball,
                  lambda more: leaves_ball(start, speed + more, R, G)[0]),
@@ -780,7 +778,7 @@ def sweeps_until_settled(lesson, check):
     """
     n, dt, ts, settled = 6, 1e-3, (1, 2, 4, 8, 16, 32), lesson.settled_contact_step_2d
     make = lambda heights: round_bodies(lesson, [(0.0, y) for y in heights], R, MASS, INERTIA, (0.0, -G), 0.0, 1)
-    after = lambda steps, step: advanced(lesson, "disc", *make(R * (1.0 + 2.0 * np.arange(n))), dt, steps, step=step)
+    after = lambda steps, step: advanced(lesson, DISC, *make(R * (1.0 + 2.0 * np.arange(n))), dt, steps, step=step)
     wrong = lambda end: largest(np.sort(np.abs(end.J[:, 1])) / (MASS * G * dt) - np.arange(1.0, n + 1.0)) / n
     left, alone = ([wrong(after(steps, step)) for steps in ts] for step in (settled, lesson.contact_step_2d))
     rho = np.cos(np.pi / (2 * n)) ** 2
@@ -795,7 +793,7 @@ def sweeps_until_settled(lesson, check):
                 largest(after(60, settled).v) / (G * dt), bound)
     above, p = make([R + 0.005])
     falling = above._replace(v=np.array([(0.0, -0.1), (0.0, 0.0)]))
-    fallen = above.x[0, 1] - advanced(lesson, "disc", falling, p, dt, 1, step=settled).x[0, 1]
+    fallen = above.x[0, 1] - advanced(lesson, DISC, falling, p, dt, 1, step=settled).x[0, 1]
     check.agree("What is about to land is not stopped before.", "way of a falling disc, 5 mm above the floor: "
                 "largest error, relative [-]", fallen / (dt * (0.1 + G * dt)) - 1.0, ROUND_OFF)
     percent = lambda errors: 100.0 * np.array(errors)
@@ -815,7 +813,7 @@ def slipping_ball(lesson, spin, mu, dt, steps):
     """Return the PileState of a ball of 1 kg and 10 cm that is put on a floor with this ω about y, after some steps."""
     state, p = round_bodies(lesson, [(0.0, 0.0, RADIUS)], RADIUS, 1.0, MOMENT, (0.0, 0.0, -G), mu, 40)
     state.omega[0, 1] = spin
-    return advanced(lesson, "ball", state, p, dt, steps)
+    return advanced(lesson, BALL, state, p, dt, steps)
 
 
 @case("turns-per-step", "A ball that turns many times per step", compiled=False)
@@ -872,10 +870,10 @@ def one_that_moves(lesson, x, angle, half, margin):
 
 def passes(lesson, state, p, dt, steps, passed):
     """Return (1 if the boxes pass each other unseen, 1 if advance_contact then ends in an error)."""
-    if not passed(stepped(lesson, "box", state, p, dt, steps)):
+    if not passed(stepped(lesson, BOX, state, p, dt, steps)):
         return 0, 0
     try:
-        advanced(lesson, "box", state, p, dt, steps)
+        advanced(lesson, BOX, state, p, dt, steps)
     except Diverged:
         return 1, 1
     return 1, 0
@@ -983,7 +981,7 @@ def feet(lesson, place, dt):
     """Return the normal forces (left, right) [N] of a smooth floor on a box of 1 m, loaded at `place` [m]."""
     load = lambda t, x, q, v, omega, p: (np.array([(0.0, -LOAD), (0.0, 0.0)]), np.array([-LOAD * place, 0.0]))
     state, p = lesson.make_bodies_2d([(0.0, 0.2)], [0.0], 3.0, 0.3, [(0.5, 0.2)], [UP], (0.0, 0.0), 0.0, 60, 0.01)
-    state = advanced(lesson, "box", state, p, dt, 20, load)
+    state = advanced(lesson, BOX, state, p, dt, 20, load)
     N, _ = lesson.normal_and_friction(state, dt)
     return N[np.argsort(state.contacts.p[:, 0])]
 
