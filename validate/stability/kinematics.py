@@ -240,7 +240,7 @@ def contraction(lesson, check, lengths, angles, damping):
 # ---------------------------------------------------------------------------------------------- conflicts
 
 def elbow_and_end(theta, target, arm):
-    """Task: the second joint at target[:2] and the end at target[2:], which may be impossible together."""
+    """Return (e, J) for the second joint at target[:2] and the end at target[2:]; both together may be impossible."""
     x, n = joints_of(theta, arm.lengths), len(theta)
     J = np.vstack((np.column_stack((jacobian_of(theta[:2], arm.lengths[:2]), np.zeros((2, n - 2)))),
                    jacobian_of(theta, arm.lengths)))

@@ -670,7 +670,7 @@ HEAVY, LIGHT = 1.0, 0.5      # masses of the platform and of the box on it [kg]
 
 
 def puck_on_a_ball(lesson, ahead):
-    """(load, shapes, PileState, Bodies) of a puck on a fixed disc, with the velocity that it has at t = −ahead."""
+    """Return (load, shapes, PileState, Bodies) of a puck on a fixed disc, with its velocity at t = −ahead."""
     start, speed, R = PUCK
     angle, back = slides_on_ball(*PUCK, G, -ahead) if ahead > 0.0 else (start, speed)
     state, p = lesson.make_bodies_2d([(0.0, 0.0), (R * np.sin(start), R * np.cos(start))], np.zeros(2), [np.inf, 1.0],
@@ -680,7 +680,7 @@ def puck_on_a_ball(lesson, ahead):
 
 
 def box_on_a_spring(lesson, ahead):
-    """The same for a box on a platform on a spring, which begins at rest; the spring has its natural length at 0."""
+    """Return the same for a box on a platform on a spring, at rest at first; the spring is unstretched at 0."""
     def load(t, x, q, v, omega, p):
         F, tau = lesson.weight(t, x, q, v, omega, p)
         F[0, 1] -= STIFFNESS * x[0, 1]
@@ -694,7 +694,7 @@ def box_on_a_spring(lesson, ahead):
 
 
 def pushed(lesson, step, scene, dt, ahead, seconds):
-    """(times [s], forces [N] between bodies 0 and 1) of such a scene; `ahead` [steps] is the leapfrog start."""
+    """Return (times [s], forces [N] between bodies 0 and 1) of such a scene; `ahead` [steps] is the leapfrog start."""
     load, shapes, state, p = scene(lesson, ahead * dt)
     ts, states = lesson.contact_trajectory(step, load, *shapes, 0.0, state, dt, int(seconds / dt) + 8, p)
     return ts[:-1], lesson.normal_forces(states, 0, 1, dt)
@@ -711,7 +711,7 @@ class Held(NamedTuple):
 
 
 def supports():
-    """The puck and the box, with their theories."""
+    """Return the puck and the box, with their theories."""
     start, speed, R = PUCK
     rate = np.sqrt(STIFFNESS / (HEAVY + LIGHT))
 
