@@ -52,10 +52,11 @@ MAX_PIVOTS = 100             # of solve_lcp, per contact [-]; contacts of bodies
 # ---------------------------------------------------------------------- exactly: all contacts in matrices
 
 def contact_rows(x, contacts):
-    """G (2m, 3n): relative velocities of all contacts from velocities (v_x, v_y, ω) of all bodies, centres x (n, 2).
+    """Return G (2m, 3n), which turns velocities (v_x, v_y, ω) of all bodies into relative velocities of all contacts.
 
     u = G v,     row 2k: n · u of contact k,     row 2k + 1: t · u, with t = (−n_y, n_x)
 
+    x (n, 2) are the centres of the bodies.
     A direction d (n or t) has the entries (d_x, d_y, r_a × d) at body a and −(d_x, d_y, r_b × d) at body b.  All others
     are 0.  r = p − x of that body, and r × d = r_x d_y − r_y d_x.
     *Source:* the relative velocity of lesson 7, for all contacts at once.
@@ -75,7 +76,7 @@ def contact_rows(x, contacts):
 
 
 def delassus_matrix(G, w):
-    """A [1/kg] (rows, rows): entry (r, s) is the relative velocity along row r due to a unit impulse along row s.
+    """Return A (rows, rows) [1/kg]: entry (r, s) is the relative velocity along row r due to a unit impulse in row s.
 
     A = G M⁻¹ Gᵀ          w = M⁻¹, the diagonal (3n,)
 
@@ -88,7 +89,7 @@ def delassus_matrix(G, w):
 
 
 def complementarity_residual(A, b, lam):
-    """How far [m/s] normal impulses λ (m,) are from the law 0 ≤ λ ⊥ A λ + b ≥ 0.
+    """Return how far [m/s] normal impulses λ (m,) are from the law 0 ≤ λ ⊥ A λ + b ≥ 0.
 
     largest |min(A_kk λ_k, (A λ + b)_k)|          A_kk turns the impulse into a velocity; m ≥ 1
 
@@ -101,7 +102,7 @@ def complementarity_residual(A, b, lam):
 
 
 def gauss_seidel_sweep(A, b, lam, omega):
-    """Impulses (m,) after one sweep of projected Gauss–Seidel over all contacts in order, with relaxation ω.
+    """Return the impulses (m,) after a sweep of projected Gauss–Seidel over all contacts in order, with relaxation ω.
 
     λ_k ← max(0, λ_k − ω u_k/A_kk),      u_k = Σ_l A_kl λ_l + b_k  with the newest λ_l
 
@@ -118,7 +119,7 @@ def gauss_seidel_sweep(A, b, lam, omega):
 
 
 def stack_contraction(n):
-    """ρ of Gauss–Seidel on a frictionless stack of n equal bodies on the ground:  cos²(π/2n).
+    """Return ρ of Gauss–Seidel on a frictionless stack of n equal bodies on the ground:  cos²(π/2n).
 
     Jacobi's iteration on the A of this stack has the eigenvalues cos((2j − 1) π/2n), and Gauss–Seidel has their
     squares.
@@ -130,7 +131,7 @@ def stack_contraction(n):
 
 
 def mass_ratio_contraction(r):
-    """ρ of Gauss–Seidel for a body of mass r m on one of mass m, which is on the ground.  No friction.
+    """Return ρ of Gauss–Seidel for a body of mass r m on one of mass m, which is on the ground.  No friction.
 
     A = [[1, −1], [−1, 1 + 1/r]]/m: contact 0 is between the ground and the lower body, contact 1 between the bodies.
     *Find* ρ, the factor by which one sweep (gauss_seidel_sweep with ω = 1) shrinks the error of both λ.  Both contacts
@@ -144,7 +145,7 @@ def mass_ratio_contraction(r):
 
 
 def best_relaxation(rho):
-    """(ω, ρ_ω): the relaxation that converges fastest where Gauss–Seidel contracts by ρ, and its contraction factor.
+    """Return (ω, ρ_ω): the relaxation that converges fastest where Gauss–Seidel contracts by ρ, and its own factor.
 
     ω = 2/(1 + √(1 − ρ)),      ρ_ω = ω − 1          for chains: each contact shares bodies with two others at most
 
@@ -158,7 +159,7 @@ def best_relaxation(rho):
 
 
 def solve_lcp(A, b):
-    """λ (m,) with 0 ≤ λ ⊥ A λ + b ≥ 0, exact but for round-off: Murty's least-index method.
+    """Return λ (m,) with 0 ≤ λ ⊥ A λ + b ≥ 0, exact but for round-off: Murty's least-index method.
 
     Guess which contacts push, at first none.  Then repeat, at most MAX_PIVOTS m times:
         Find λ with (A λ + b)_k = 0 for the contacts that push and λ_k = 0 for the others.  Use solve of lesson 1, with
@@ -195,7 +196,7 @@ def solve_lcp(A, b):
 
 
 def cone_residual(A, b, J, mu):
-    """How far [m/s] impulses J (2m,) are from the laws of Signorini and Coulomb at all contacts, with friction mu (m,).
+    """Return how far [m/s] impulses J (2m,) are from the laws of Signorini and Coulomb at all contacts; μ is mu (m,).
 
     With u = A J + b, each contact by itself would change its impulse to
         J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, but at most limit in size
@@ -218,7 +219,7 @@ def cone_residual(A, b, J, mu):
 
 
 def cone_sweep(A, b, J, mu):
-    """Impulses (2m,) after one sweep of projected Gauss–Seidel with friction: at each contact J_n, then J_t.
+    """Return the impulses (2m,) after a sweep of projected Gauss–Seidel with friction: at each contact J_n, then J_t.
 
     J_n ← max(0, J_n − u_n/k_n),      J_t ← J_t − u_t/k_t, but at most μ J_n in size (0 where J_n = 0)
 
@@ -238,8 +239,9 @@ def cone_sweep(A, b, J, mu):
 
 
 def solve_contacts(A, b, mu):
-    """Given.  J (2m,) by cone_sweep from 0 until cone_residual is at most CONVERGED times the largest (|A||J| + |b|)_k.
+    """Given.  Return the impulses J (2m,) of the contacts, by cone_sweep from 0.
 
+    It ends when cone_residual is at most CONVERGED times the largest (|A||J| + |b|)_k.
     Raises what check_friction_problem(A, b, mu) raises, and Diverged with the residual after MAX_SWEEPS sweeps, which
     are too few for a mass ratio of a million, or earlier where 1,000 sweeps do not reduce it.
     """
@@ -259,7 +261,7 @@ def solve_contacts(A, b, mu):
 
 
 def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
-    """(F (m, 2) [N], a (n, 3) [m/s², rad/s²]): forces (F_n, F_t) at the contacts of bodies at rest, and accelerations.
+    """Return (F (m, 2) [N], a (n, 3) [m/s², rad/s²]): contact forces (F_n, F_t) of bodies at rest, and accelerations.
 
     At rest the laws hold for forces and accelerations as they do for impulses and velocities: solve_contacts(A, b, μ)
     gives F from  b = G M⁻¹ load,  and then  a = M⁻¹ (load + Gᵀ F).  inverse_masses(inv_mass, inv_inertia) is M⁻¹ (3n,).
@@ -281,7 +283,7 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
 # ---------------------------------------------------------------------- quickly: piles in arrays
 
 def soft_contact(gap, hertz, zeta, dt):
-    """(aim [m/s], give [-]) of a contact that is a damped spring: its law is u_n = aim − give k_n J_n.
+    """Return (aim [m/s], give [-]) of a contact that is a damped spring: its law is u_n = aim − give k_n J_n.
 
     gap > 0:     aim is the velocity that just closes the gap in this step, and give = 0.
     gap ≤ 0:     *Find* aim and give of an implicit Euler step of a damped spring.  It pushes with the impulse
@@ -303,7 +305,7 @@ def soft_contact(gap, hertz, zeta, dt):
 
 
 def friction_disc(J, limit):
-    """The point of the disc |J| ≤ limit that is nearest to J: J itself, or limit J/|J|.
+    """Return the point of the disc |J| ≤ limit that is nearest to J: J itself, or limit J/|J|.
 
     J and the answer are tuples of three numbers; limit is a number.
 
@@ -316,7 +318,7 @@ def friction_disc(J, limit):
 
 
 def kept_impulses(contacts, old, J_old, near):
-    """J (m, d) [N s] to begin a step with (warm start): each contact takes over the impulse of an old one.
+    """Return J (m, d) [N s] to begin a step with (warm start): each contact takes over the impulse of an old one.
 
     The old one is the nearest contact of `old` with the same a and the same b, if it is closer than `near` [m]; else J
     is 0.  Normals may have turned, so copy the vector.  Two new contacts may take over the same old impulse.
@@ -342,8 +344,9 @@ def kept_impulses(contacts, old, J_old, near):
 
 
 def has_left_margin(low, high, wide_low, wide_high):
-    """True if the box of any body, corners low and high (n, d), sticks out of its widened box, wide_low and wide_high.
+    """Return whether the box of any body, corners low and high (n, d), sticks out of its widened box.
 
+    wide_low and wide_high are the corners of the widened boxes.
     While this is False, only pairs that the last search found (with the widened boxes) can touch.  Return True for NaN.
     """
     ### BEGIN SOLUTION 9.15
@@ -356,7 +359,7 @@ def has_left_margin(low, high, wide_low, wide_high):
 
 
 def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
-    """(v, omega, J) in the plane after one visit to every contact, each as if it were alone: a sweep without a matrix.
+    """Return (v, omega, J) in the plane after a sweep without a matrix: each contact is visited as if it were alone.
 
     u = velocity of a's contact point less that of b's: (v_x − ω r_y, v_y + ω r_x) with r = arms.r_a[k], arms.r_b[k]
     J_n ← max(0, J_n + (aim − u_n − give k_n J_n)/(k_n (1 + give)))           along n;   k_n = arms.k_n[k]
@@ -394,7 +397,7 @@ def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
 
 
 def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia, mu):
-    """Given.  The same in space: J_t in the disc of friction, inv_inertia (n + p, 3, 3) in the world."""
+    """Given.  Return the same in space: J_t in the disc of friction, inv_inertia (n + p, 3, 3) in the world."""
     v, omega, J = float_copy(v), float_copy(omega), float_copy(J)
     for k in range(contacts.a.size):
         a, b, k_n, old = contacts.a[k], contacts.b[k], arms.k_n[k], row(J, k)

@@ -37,7 +37,7 @@ EDGE = 1e-12                 # part of the reach by which a target may be outsid
 # ---------------------------------------------------------------------------------------------- in the plane
 
 def joint_positions(theta, lengths):
-    """x (n + 1, 2): positions of all joints of a planar chain from the base at (0, 0), and of its end as the last.
+    """Return x (n + 1, 2): positions of all joints of a planar chain from the base at (0, 0), and last of its end.
 
     x_k+1 = x_k + l_k (cos φ_k, sin φ_k),      φ_k = θ_1 + … + θ_k
 
@@ -54,7 +54,7 @@ def joint_positions(theta, lengths):
 
 
 def jacobian_2d(x):
-    """J (2, n) [m/rad]: column k is the velocity of the end when only joint k turns, at 1 rad/s.
+    """Return J (2, n) [m/rad]: column k is the velocity of the end when only joint k turns, at 1 rad/s.
 
     column k = (−r_y, r_x),      r = x_n − x_k          x (n + 1, 2): the joints and the end, anywhere in the plane
 
@@ -70,7 +70,7 @@ def jacobian_2d(x):
 
 
 def velocity_ellipse(J):
-    """(σ₁, σ₂, angle): the half axes [m], σ₁ ≥ σ₂, of the ellipse {J θ̇ : |θ̇| = 1}, and the angle of the longer one.
+    """Return (σ₁, σ₂, angle) of the ellipse {J θ̇ : |θ̇| = 1}: half axes [m], σ₁ ≥ σ₂, and angle of the longer one.
 
     σ₁² = ½(a + c) + √(¼(a − c)² + b²),      σ₂ = D/σ₁,      angle = ½ atan2(2b, a − c),      J Jᵀ = [[a, b], [b, c]]
     D² = Σ_i<k (J_0i J_1k − J_1i J_0k)²          the determinant of J Jᵀ, as a sum without cancellation
@@ -88,7 +88,7 @@ def velocity_ellipse(J):
 
 
 def solve_2r(target, lengths, elbow):
-    """θ (2,), both from −π to π, with which the first two links end at the target (2,); elbow = ±1 is the sign of θ₂.
+    """Return θ (2,), both from −π to π, with which the first two links end at the target (2,).
 
     θ₂ = elbow · 2 atan2(√((b − r)(b + r)), √((r − a)(r + a))),      r = |target|,  a = |l₁ − l₂|,  b = l₁ + l₂
     θ₁ = atan2(y, x) − atan2(l₂ sin θ₂, l₁ + l₂ cos θ₂), wrapped(θ₁) if that is outside
@@ -96,7 +96,8 @@ def solve_2r(target, lengths, elbow):
     This is cos θ₂ = (r² − l₁² − l₂²)/(2 l₁ l₂).  Half the angle and the products keep all digits of θ₂ at the edges of
     the reach, where the arccosine and b² − r² lose half of them.  Take the root of a negative number as 0.
     Raises BadInput("distance of the target [m]", r, remedy) where r is above b or below a by more than EDGE b, which is
-    round-off.  lengths may have more entries.  *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
+    round-off.  elbow = ±1 is the sign of θ₂.  lengths may have more entries.
+    *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
     """
     ### BEGIN SOLUTION 11.4
     most, least = lengths[0] + lengths[1], np.abs(lengths[0] - lengths[1])
@@ -111,7 +112,7 @@ def solve_2r(target, lengths, elbow):
 
 
 def solve_3r(target, lengths, elbow):
-    """θ (3,), all from −π to π, with which three links end at (x, y) with the direction φ: target = (x, y, φ).
+    """Return θ (3,), all from −π to π, with which three links end at (x, y) with the direction φ: target = (x, y, φ).
 
     The last joint must be at (x, y) − l₃ (cos φ, sin φ).  solve_2r brings it there; then θ₃ = φ − θ₁ − θ₂, wrapped.
     φ may be any number of turns away from θ₁ + θ₂ + θ₃.  Raises what solve_2r raises.
@@ -128,8 +129,7 @@ def solve_3r(target, lengths, elbow):
 # ---------------------------------------------------------------------------------------------- in space
 
 def joint_frames(theta, axes, offsets):
-    """(x (n + 1, 3), a (n, 3), q (4,)): positions of joints and end, axes of the joints in the world, and the
-    orientation of the last link.
+    """Return (x (n + 1, 3), a (n, 3), q (4,)): joints and end, axes in the world, orientation of the last link.
 
     From q = (1, 0, 0, 0) and x_0 = 0, joint after joint:
         a_k = q applied to axes_k          the axis, which its own joint does not turn
@@ -152,7 +152,7 @@ def joint_frames(theta, axes, offsets):
 
 
 def jacobian_3d(x, a):
-    """J (6, n): column k is (velocity of the end, angular velocity of the last link) when only joint k turns.
+    """Return J (6, n): column k is (velocity of the end, angular velocity of the last link) when only joint k turns.
 
     column k = (a_k × (x_n − x_k), a_k)   for 1 rad/s       x (n + 1, 3) and a (n, 3) as joint_frames gives them
 
@@ -170,11 +170,12 @@ def jacobian_3d(x, a):
 
 
 def rotation_error(q, q_target):
-    """Rotation vector (3,) [rad], at most π long, that turns the orientation q into q_target:  exp(φ) ∘ q = ±q_target.
+    """Return the rotation vector φ (3,) [rad] that turns the orientation q into q_target:  exp(φ) ∘ q = ±q_target.
 
     d = q_target ∘ q̄ = (w, 𝐝);  where w < 0 take −d, which is the same rotation by the shorter way
     φ = 2 atan2(|𝐝|, w) 𝐝/|𝐝|,      2𝐝 where |𝐝| = 0          q̄ = (w, −x, −y, −z)
 
+    φ is at most π long.
     *Source:* Lynch and Park 2017, chapter 3: the logarithm of a rotation.
     """
     ### BEGIN SOLUTION 11.8
@@ -190,14 +191,17 @@ def rotation_error(q, q_target):
 # ---------------------------------------------------------------------------------------------- tasks
 
 def reach_2d(theta, target, arm):
-    """Given.  Task: the end of an Arm2D at the target (2,)."""
+    """Given.  Return (e, J) for the end of an Arm2D at the target (2,)."""
     check_shape("the target", target, (2,))
     x = joint_positions(theta, arm.lengths)
     return target - x[theta.size], jacobian_2d(x)
 
 
 def pose_2d(theta, target, arm):
-    """Given.  Task: the end of an Arm2D at (x, y) with the direction φ, target = (x, y, φ); 1 rad counts as 1 m."""
+    """Given.  Return (e, J) for the end of an Arm2D at (x, y) with the direction φ: target = (x, y, φ).
+
+    1 rad counts as 1 m.
+    """
     check_shape("the target", target, (3,))
     x, n, J = joint_positions(theta, arm.lengths), theta.size, np.ones((3, theta.size))
     J[:2] = jacobian_2d(x)
@@ -205,21 +209,21 @@ def pose_2d(theta, target, arm):
 
 
 def reach_3d(theta, target, arm):
-    """Given.  Task: the end of an Arm3D at the target (3,)."""
+    """Given.  Return (e, J) for the end of an Arm3D at the target (3,)."""
     check_shape("the target", target, (3,))
     x, a, _ = joint_frames(theta, arm.axes, arm.offsets)
     return target - x[theta.size], jacobian_3d(x, a)[:3]
 
 
 def pose_3d(theta, target, arm):
-    """Given.  Task: the end of an Arm3D at x with the orientation q, target = (x, q), (7,)."""
+    """Given.  Return (e, J) for the end of an Arm3D at x with the orientation q, target = (x, q), (7,)."""
     check_shape("the target", target, (7,))
     x, a, q = joint_frames(theta, arm.axes, arm.offsets)
     return np.concatenate((target[:3] - x[theta.size], rotation_error(q, target[3:]))), jacobian_3d(x, a)
 
 
 def end_pose(theta, arm):
-    """Given.  (x, q) (7,) of the end of an Arm3D: what pose_3d takes as its target."""
+    """Given.  Return (x, q) (7,) of the end of an Arm3D: what pose_3d takes as its target."""
     x, _, q = joint_frames(theta, arm.axes, arm.offsets)
     return np.concatenate((x[theta.size], q))
 
@@ -227,7 +231,7 @@ def end_pose(theta, arm):
 # ---------------------------------------------------------------------------------------------- methods with a Jacobian
 
 def transpose_step(task, theta, target, arm):
-    """θ + α Jᵀ e:  one step of steepest descent on ½|e|², α = arm.gain.  Limits are not kept.
+    """Return θ + α Jᵀ e:  one step of steepest descent on ½|e|², α = arm.gain.  Limits are not kept.
 
     e (m,) and J (m, n) have all rows of the task, which may be 2, 3, 6 or more.
     Near a target within reach it converges only for α < 2/σ₁².
@@ -240,7 +244,7 @@ def transpose_step(task, theta, target, arm):
 
 
 def pseudo_inverse(J):
-    """J⁺ (n, m): J⁺ e is the shortest of all Δθ for which |J Δθ − e| is smallest.
+    """Return J⁺ (n, m): J⁺ e is the shortest of all Δθ for which |J Δθ − e| is smallest.
 
     J = Σ σ_i u_i v_iᵀ,      J⁺ = Σ v_i u_iᵀ/σ_i over all σ_i > SINGULAR σ₁          0 for J = 0
 
@@ -260,13 +264,13 @@ def pseudo_inverse(J):
 
 
 def pseudo_inverse_step(task, theta, target, arm):
-    """Given.  θ + J⁺ e:  Newton's method, which squares the error near a target, and jumps where σ₂ is small."""
+    """Given.  Return θ + J⁺ e:  Newton's method, which squares the error near a target, and jumps where σ₂ is small."""
     e, J = task(theta, target, arm)
     return theta + pseudo_inverse(J) @ e
 
 
 def damped_step(task, theta, target, arm):
-    """θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
+    """Return θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
 
     No step is longer than |e|/(2λ).  Where J Jᵀ has no inverse, λ must be above 0.  Limits are not kept.
     Given are row_products(J) for J Jᵀ, solve_symmetric(A, e) for A⁻¹ e, and sum_of_rows(J, y) for Jᵀ y: compiled, they
@@ -283,7 +287,7 @@ def damped_step(task, theta, target, arm):
 
 
 def contraction_factors(sigma, gain, damping):
-    """(transpose, damped): factors by which one iteration multiplies a small error along u_i, for each σ_i of J.
+    """Return (transpose, damped): factors by which an iteration multiplies a small error along u_i, for each σ_i of J.
 
     An iteration is θ ← θ + P e.  Near a target in reach it turns e into (1 − J P) e, to first order:
         transpose_step:  P = α Jᵀ          damped_step:  P = Jᵀ (J Jᵀ + λ² 1)⁻¹          J = Σ σ_i u_i v_iᵀ
@@ -303,8 +307,9 @@ def contraction_factors(sigma, gain, damping):
 # ---------------------------------------------------------------------------------------------- methods without
 
 def ccd_step(task, theta, target, arm):
-    """One sweep of cyclic coordinate descent in the plane, from the last joint to the first: each turns so that the
-    end points at the target (2,), as seen from that joint.
+    """Return θ after one sweep of cyclic coordinate descent in the plane, from the last joint to the first.
+
+    Each joint turns so that the end points at the target (2,), as seen from that joint.
 
     Δ_k = atan2(r × s, r · s),      r = end − x_k,      s = target − x_k,      r × s = r_x s_y − r_y s_x
     θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by the change of θ_k.
@@ -327,7 +332,7 @@ def ccd_step(task, theta, target, arm):
 
 
 def point_at(p, towards, length):
-    """Given.  The point (d,) at this distance [m] from p towards another one; along axis 0 if the two coincide."""
+    """Given.  Return the point (d,) at this distance [m] from p towards another; along axis 0 if the two coincide."""
     r = towards - p
     size = np.sqrt(np.sum(r * r))
     if size == 0.0:
@@ -337,7 +342,7 @@ def point_at(p, towards, length):
 
 
 def fabrik_sweep(x, target, lengths):
-    """Positions (n + 1, d) of joints and end after one sweep of projections there and back, in the plane or in space.
+    """Return x (n + 1, d) of joints and end after a sweep of projections there and back, in the plane or in space.
 
     Back: the end goes to the target.  Then each joint, from the last to the first, moves along the line to the joint
         after it until their distance is lengths_k: x_k ← point_at(x_k+1, x_k, lengths_k), with the new x_k+1.
@@ -359,7 +364,7 @@ def fabrik_sweep(x, target, lengths):
 
 
 def angles_of(x):
-    """Given.  θ (n,) of joints at x (n + 1, 2): the inverse of joint_positions."""
+    """Given.  Return θ (n,) of joints at x (n + 1, 2): the inverse of joint_positions."""
     theta, before = np.empty(x.shape[0] - 1), 0.0
     for k in range(theta.size):
         phi = np.arctan2(x[k + 1, 1] - x[k, 1], x[k + 1, 0] - x[k, 0])
@@ -368,14 +373,14 @@ def angles_of(x):
 
 
 def fabrik_step(task, theta, target, arm):
-    """Given.  fabrik_sweep as a method for an Arm2D; limits are not kept."""
+    """Given.  Return θ after a fabrik_sweep, as a method for an Arm2D; limits are not kept."""
     return angles_of(fabrik_sweep(joint_positions(theta, arm.lengths), target, arm.lengths))
 
 
 # ---------------------------------------------------------------------------------------------- limits and redundancy
 
 def limited_step(task, theta, target, arm):
-    """A damped step between the limits arm.low and arm.high (n,).
+    """Return θ after a damped step between the limits arm.low and arm.high (n,).
 
     A joint is blocked if it is at a limit, or beyond it, and (Jᵀ e)_k points further out.
     J' is J with zeros in the columns of blocked joints.
@@ -397,7 +402,7 @@ def limited_step(task, theta, target, arm):
 
 
 def null_space_step(task, theta, target, arm):
-    """θ + Δθ:  go to the target, and use the remaining freedom to approach the angles arm.rest (n,).
+    """Return θ + Δθ:  go to the target, and use the remaining freedom to approach the angles arm.rest (n,).
 
     z = κ (rest − θ) is the desired change, κ = arm.pull.  *Find* Δθ with pseudo_inverse: of all Δθ for
     which |J Δθ − e| is smallest, the one that is nearest to z.  Limits are not kept.
@@ -415,7 +420,7 @@ def null_space_step(task, theta, target, arm):
 # ---------------------------------------------------------------------------------------------- loops
 
 def advance_reach(step, task, theta, target, iterations, arm):
-    """Given.  θ after so many iterations.  Raises BadInput for invalid input, Diverged if θ is no longer finite."""
+    """Given.  Return θ after so many iterations.  Raises BadInput for invalid input, Diverged if θ is not finite."""
     check_record(arm, theta)
     theta, target, _, iterations = checked_reach(theta, target, 0.0, iterations, arm.low.size)
     theta = theta.copy()
@@ -427,7 +432,7 @@ def advance_reach(step, task, theta, target, iterations, arm):
 
 
 def reach_trajectory(step, task, theta, target, iterations, arm):
-    """Given.  The angles (iterations + 1, n) before the first iteration and after each."""
+    """Given.  Return the angles (iterations + 1, n) before the first iteration and after each."""
     check_record(arm, theta)
     theta, target, _, iterations = checked_reach(theta, target, 0.0, iterations, arm.low.size)
     thetas = np.empty((iterations + 1, theta.size))
@@ -438,7 +443,7 @@ def reach_trajectory(step, task, theta, target, iterations, arm):
 
 
 def solve_reach(step, task, theta, target, tolerance, most, arm):
-    """Given.  (θ, |e|, iterations) when |e| is at most the tolerance, or after `most` iterations.
+    """Given.  Return (θ, |e|, iterations) when |e| is at most the tolerance, or after `most` iterations.
 
     A target out of reach is not an error: |e| is the distance that remains.  Raises what advance_reach raises.
     """
@@ -455,7 +460,7 @@ def solve_reach(step, task, theta, target, tolerance, most, arm):
 
 
 def solve_targets(step, task, theta, targets, tolerance, most, arm):
-    """Given.  (θ (m, n), |e| (m,), iterations (m,)) for each of the targets (m, …), all from the same θ (n,)."""
+    """Given.  Return (θ (m, n), |e| (m,), iterations (m,)) for each of the targets (m, …), all from the same θ (n,)."""
     check_record(arm, theta)
     theta, targets = finite_array("the angles θ [rad]", theta), finite_array("the targets", targets)
     check_array("the targets", targets, 2)

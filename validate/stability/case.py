@@ -44,6 +44,31 @@ class Checks(list):
         """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
+    def count(self, claim, quantity, done, of, saw):
+        """Add a Finding that so many did something, of so many that should; `saw` continues "3 of 3 …"."""
+        self(claim, f"{quantity} [of {of}]", law=of, found=done, within=0.0, saw=f"{done} of {of} {saw}")
+
+    def laws(self, lesson, laws, *, seed, times):
+        """Add a Finding for each Law: it holds in so many random cases, which it draws from a seed of its own."""
+        for number, law in enumerate(laws, 100 * seed):
+            rng, worst = np.random.default_rng(number), Worst()
+            for _ in range(times):
+                worst.note(law, *law.compare(lesson, rng))
+            self.agree(law.claim, law.quantity, worst[law], law.within)
+
+
+class Law(NamedTuple):
+    """A statement about one random case after another: the function that follows @random_law."""
+    claim: str               # as in Finding
+    quantity: str
+    within: float
+    compare: Callable        # (lesson, rng) → (got, truth) of one case, as in Worst.note
+
+
+def random_law(claim, quantity, within):
+    """Make a Law of a function (lesson, rng) → (got, truth), for Checks.laws."""
+    return lambda compare: Law(claim, quantity, within, compare)
+
 
 class Picture(NamedTuple):
     """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS; or maps in their place."""
@@ -97,6 +122,11 @@ def finding(*, claim, quantity, predicted, measured, tolerance, observation):
 def series(label, xs, ys, style):
     """Make one curve of a Picture of plain floats."""
     return (label, [float(x) for x in xs], [float(y) for y in ys], style)
+
+
+def log_series(label, xs, ys, style):
+    """Make one curve of a Picture whose axes are both logarithms to base 10."""
+    return series(label, np.log10(xs), np.log10(ys), style)
 
 
 # ---------------------------------------------------------------------------------------------- experiments
@@ -162,6 +192,13 @@ class Worst(dict):
         got, truth = flat(got), flat(truth)
         with np.errstate(invalid="ignore"):                # ∞ − ∞, which is not used
             self.keep(law, np.max(np.abs(np.where(got == truth, 0.0, got - truth))))
+
+
+def relative(*pairs):
+    """Return (got, truth) of all pairs (got, truth) together, each over the largest number of its truth."""
+    sizes = [np.max(np.abs(flat(truth))) for _, truth in pairs]
+    got, truths = zip(*pairs, strict=True)
+    return tuple(tuple(flat(part) / size for part, size in zip(parts, sizes, strict=True)) for parts in (got, truths))
 
 
 def flat(numbers):
