@@ -44,6 +44,17 @@ class Checks(list):
         """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
+    def laws(self, lesson, laws, *, seed, times):
+        """Add a Finding for each law: it holds in so many random cases, which it draws from a seed of its own.
+
+        laws   (law, claim, quantity, within) of each; law(lesson, rng) → (got, truth) of one case, as in Worst.note
+        """
+        for number, (law, claim, quantity, within) in enumerate(laws, 100 * seed):
+            rng, worst = np.random.default_rng(number), Worst()
+            for _ in range(times):
+                worst.note(law, *law(lesson, rng))
+            self.agree(claim, quantity, worst[law], within)
+
 
 class Picture(NamedTuple):
     """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS; or maps in their place."""
