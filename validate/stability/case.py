@@ -45,15 +45,25 @@ class Checks(list):
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
     def laws(self, lesson, laws, *, seed, times):
-        """Add a Finding for each law: it holds in so many random cases, which it draws from a seed of its own.
-
-        laws   (law, claim, quantity, within) of each; law(lesson, rng) → (got, truth) of one case, as in Worst.note
-        """
-        for number, (law, claim, quantity, within) in enumerate(laws, 100 * seed):
+        """Add a Finding for each Law: it holds in so many random cases, which it draws from a seed of its own."""
+        for number, law in enumerate(laws, 100 * seed):
             rng, worst = np.random.default_rng(number), Worst()
             for _ in range(times):
-                worst.note(law, *law(lesson, rng))
-            self.agree(claim, quantity, worst[law], within)
+                worst.note(law, *law.compare(lesson, rng))
+            self.agree(law.claim, law.quantity, worst[law], law.within)
+
+
+class Law(NamedTuple):
+    """A statement about one random case after another: the function that follows @random_law."""
+    claim: str               # as in Finding
+    quantity: str
+    within: float
+    compare: Callable        # (lesson, rng) → (got, truth) of one case, as in Worst.note
+
+
+def random_law(claim, quantity, within):
+    """Make a Law of a function (lesson, rng) → (got, truth), for Checks.laws."""
+    return lambda compare: Law(claim, quantity, within, compare)
 
 
 class Picture(NamedTuple):
