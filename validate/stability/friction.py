@@ -15,7 +15,7 @@ from validate.engines.friction import bullet_block, pymunk_block
 from validate.methods import CONTACT, EVENT, GRIPPING, PYRAMID, SLIDING
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
 from validate.reference.schemes import EULER, step_of
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, refuses, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, random_law, refuses, series
 
 from ..products import PYBULLET, PYMUNK
 
@@ -419,11 +419,15 @@ def nearest_in_disc(y, radius):
     return y if length(y) <= radius else radius / length(y) * y
 
 
+@random_law("A support pushes against a load, and does not hold what is pulled away.",
+            "largest error of the normal force [N]", 1e-10)
 def normal_forces(lesson, rng):
     c = random_contact(rng)
     return lesson.normal_force(c.slip - c.load * c.n, c.n), c.F_N
 
 
+@random_law("Static friction holds to μ_s F_N, and equals that beyond.",
+            "largest error of the static friction [N]", 1e-10)
 def static_forces(lesson, rng):
     c = random_contact(rng)
     pull = rng.choice(AROUND) * c.mu_s * abs(c.load)
@@ -431,18 +435,24 @@ def static_forces(lesson, rng):
     return F, -min(pull, c.mu_s * c.F_N) * c.t_1
 
 
+@random_law("Kinetic friction is μ_k F_N against the slip, whatever its speed.",
+            "largest error of the kinetic friction [N]", 1e-10)
 def kinetic_forces(lesson, rng):
     c = random_contact(rng)
     F = lesson.kinetic_friction(c.t_1 - c.load * c.n, c.slip + rng.normal() * c.n, c.n, c.mu_k)
     return F, -c.mu_k * c.F_N * c.slip / length(c.slip)
 
 
+@random_law("The impulse of the cone is the nearest to what stops the slip.",
+            "largest error of the impulse of the cone [N s]", 1e-10)
 def impulses_of_the_cone(lesson, rng):
     c, j_n = random_contact(rng), rng.uniform(0.5, 2.0)
     mu = rng.choice(AROUND) * c.m * length(c.slip) / j_n
     return lesson.friction_impulse(c.slip, c.m, j_n, mu), nearest_in_disc(-c.m * c.slip, mu * j_n)
 
 
+@random_law("The impulse of the pyramid is the nearest along each side.",
+            "largest error of the impulse of the pyramid [N s]", 1e-10)
 def impulses_of_the_pyramid(lesson, rng):
     c, j_n = random_contact(rng), rng.uniform(0.5, 2.0)
     mu = rng.choice(AROUND) * c.m * length(c.slip) / j_n
@@ -450,6 +460,8 @@ def impulses_of_the_pyramid(lesson, rng):
     return lesson.pyramid_impulse(c.slip, c.m, j_n, mu, c.t_1, c.t_2), side_1 * c.t_1 + side_2 * c.t_2
 
 
+@random_law("A slope holds below tan θ = μ_s; above, it pulls with g (sin θ − μ_k cos θ).",
+            "largest error of the acceleration [m/s²]", 1e-10)
 def slopes(lesson, rng):
     c, g, steepness = random_contact(rng), rng.uniform(1.0, 20.0), rng.choice((0.99, 1.01))
     theta = np.arctan(steepness * c.mu_s)
@@ -457,6 +469,8 @@ def slopes(lesson, rng):
     return lesson.incline_acceleration(theta, c.mu_s, c.mu_k, g), pull
 
 
+@random_law("A block holds by μ_s, slides by μ_k, and is free where it is lifted.",
+            "largest error of the state of the block [m, m/s]", 1e-10)
 def blocks(lesson, rng):
     """A block is pulled along a plane on which gravity presses it, or from which it lifts it."""
     c, dt, moving = random_contact(rng), rng.uniform(0.01, 0.1), rng.choice((0.0, 1.0))
@@ -468,6 +482,8 @@ def blocks(lesson, rng):
     return lesson.sliding_step(lesson.driven_acceleration, 0.0, c.t_2, start, dt, p), (c.t_2 + dt * end, end)
 
 
+@random_law("A block on a pyramid slides by μ_k along each side.",
+            "largest error of the state of the sliding block [m, m/s]", 1e-10)
 def blocks_on_a_pyramid(lesson, rng):
     """A block slides over a level floor, under a force that changes."""
     c, dt, t = random_contact(rng), rng.uniform(0.01, 0.1), rng.uniform()
@@ -480,6 +496,8 @@ def blocks_on_a_pyramid(lesson, rng):
     return lesson.pyramid_step(lesson.driven_acceleration, t, x, v, dt, p), (x + dt * end, end)
 
 
+@random_law("The normal of a bowl and of a trough is the derivative of the distance.",
+            "largest error of the distance and normal [m, -]", 1e-10)
 def hollows(lesson, rng):
     """A bowl, or a trough along a slanting axis: the distance to its wall and the derivative of that."""
     centre, x, radius = rng.normal(size=3), rng.normal(size=3), rng.uniform(3.0, 5.0)
@@ -505,6 +523,8 @@ def random_hit(rng):
     return c, c.slip - fall * c.n, fall, p, rng.uniform(0.01, 0.1)
 
 
+@random_law("A particle rebounds by e, and slips by what μ (1 + e) leaves.",
+            "largest error of the velocity of the particle [m/s]", 1e-10)
 def rebounds(lesson, rng):
     """Friction has the whole normal impulse, rebound included."""
     c, v, fall, p, dt = random_hit(rng)
@@ -514,6 +534,7 @@ def rebounds(lesson, rng):
     return (v + J / c.m, stepped), (after, after)
 
 
+@random_law("The position slips back by μ times its depth at most.", "largest error of the position [m]", 1e-10)
 def shifts(lesson, rng):
     c, v, fall, p, dt = random_hit(rng)
     shift = nearest_in_disc(-dt * c.slip, p.mu * dt * fall)
@@ -536,6 +557,8 @@ def particle_after(force, p, friction_of_positions, t, x, v, dt, steps):
     return x, v
 
 
+@random_law("Steps of a particle are one after the other, each under the force of its beginning.",
+            "largest error of the state of the particle [m, m/s]", 1e-10)
 def two_steps(lesson, rng):
     """Two steps under a force that changes: inside on the way in, inside on the way out, or outside."""
     c, dt, t = random_contact(rng), rng.uniform(0.01, 0.1), rng.uniform()
@@ -549,31 +572,12 @@ def two_steps(lesson, rng):
     return tuple(got), tuple(particle_after(force, p, of_positions, t, x, v, dt, 2) for of_positions in (0.0, 1.0))
 
 
-LAWS_OF_FRICTION = (
-    (normal_forces, "A support pushes against a load, and does not hold what is pulled away.", "normal force [N]"),
-    (static_forces, "Static friction holds to μ_s F_N, and equals that beyond.", "static friction [N]"),
-    (kinetic_forces, "Kinetic friction is μ_k F_N against the slip, whatever its speed.", "kinetic friction [N]"),
-    (impulses_of_the_cone, "The impulse of the cone is the nearest to what stops the slip.",
-     "impulse of the cone [N s]"),
-    (impulses_of_the_pyramid, "The impulse of the pyramid is the nearest along each side.",
-     "impulse of the pyramid [N s]"),
-    (slopes, "A slope holds below tan θ = μ_s; above, it pulls with g (sin θ − μ_k cos θ).", "acceleration [m/s²]"),
-    (blocks, "A block holds by μ_s, slides by μ_k, and is free where it is lifted.", "state of the block [m, m/s]"),
-    (blocks_on_a_pyramid, "A block on a pyramid slides by μ_k along each side.", "state of the sliding block [m, m/s]"),
-    (hollows, "The normal of a bowl and of a trough is the derivative of the distance.",
-     "distance and normal [m, -]"),
-    (rebounds, "A particle rebounds by e, and slips by what μ (1 + e) leaves.", "velocity of the particle [m/s]"),
-    (two_steps, "Steps of a particle are one after the other, each under the force of its beginning.",
-     "state of the particle [m, m/s]"),
-    (shifts, "The position slips back by μ times its depth at most.", "position [m]"),
-)
-
-
 @case("laws-of-friction", "Laws of friction", compiled=False)
 def laws_of_friction(lesson, check):
     """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
-    check.laws(lesson, [(law, claim, f"largest error of the {quantity}", 1e-10)
-                        for law, claim, quantity in LAWS_OF_FRICTION], seed=31, times=TRIED)
+    check.laws(lesson, (normal_forces, static_forces, kinetic_forces, impulses_of_the_cone, impulses_of_the_pyramid,
+                        slopes, blocks, blocks_on_a_pyramid, hollows, rebounds, two_steps, shifts),
+               seed=31, times=TRIED)
 
 
 # ---------------------------------------------------------------------------------------------- stops and starts
@@ -589,6 +593,8 @@ def block_at(lesson, c, pull, drive=(0.0, 0.0, 0.0), omega=1.0):
     return lesson.make_block(c.n, c.mu_s, c.mu_k, pull * c.t_1 - c.load * c.n, drive, omega)
 
 
+@random_law("Under constant forces a block stops after v/(μ_k a_n − a_t), completely.",
+            "time, place and velocity of a stop: largest error [s, m, m/s]", 1e-9)
 def stops(lesson, rng):
     """A step of `share` of the time to the stop, at a constant deceleration."""
     c, speed, pull = sliding_contact(rng)
@@ -607,6 +613,8 @@ def random_drive(c, rng):
     return 2.0 * c.mu_s * c.load + c.mu_s * press, press, rng.uniform(1.0, 3.0)
 
 
+@random_law("A block breaks away where the force passes μ_s a_n, to the side of the force.",
+            "time of a start: largest error [s]", 1e-9)
 def starts(lesson, rng):
     """A block at rest from a quarter of a period on, where the drive is zero."""
     c, _, _ = sliding_contact(rng)
@@ -618,6 +626,8 @@ def starts(lesson, rng):
     return (tau, x, side), (np.pi / 6.0 / omega, c.n, -sign * c.t_1)
 
 
+@random_law("Between events its motion is that of the midpoint rule.",
+            "state after a step: largest error [m, m/s]", 1e-9)
 def midpoint_steps(lesson, rng):
     c, speed, _ = sliding_contact(rng)
     along, press, omega = random_drive(c, rng)
@@ -628,6 +638,8 @@ def midpoint_steps(lesson, rng):
     return got, (dt * (speed + 0.5 * dt * force(t)) * c.t_1, (speed + dt * force(t + 0.5 * dt)) * c.t_1)
 
 
+@random_law("A block that static friction does not hold slides back at once, in a slip of its own.",
+            "times of slips: largest error [s]", 1e-9)
 def slides_back(lesson, rng):
     """A block that a pull stops and moves back; and one without load and pull, which stays."""
     c, speed, _ = sliding_contact(rng)
@@ -646,12 +658,4 @@ def stops_and_starts(lesson, check):
 
     A force that grows with time bends the speed: the step under kinetic friction is then the midpoint rule.
     """
-    check.laws(lesson, (
-        (stops, "Under constant forces a block stops after v/(μ_k a_n − a_t), completely.",
-         "time, place and velocity of a stop: largest error [s, m, m/s]", 1e-9),
-        (starts, "A block breaks away where the force passes μ_s a_n, to the side of the force.",
-         "time of a start: largest error [s]", 1e-9),
-        (slides_back, "A block that static friction does not hold slides back at once, in a slip of its own.",
-         "times of slips: largest error [s]", 1e-9),
-        (midpoint_steps, "Between events its motion is that of the midpoint rule.",
-         "state after a step: largest error [m, m/s]", 1e-9)), seed=32, times=TRIED // 2)
+    check.laws(lesson, (stops, starts, slides_back, midpoint_steps), seed=32, times=TRIED // 2)

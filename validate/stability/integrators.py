@@ -32,7 +32,7 @@ from validate.methods import (
 )
 from validate.reference import schemes
 from validate.reference.integrators import Planet, adaptive_march, orbit, perihelion
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, jitted, refuse, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, jitted, random_law, refuse, series
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
 STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
@@ -641,6 +641,8 @@ def single_step(method, lesson, rng):
     return getattr(lesson, method.function)(swinging, *state, p), truth
 
 
+@random_law("Many steps are single steps, each at its own time.",
+            "history of Runge–Kutta 4: largest error in three steps [s, m, m/s]", ROUNDED)
 def history(lesson, rng):
     """Compare a history, and the end of a run of many steps, with single steps, each at its own time."""
     p, t, x, v, dt = random_swing(rng)
@@ -655,12 +657,11 @@ def history(lesson, rng):
 @case("one-step", "One step of each method", compiled=False)
 def one_step(lesson, check):
     """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
-    steps = [(partial(single_step, method), f"One step of {method.label} is that of its published coefficients.",
-              f"{method.label}: largest error of a step [m, m/s]", 100.0 * NEWTON if method in IMPLICIT else ROUNDED)
+    steps = [random_law(f"One step of {method.label} is that of its published coefficients.",
+                        f"{method.label}: largest error of a step [m, m/s]",
+                        100.0 * NEWTON if method in IMPLICIT else ROUNDED)(partial(single_step, method))
              for method in (*INTEGRATORS, BLANES_MOAN)]
-    check.laws(lesson, (*steps, (history, "Many steps are single steps, each at its own time.",
-                                 "history of Runge–Kutta 4: largest error in three steps [s, m, m/s]", ROUNDED)),
-               seed=11, times=TRIED)
+    check.laws(lesson, (*steps, history), seed=11, times=TRIED)
 
 
 # ---------------------------------------------------------------------------------------------- adaptive steps
@@ -693,6 +694,8 @@ def counted_by_theory(e):
     return 2.0 * np.pi * np.mean(1.0 / np.sqrt(1.0 - e * np.cos(E))) / SHARE
 
 
+@random_law("A planet at any place of its ellipse moves as by the published rule.",
+            "positions after some revolutions: largest error, over a [-]", 100.0 * ROUNDED)
 def adaptive_run(lesson, rng):
     """Compare a run from any place of an ellipse, anywhere in space, with the published rule in complex numbers."""
     mu, a, e, before, T = rng.uniform((0.5, 0.5, 0.1, 0.0, 1.0), (2.0, 2.0, 0.8, 6.0, 4.0))
@@ -708,9 +711,7 @@ def adaptive_run(lesson, rng):
 @case("adaptive-steps", "Steps that adapt to the distance", compiled=False)
 def adaptive_steps(lesson, check):
     """A revolution takes as many steps as the rule promises, from any place, and a fall ends where the sun is."""
-    check.laws(lesson, [(adaptive_run, "A planet at any place of its ellipse moves as by the published rule.",
-                         "positions after some revolutions: largest error, over a [-]", 100.0 * ROUNDED)],
-               seed=13, times=TRIED // 2)
+    check.laws(lesson, (adaptive_run,), seed=13, times=TRIED // 2)
     counts = [steps_per_revolution(lesson, Planet(e=e)) for e in SHAPES]
     theory, equal = counted_by_theory(SHAPES[-1]), 1e3 * 2.0 * np.pi / SHARE
     check("A revolution with the eccentricity 0.99 takes ∮(1 − e cos E)^(−1/2) dE/share steps.",
@@ -736,28 +737,29 @@ def adaptive_steps(lesson, check):
 
 # ---------------------------------------------------------------------------------------------- measures of a method
 
+@random_law("The matrix of a step of Euler is 1 + h J.", "entries of the matrix: largest error [-]", ROUNDED)
 def matrix_of_euler(lesson, rng):
-    """Compare the matrix of a step of Euler on an oscillator with 1 + h J."""
     omega, zeta, h = rng.uniform((0.5, 0.1, 0.1), (3.0, 2.0, 1.0))
     truth = np.array([[1.0, h], [-h * omega**2, 1.0 - 2.0 * zeta * omega * h]])
     return lesson.amplification_matrix(lesson.euler_step, omega, zeta, h), truth
 
 
+@random_law("Newton's matrix is 1 − dt ∂a/∂v, along x + dt v.", "Newton's matrix: largest error [-]", 1e-9)
 def matrix_of_newton(lesson, rng):
-    """Compare Newton's matrix with the derivatives of the force, along x + dt v."""
     p, t, x, v, dt = random_swing(rng)
     slope = -dt * p.k * np.cos(x + dt * v) - p.c / np.cosh(v) ** 2
     return lesson.newton_matrix(swinging, t, x, v, dt, p), np.eye(2) - dt * slope
 
 
+@random_law("The spectral radius is the largest absolute eigenvalue.", "spectral radius: largest error [-]", 1e-9)
 def largest_eigenvalue(lesson, rng):
-    """Compare the spectral radius of any matrix with NumPy's eigenvalues."""
     matrix = rng.uniform(-1.0, 1.0, (2, 2))
     return lesson.spectral_radius(matrix), np.max(np.abs(np.linalg.eigvals(matrix)))
 
 
+@random_law("The observed order is the slope of the least squares on logarithmic scales.",
+            "order: largest error [-]", 1e-12)
 def fitted_order(lesson, rng):
-    """Compare the order of scattered errors with the slope of NumPy's least squares."""
     order, scale = rng.uniform((1.0, 0.1), (4.0, 10.0))
     dts = np.array([0.1, 0.05, 0.02, 0.01])
     errors = scale * dts**order * rng.uniform(0.9, 1.1, 4)
@@ -771,15 +773,7 @@ def what_measures_methods(lesson, check):
     A central difference of h = 6e-6 errs by h²/6 times a third derivative, and by round-off over h: 2e-10 in all.  Near
     a double eigenvalue round-off counts by its root.
     """
-    check.laws(lesson, (
-        (matrix_of_euler, "The matrix of a step of Euler is 1 + h J.",
-         "entries of the matrix: largest error [-]", ROUNDED),
-        (matrix_of_newton, "Newton's matrix is 1 − dt ∂a/∂v, along x + dt v.",
-         "Newton's matrix: largest error [-]", 1e-9),
-        (largest_eigenvalue, "The spectral radius is the largest absolute eigenvalue.",
-         "spectral radius: largest error [-]", 1e-9),
-        (fitted_order, "The observed order is the slope of the least squares on logarithmic scales.",
-         "order: largest error [-]", 1e-12)), seed=12, times=TRIED)
+    check.laws(lesson, (matrix_of_euler, matrix_of_newton, largest_eigenvalue, fitted_order), seed=12, times=TRIED)
 
 
 # ---------------------------------------------------------------------------------------------- a million steps
