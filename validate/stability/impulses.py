@@ -922,8 +922,8 @@ def frictionless_impacts(lesson, rng):
 def shares_of_the_loss(lesson, rng):
     """All points come in."""
     one = landing(lesson, rng)
-    if np.any(one.G @ one.y >= 0.0):
-        return shares_of_the_loss(lesson, rng)
+    while np.any(one.G @ one.y >= 0.0):
+        one = landing(lesson, rng)
     lost, least = (one.energy(one.y) - one.energy(most_dissipative(lesson, one.body, one.r, one.n, e, one.mu))
                    for e in (0.0, one.e))
     return least / lost, 1.0 - one.e**2
