@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
+from validate.methods import EULER
 from validate.stability import integrators
 from validate.stability.case import EDGE, Worst, bisect, finding
 from validate.stability.examine import all_cases, examine, found_by, subject_of
@@ -165,8 +166,8 @@ def test_a_formula_that_is_a_thousandth_off_is_seen(name, function, factor):
 
 
 def test_an_edge_that_is_a_hundredth_off_is_seen_on_the_map_of_amplification(monkeypatch):
-    case, edge = CASES["integrators/amplification"], integrators.EDGES["euler_step"]
-    monkeypatch.setitem(integrators.EDGES, "euler_step", lambda zeta: 1.01 * edge(zeta))
+    case, edge = CASES["integrators/amplification"], integrators.EDGES[EULER]
+    monkeypatch.setitem(integrators.EDGES, EULER, lambda zeta: 1.01 * edge(zeta))
     found, picture = found_by(case, subject_of(case))
     assert [f.holds for f in found] == [False] + 5 * [True]
     assert all(np.shape(one["values"]) == (len(one["ys"]), len(one["xs"])) >= (100, 100) for one in picture.maps)

@@ -11,30 +11,28 @@ The first case draws all methods into one picture.
 *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.2; Hairer, Lubich, Wanner 2006.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from solutions.checks import Diverged
-from validate.methods import BLANES_MOAN, INTEGRATORS
-from validate.methods import EXPLICIT as ALL_EXPLICIT
+from validate.methods import (
+    AVERAGE_VELOCITY,
+    BLANES_MOAN,
+    EULER,
+    IMPLICIT_EULER,
+    IMPLICIT_MIDPOINT,
+    INTEGRATORS,
+    MIDPOINT,
+    RK4,
+    SYMPLECTIC_EULER,
+    VERLET,
+)
 from validate.reference import schemes
 from validate.reference.integrators import Planet, adaptive_march, orbit, perihelion
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    Picture,
-    Worst,
-    agreement,
-    bisect,
-    case,
-    finding,
-    jitted,
-    refuse,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, jitted, random_law, refuse, series
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
 STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
@@ -48,28 +46,29 @@ SHORTEST = 0.05
 LONGEST = 4.0
 CELLS = 120                  # of a map of amplification, in each direction
 
-EXPLICIT = tuple(m for m in INTEGRATORS if m in ALL_EXPLICIT)
-IMPLICIT = tuple(m for m in INTEGRATORS if m not in EXPLICIT)
-LABEL = {method.function: method.label for method in INTEGRATORS}
-
 
 # ---------------------------------------------------------------------------------------------- the experiment
 
 def growth(lesson, method, h_omega, zeta=0.0, steps=STEPS):
     """Return the factor [-] by which an oscillator's motion grows per step; infinite if the run diverges."""
-    p = lesson.Oscillator(OMEGA, zeta)
+    step, p = getattr(lesson, method.function), lesson.Oscillator(OMEGA, zeta)
     x, v = np.array([1.0, 0.0]), np.array([0.0, 1.0])
     try:
-        end = lesson.advance(
-            getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, steps, p
-        )
+        end = lesson.advance(step, lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, steps, p)
     except (Diverged, np.linalg.LinAlgError):
         return np.inf
     factor = float(lesson.spectral_radius(np.array(end))) ** (1.0 / steps)
     return factor if np.isfinite(factor) else np.inf
 
 
+def growth_curves(lesson, label, method, law, dots, fine, steps=STEPS):
+    """Return two curves of the growth per step over hω: law(hω) of theory, and that of runs."""
+    rates = [growth(lesson, method, y, steps=steps) for y in dots]
+    return [series(f"{label}theory", fine, law(fine), LINE), series(f"{label}measured", dots, rates, DOTS)]
+
+
 def grows(lesson, method, h_omega, zeta=0.0):
+    """Return whether the motion grows by more than noise."""
     return growth(lesson, method, h_omega, zeta) > 1.0 + NOISE
 
 
@@ -96,10 +95,11 @@ def turning(lesson, method, h_omega, steps, flatness=1.0):
 
     On a wrong ellipse the angle alternately leads and lags, but the mean over many steps stays the same.
     """
-    p, x, v = lesson.Oscillator(OMEGA, 0.0), np.ones(1), np.zeros(1)
+    step, p = getattr(lesson, method.function), lesson.Oscillator(OMEGA, 0.0)
+    x, v = np.ones(1), np.zeros(1)
     angles = np.zeros(steps + 1)
     for n in range(steps):
-        x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, 1, p)
+        x, v = lesson.advance(step, lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, 1, p)
         angles[n + 1] = np.arctan2(-v[0] / (flatness * OMEGA), x[0])
     return np.unwrap(angles)[-1] / steps
 
@@ -143,13 +143,14 @@ def verlet_edge(zeta):
 
 
 EDGES = {
-    "euler_step": euler_edge,
-    "midpoint_step": lambda zeta: runge_kutta_edge((1.0, 1.0, 1.0 / 2.0), zeta) if zeta > 0.0 else 0.0,
-    "rk4_step": lambda zeta: runge_kutta_edge((1.0, 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0), zeta),
-    "average_velocity_step": average_velocity_edge,
-    "symplectic_euler_step": symplectic_euler_edge,
-    "verlet_step": verlet_edge,
+    EULER: euler_edge,
+    MIDPOINT: lambda zeta: runge_kutta_edge((1.0, 1.0, 1.0 / 2.0), zeta) if zeta > 0.0 else 0.0,
+    RK4: lambda zeta: runge_kutta_edge((1.0, 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0), zeta),
+    AVERAGE_VELOCITY: average_velocity_edge,
+    SYMPLECTIC_EULER: symplectic_euler_edge,
+    VERLET: verlet_edge,
 }
+EXPLICIT, IMPLICIT = tuple(EDGES), (IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 
 
 def edge_picture(title, measured, sentence):
@@ -157,57 +158,45 @@ def edge_picture(title, measured, sentence):
     drawn = []
     for method, edges in measured.items():
         fine = np.linspace(0.0, max(edges), 121)
-        drawn.append(series(f"{LABEL[method]}, theory", fine, [EDGES[method](zeta) for zeta in fine], LINE))
-        drawn.append(series(f"{LABEL[method]}, measured", edges.keys(), edges.values(), DOTS))
+        drawn.append(series(f"{method.label}, theory", fine, [EDGES[method](zeta) for zeta in fine], LINE))
+        drawn.append(series(f"{method.label}, measured", edges.keys(), edges.values(), DOTS))
     return Picture(title, "damping ratio ζ [-]", "longest stable hω [-]", drawn, sentence)
 
 
-# ---------------------------------------------------------------------------------------------- the cases
+# ---------------------------------------------------------------------------------------------- all methods
 
-@case("stability-limits", "Where each method is stable")
-def stability_limits(lesson):
+@case("stability-limits", "Stability limits of the explicit methods")
+def stability_limits(lesson, check):
     """Every explicit method has an edge.  Without damping that of some is at hω = 0."""
-    zetas, measured, found = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0), {}, []
+    measured = {}
     for method, law in EDGES.items():
-        measured[method] = {zeta: edge(lesson, method, zeta) for zeta in zetas}
-        never = "" if law(0.0) > 0.0 else f"; without damping it grows at hω = {SHORTEST} already"
-        worst = departure(measured[method], {zeta: law(zeta) for zeta in zetas})
-        found.append(finding(
-            claim=(f"The {LABEL[method]} method is stable up to the step at which an eigenvalue of one step leaves "
-                   "the unit circle."),
-            quantity=f"{LABEL[method]}: largest relative error of the edge over ζ = 0 to 2 [-]",
-            predicted=0.0,
-            measured=worst,
-            tolerance=EDGE,
-            observation=f"The edge of the {LABEL[method]} method agrees with theory to {worst:.1e}{never}.",
-        ))
-    return found, edge_picture(
-        "Where each explicit method is stable",
-        measured,
+        edges = {zeta: law(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)}
+        measured[method] = {zeta: edge(lesson, method, zeta) for zeta in edges}
+        worst = departure(measured[method], edges)
+        never = "" if edges[0.0] > 0.0 else f"; without damping it grows at hω = {SHORTEST} already"
+        check(f"The {method.label} method is stable up to the step at which an eigenvalue of one step leaves the unit "
+              "circle.", f"{method.label}: largest relative error of the edge over ζ = 0 to 2 [-]",
+              law=0.0, found=worst, within=EDGE,
+              saw=f"The edge of the {method.label} method agrees with theory to {worst:.1e}{never}.")
+    return edge_picture(
+        "Where each explicit method is stable", measured,
         "Below its curve a method is stable, above it the motion grows. Implicit Euler and implicit midpoint have no "
-        "curve, because they are stable everywhere.",
-    )
+        "curve, because they are stable everywhere.")
 
 
 @case("stable-for-every-step", "Methods that are stable for every step", compiled=False)
-def stable_for_every_step(lesson):
+def stable_for_every_step(lesson, check):
     """The two implicit methods have no edge: their motion stays bounded however long the step is.
 
     Seven steps: a velocity that is wrong by 1e-12 moves x by h 1e-12 = 3e-10 at the longest step, below NOISE.
     """
-    tried, found = [(h_omega, zeta) for h_omega in (0.1, 1.0, 10.0, 100.0, 1000.0) for zeta in (0.0, 0.5)], []
-    for method in (m.function for m in IMPLICIT):
+    tried = [(h_omega, zeta) for h_omega in (0.1, 1.0, 10.0, 100.0, 1000.0) for zeta in (0.0, 0.5)]
+    for method in IMPLICIT:
         stable = sum(growth(lesson, method, *oscillator, steps=7) <= 1.0 + NOISE for oscillator in tried)
-        found.append(finding(
-            claim=f"The {LABEL[method]} method is stable for every step.",
-            quantity=f"{LABEL[method]}: runs that stay bounded [of {len(tried)}]",
-            predicted=len(tried),
-            measured=stable,
-            tolerance=0.0,
-            observation=(f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {len(tried)} runs of "
-                         f"{LABEL[method]} stay bounded."),
-        ))
-    return found, None
+        check(f"The {method.label} method is stable for every step.",
+              f"{method.label}: runs that stay bounded [of {len(tried)}]", law=len(tried), found=stable, within=0.0,
+              saw=f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {len(tried)} runs of {method.label} "
+                  "stay bounded.")
 
 
 def amplification(lesson, method, h_omega, zeta):
@@ -219,362 +208,214 @@ def amplification(lesson, method, h_omega, zeta):
     def acceleration(t, x, v, p):
         return -h_omega**2 * x - 2.0 * zeta * h_omega * v
 
-    one, none, step = np.ones_like(h_omega), np.zeros_like(h_omega), getattr(lesson, method)
+    one, none, step = np.ones_like(h_omega), np.zeros_like(h_omega), getattr(lesson, method.function)
     columns = [np.stack(step(acceleration, 0.0, x, v, 1.0, None), axis=-1) for x, v in ((one, none), (none, one))]
     return np.abs(np.linalg.eigvals(np.stack(columns, axis=-1))).max(axis=-1)
 
 
-@case("amplification", "How much a step amplifies", compiled=False)
-def amplification_map(lesson):
+@case("amplification", "Amplification by one step", compiled=False)
+def amplification_map(lesson, check):
     """The factor of one step over hω and ζ is at most 1 up to the edge that theory gives, and above 1 beyond it."""
     hs, zetas = (np.round(high * (np.arange(CELLS) + 0.5) / CELLS, 6) for high in (3.2, 2.0))
     h_omega, zeta = np.meshgrid(hs, zetas)
-    fine, found, maps = np.linspace(0.0, 2.0, 201), [], []
-    for method in (m.function for m in EXPLICIT):
+    fine, maps = np.linspace(0.0, 2.0, 201), []
+    for method, law in EDGES.items():
         factors = amplification(lesson, method, h_omega, zeta)
-        edges = np.array([EDGES[method](one) for one in zetas])
+        edges = np.array([law(one) for one in zetas])
         right = int(np.sum((factors <= 1.0 + NOISE) == (h_omega < edges[:, None])))
-        found.append(finding(
-            claim=(f"A step of the {LABEL[method]} method amplifies no motion up to its edge of stability, and some "
-                   "motion beyond it."),
-            quantity=f"{LABEL[method]}: points of the map on the side that theory says [of {factors.size}]",
-            predicted=factors.size,
-            measured=right,
-            tolerance=0.0,
-            observation=f"{right:,} of {factors.size:,} points of the map of {LABEL[method]} are on the right side.",
-        ))
-        maps.append({"label": LABEL[method], "xs": hs, "ys": zetas, "values": np.round(factors, 3),
-                     "curve": (np.array([EDGES[method](one) for one in fine]), fine)})
-    return found, Picture(
+        check(f"A step of the {method.label} method amplifies no motion up to its edge of stability, and some motion "
+              "beyond it.", f"{method.label}: points of the map on the side that theory says [of {factors.size}]",
+              law=factors.size, found=right, within=0.0,
+              saw=f"{right:,} of {factors.size:,} points of the map of {method.label} are on the right side.")
+        maps.append({"label": method.label, "xs": hs, "ys": zetas, "values": np.round(factors, 3),
+                     "curve": (np.array([law(one) for one in fine]), fine)})
+    return Picture(
         "How much a step amplifies", "hω [-]", "damping ratio ζ [-]", [],
         "Blue: a step shrinks the motion. Red: it grows, and the run will diverge. The black line is theory's edge of "
-        "stability; it runs along the border of the colours.",
-        tuple(maps), (0.0, 2.0),
-    )
+        "stability; it runs along the border of the colours.", tuple(maps), (0.0, 2.0))
+
+
+# ---------------------------------------------------------------------------------------------- one method each
+
+def edges_agree(lesson, check, method, edges, claim):
+    """Check that the edges {ζ: hω} of a method are those of theory, and that they flip; return the measured ones."""
+    measured = {zeta: edge(lesson, method, zeta) for zeta in edges}
+    worst, flipped, count = departure(measured, edges), flips(lesson, method, edges), len(edges)
+    check(claim, f"largest relative error of the edge at {count} damping ratios [-]", law=0.0, found=worst, within=EDGE,
+          saw=f"From ζ = {min(edges):g} to {max(edges):g} the measured edge differs from theory by at most "
+              f"{worst:.1e}.")
+    check("The edge flips within ±0.1 %.", f"edges that flip [of {count}]", law=count, found=flipped, within=0.0,
+          saw=f"At {flipped} of {count} damping ratios a run stays bounded 0.1 % below the bound, and grows 0.1 % "
+              "above.")
+    return measured
 
 
 @case("explicit-euler", "Explicit Euler")
-def explicit_euler(lesson):
+def explicit_euler(lesson, check):
     """Explicit Euler:  |1 + hs|² = 1 − 2ζ hω + (hω)² for ζ ≤ 1:  stable below 2ζ;  2(ζ − √(ζ² − 1)) for ζ > 1."""
-    step, edges = "euler_step", {zeta: euler_edge(zeta) for zeta in (0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 3.0)}
-    measured = {zeta: edge(lesson, step, zeta) for zeta in (0.0, *edges)}
-    flipped, worst, tiny = flips(lesson, step, edges), departure(measured, edges), growth(lesson, step, 0.001)
-    return [
-        finding(
-            claim="Without damping explicit Euler is never stable: the motion grows by √(1 + (hω)²) per step.",
-            quantity="growth per step, ζ = 0, hω = 0.001 [-]",
-            predicted=np.sqrt(1.0 + 1e-6),
-            measured=tiny,
-            tolerance=GROWTH,
-            observation=f"Even at a thousandth of a radian per step the motion grows, by {tiny - 1.0:.3e} per step.",
-        ),
-        finding(
-            claim="For ζ ≤ 1 it is stable up to hω = 2ζ.",
-            quantity="edge hω at ζ = 0.5 [-]",
-            predicted=1.0,
-            measured=measured[0.5],
-            tolerance=EDGE,
-            observation=(
-                f"At half the critical damping the run turns from decay to growth at hω = {measured[0.5]:.5f}."
-            ),
-        ),
-        finding(
-            claim="For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).",
-            quantity="edge hω at ζ = 1.5 [-]",
-            predicted=edges[1.5],
-            measured=measured[1.5],
-            tolerance=EDGE * edges[1.5],
-            observation=f"At one and a half times the critical damping it turns at hω = {measured[1.5]:.5f}.",
-        ),
-        finding(
-            claim="The two formulas hold at every damping ratio.",
-            quantity="largest relative error of the edge at 7 damping ratios [-]",
-            predicted=0.0,
-            measured=worst,
-            tolerance=EDGE,
-            observation=f"From ζ = 0.1 to 3 the measured edge differs from theory by at most {worst:.1e}.",
-        ),
-        finding(
-            claim="The edge flips within ±0.1 %.",
-            quantity="edges that flip [of 7]",
-            predicted=len(edges),
-            measured=flipped,
-            tolerance=0.0,
-            observation=(
-                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and "
-                "grows 0.1 % above."
-            ),
-        ),
-    ], edge_picture(
-        "Explicit Euler: the longest stable step",
-        {step: measured},
+    edges = {zeta: euler_edge(zeta) for zeta in (0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 3.0)}
+    tiny, half, over = growth(lesson, EULER, 0.001), edge(lesson, EULER, 0.5), edge(lesson, EULER, 1.5)
+    check("Without damping explicit Euler is never stable: the motion grows by √(1 + (hω)²) per step.",
+          "growth per step, ζ = 0, hω = 0.001 [-]", law=np.sqrt(1.0 + 1e-6), found=tiny, within=GROWTH,
+          saw=f"Even at a thousandth of a radian per step the motion grows, by {tiny - 1.0:.3e} per step.")
+    check("For ζ ≤ 1 it is stable up to hω = 2ζ.", "edge hω at ζ = 0.5 [-]", law=1.0, found=half, within=EDGE,
+          saw=f"At half the critical damping the run turns from decay to growth at hω = {half:.5f}.")
+    check("For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).", "edge hω at ζ = 1.5 [-]",
+          law=edges[1.5], found=over, within=EDGE * edges[1.5],
+          saw=f"At one and a half times the critical damping it turns at hω = {over:.5f}.")
+    measured = edges_agree(lesson, check, EULER, edges, "The two formulas hold at every damping ratio.")
+    return edge_picture(
+        "Explicit Euler: the longest stable step", {EULER: {0.0: edge(lesson, EULER, 0.0), **measured}},
         "Damping raises explicit Euler's limit to hω = 2 at ζ = 1. More damping lowers it again, because the faster "
-        "of the two decays becomes too fast for the step.",
-    )
+        "of the two decays becomes too fast for the step.")
 
 
 @case("symplectic-euler", "Symplectic Euler")
-def symplectic_euler(lesson):
+def symplectic_euler(lesson, check):
     """Symplectic Euler:  stable below hω = 2(√(1 + ζ²) − ζ)."""
-    step = "symplectic_euler_step"
     edges = {zeta: symplectic_euler_edge(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)}
-    measured = {zeta: edge(lesson, step, zeta) for zeta in edges}
-    beside = {zeta: edge(lesson, "euler_step", zeta) for zeta in edges}
-    flipped, worst = flips(lesson, step, edges), departure(measured, edges)
-    return [
-        finding(
-            claim="Without damping symplectic Euler is stable up to hω = 2.",
-            quantity="edge hω at ζ = 0 [-]",
-            predicted=2.0,
-            measured=measured[0.0],
-            tolerance=2.0 * EDGE,
-            observation=(
-                f"An undamped oscillator stays bounded up to hω = {measured[0.0]:.5f}: about a third of a period per "
-                "step."
-            ),
-        ),
-        finding(
-            claim="At critical damping it is stable up to hω = 2(√2 − 1).",
-            quantity="edge hω at ζ = 1 [-]",
-            predicted=edges[1.0],
-            measured=measured[1.0],
-            tolerance=EDGE,
-            observation=f"Critical damping shortens the longest stable step to hω = {measured[1.0]:.5f}.",
-        ),
-        finding(
-            claim="The formula holds at every damping ratio.",
-            quantity="largest relative error of the edge at 7 damping ratios [-]",
-            predicted=0.0,
-            measured=worst,
-            tolerance=EDGE,
-            observation=f"From ζ = 0 to 3 the measured edge differs from theory by at most {worst:.1e}.",
-        ),
-        finding(
-            claim="The edge flips within ±0.1 %.",
-            quantity="edges that flip [of 7]",
-            predicted=len(edges),
-            measured=flipped,
-            tolerance=0.0,
-            observation=(
-                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and "
-                "grows 0.1 % above."
-            ),
-        ),
-    ], edge_picture(
+    undamped, critical = edge(lesson, SYMPLECTIC_EULER, 0.0), edge(lesson, SYMPLECTIC_EULER, 1.0)
+    check("Without damping symplectic Euler is stable up to hω = 2.", "edge hω at ζ = 0 [-]",
+          law=2.0, found=undamped, within=2.0 * EDGE,
+          saw=f"An undamped oscillator stays bounded up to hω = {undamped:.5f}: about a third of a period per step.")
+    check("At critical damping it is stable up to hω = 2(√2 − 1).", "edge hω at ζ = 1 [-]",
+          law=edges[1.0], found=critical, within=EDGE,
+          saw=f"Critical damping shortens the longest stable step to hω = {critical:.5f}.")
+    measured = edges_agree(lesson, check, SYMPLECTIC_EULER, edges, "The formula holds at every damping ratio.")
+    return edge_picture(
         "Symplectic Euler: the longest stable step",
-        {step: measured, "euler_step": beside},
+        {SYMPLECTIC_EULER: measured, EULER: {zeta: edge(lesson, EULER, zeta) for zeta in edges}},
         "Without damping symplectic Euler is stable where explicit Euler never is. It evaluates damping at the "
-        "beginning of the step, so any damping lowers its limit.",
-    )
+        "beginning of the step, so any damping lowers its limit.")
 
 
 @case("midpoint", "Midpoint: slow growth", compiled=False)
-def midpoint(lesson):
+def midpoint(lesson, check):
     """Midpoint, undamped:  R(iy) = 1 + iy − ½y²,  |R|² = 1 + ¼y⁴,  y = hω."""
-    step, law = "midpoint_step", lambda y: np.sqrt(1.0 + y**4 / 4.0)
-    found = []
+    law = lambda y: np.sqrt(1.0 + y**4 / 4.0)
     for y in (0.05, 0.2, 1.0):
-        rate = growth(lesson, step, y)
-        found.append(finding(
-            claim="Without damping the midpoint method always grows, by √(1 + (hω)⁴/4) per step.",
-            quantity=f"growth per step at hω = {y:g} [-]",
-            predicted=law(y),
-            measured=rate,
-            tolerance=GROWTH,
-            observation=f"At hω = {y:g} the motion doubles every {np.log(2.0) / np.log(rate):,.0f} steps.",
-        ))
+        rate = growth(lesson, MIDPOINT, y)
+        check("Without damping the midpoint method always grows, by √(1 + (hω)⁴/4) per step.",
+              f"growth per step at hω = {y:g} [-]", law=law(y), found=rate, within=GROWTH,
+              saw=f"At hω = {y:g} the motion doubles every {np.log(2.0) / np.log(rate):,.0f} steps.")
     dots, fine = np.linspace(0.1, 1.2, 12), np.linspace(0.0, 1.2, 61)
-    return found, Picture(
-        "Midpoint: slow growth",
-        "hω [-]",
-        "growth per step [-]",
-        [
-            series("midpoint, theory", fine, law(fine), LINE),
-            series("midpoint, measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
-            series("Euler, theory", fine, np.sqrt(1.0 + fine**2), LINE),
-            series("Euler, measured", dots, [growth(lesson, "euler_step", y) for y in dots], DOTS),
-        ],
-        ("Both methods grow at every step length, but Euler's growth starts with (hω)²/2 and the midpoint method's "
-         "with (hω)⁴/8."),
-    )
+    return Picture(
+        "Midpoint: slow growth", "hω [-]", "growth per step [-]",
+        growth_curves(lesson, "midpoint, ", MIDPOINT, law, dots, fine)
+        + growth_curves(lesson, "Euler, ", EULER, lambda y: np.sqrt(1.0 + y**2), dots, fine),
+        "Both methods grow at every step length, but Euler's growth starts with (hω)²/2 and the midpoint method's "
+        "with (hω)⁴/8.")
 
 
 @case("rk4", "Runge–Kutta 4")
-def rk4(lesson):
+def rk4(lesson, check):
     """Runge–Kutta 4, undamped:  |R(iy)|² = 1 − y⁶/72 + y⁸/576, stable up to √8.
 
     On the real axis it is stable up to the root of R(−z) = 1.  The real axis is an over-damped oscillator: at
     ζ = 5/4 it decays with the rates λ = 2ω and ½ω.
     """
-    step, zeta, fast = "rk4_step", 1.25, 2.0
+    imaginary_edge, real_edge = edge(lesson, RK4, 0.0), 2.0 * edge(lesson, RK4, 1.25)
     real = min(-r.real for r in np.roots((1.0 / 24.0, 1.0 / 6.0, 1.0 / 2.0, 1.0)) if abs(r.imag) < 1e-6)
-    imaginary_edge, real_edge = edge(lesson, step, 0.0), fast * edge(lesson, step, zeta)
-    flipped = flips(lesson, step, {0.0: np.sqrt(8.0), zeta: real / fast})
-    y = 0.2
-    lost, at_one = 1.0 - growth(lesson, step, y) ** 2, growth(lesson, step, 1.0) ** 2
-    law = lambda y: np.sqrt(1.0 - y**6 / 72.0 + y**8 / 576.0)
-    dots, fine = np.linspace(0.2, 3.0, 15), np.linspace(0.0, 3.0, 121)
-    return [
-        finding(
-            claim="On an undamped oscillator Runge–Kutta 4 is stable up to hω = √8.",
-            quantity="edge hω on the imaginary axis [-]",
-            predicted=np.sqrt(8.0),
-            measured=imaginary_edge,
-            tolerance=EDGE * np.sqrt(8.0),
-            observation=f"The undamped run turns from decay to growth at hω = {imaginary_edge:.5f}.",
-        ),
-        finding(
-            claim="On a pure decay it is stable up to hλ = 2.785294.",
-            quantity="edge hλ on the real axis [-]",
-            predicted=real,
-            measured=real_edge,
-            tolerance=EDGE * real,
-            observation=f"The over-damped run turns at hλ = {real_edge:.5f}, λ the faster of its two decay rates.",
-        ),
-        finding(
-            claim="Both edges flip within ±0.1 %.",
-            quantity="edges that flip [of 2]",
-            predicted=2,
-            measured=flipped,
-            tolerance=0.0,
-            observation=f"At {flipped} of 2 edges a run stays bounded 0.1 % below the bound, and grows 0.1 % above.",
-        ),
-        finding(
-            claim="Below its edge it damps: an undamped oscillator loses (hω)⁶/72 − (hω)⁸/576 of its energy per step.",
-            quantity=f"energy lost per step at hω = {y} [-]",
-            predicted=y**6 / 72.0 - y**8 / 576.0,
-            measured=lost,
-            tolerance=2.0 * GROWTH,
-            observation=(f"At hω = {y} a step loses {lost:.3e} of the energy, so half of it is lost in "
-                         f"{np.log(2.0) / lost:,.0f} steps."),
-        ),
-        finding(
-            claim="At a larger step both terms count: |R|² = 1 − (hω)⁶/72 + (hω)⁸/576.",
-            quantity="energy kept per step at hω = 1 [-]",
-            predicted=1.0 - 1.0 / 72.0 + 1.0 / 576.0,
-            measured=at_one,
-            tolerance=2.0 * GROWTH,
-            observation=f"At hω = 1 a step keeps {100.0 * at_one:.4f} % of the energy.",
-        ),
-    ], Picture(
-        "Runge–Kutta 4 on an undamped oscillator",
-        "hω [-]",
-        "growth per step [-]",
-        [
-            series("theory", fine, law(fine), LINE),
-            series("measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
-        ],
-        ("Runge–Kutta 4 loses 0.6 % of the amplitude per step at hω = 1 and half of it at 2.45, where it damps most. "
-         "Beyond 2.828 the motion grows."),
-    )
+    flipped = flips(lesson, RK4, {0.0: np.sqrt(8.0), 1.25: real / 2.0})
+    lost, at_one = 1.0 - growth(lesson, RK4, 0.2) ** 2, growth(lesson, RK4, 1.0) ** 2
+    check("On an undamped oscillator Runge–Kutta 4 is stable up to hω = √8.", "edge hω on the imaginary axis [-]",
+          law=np.sqrt(8.0), found=imaginary_edge, within=EDGE * np.sqrt(8.0),
+          saw=f"The undamped run turns from decay to growth at hω = {imaginary_edge:.5f}.")
+    check("On a pure decay it is stable up to hλ = 2.785294.", "edge hλ on the real axis [-]",
+          law=real, found=real_edge, within=EDGE * real,
+          saw=f"The over-damped run turns at hλ = {real_edge:.5f}, λ the faster of its two decay rates.")
+    check("Both edges flip within ±0.1 %.", "edges that flip [of 2]", law=2, found=flipped, within=0.0,
+          saw=f"At {flipped} of 2 edges a run stays bounded 0.1 % below the bound, and grows 0.1 % above.")
+    check("Below its edge it damps: an undamped oscillator loses (hω)⁶/72 − (hω)⁸/576 of its energy per step.",
+          "energy lost per step at hω = 0.2 [-]", law=0.2**6 / 72.0 - 0.2**8 / 576.0, found=lost, within=2.0 * GROWTH,
+          saw=f"At hω = 0.2 a step loses {lost:.3e} of the energy, so half of it is lost in "
+              f"{np.log(2.0) / lost:,.0f} steps.")
+    check("At a larger step both terms count: |R|² = 1 − (hω)⁶/72 + (hω)⁸/576.", "energy kept per step at hω = 1 [-]",
+          law=1.0 - 1.0 / 72.0 + 1.0 / 576.0, found=at_one, within=2.0 * GROWTH,
+          saw=f"At hω = 1 a step keeps {100.0 * at_one:.4f} % of the energy.")
+    return Picture(
+        "Runge–Kutta 4 on an undamped oscillator", "hω [-]", "growth per step [-]",
+        growth_curves(lesson, "", RK4, lambda y: np.sqrt(1.0 - y**6 / 72.0 + y**8 / 576.0),
+                      np.linspace(0.2, 3.0, 15), np.linspace(0.0, 3.0, 121)),
+        "Runge–Kutta 4 loses 0.6 % of the amplitude per step at hω = 1 and half of it at 2.45, where it damps most. "
+        "Beyond 2.828 the motion grows.")
 
 
 @case("implicit-euler", "Implicit Euler: numerical damping", compiled=False)
-def implicit_euler(lesson):
+def implicit_euler(lesson, check):
     """Implicit Euler damps an undamped oscillator:  |R(iy)| = (1 + y²)^(−½) per step, y = hω.
 
     It acts like a damping ratio  ln(1 + y²)/2y ≈ ½y.
     """
-    step, law = "implicit_euler_step", lambda y: 1.0 / np.sqrt(1.0 + y * y)
+    law = lambda y: 1.0 / np.sqrt(1.0 + y * y)
     # few steps: Newton's tolerance of 1e-12 m/s is absolute, so the motion must not vanish
     few = 5
     ten_periods = 628
-    found = []
     for y in (0.1, 1.0, 4.0):
-        rate = growth(lesson, step, y, steps=few)
-        found.append(finding(
-            claim="Implicit Euler damps an undamped oscillator: the motion shrinks by (1 + (hω)²)^(−1/2) per step.",
-            quantity=f"growth per step at hω = {y:g} [-]",
-            predicted=law(y),
-            measured=rate,
-            tolerance=OMEGA * NEWTON / law(y) ** few,
-            observation=f"At hω = {y:g} a step removes {100.0 * (1.0 - rate):.3g} % of the amplitude.",
-        ))
-    ratio = -np.log(growth(lesson, step, 0.1, steps=few)) / 0.1
-    kept = growth(lesson, step, 0.1, steps=ten_periods) ** ten_periods
-    found += [
-        # e^(−ζ hω) per step: a growth known to OMEGA NEWTON in each of few steps, over hω
-        finding(
-            claim="The decay equals that of a damping ratio of ln(1 + (hω)²)/2hω, nearly ½hω.",
-            quantity="numerical damping ratio at hω = 0.1 [-]",
-            predicted=np.log(1.01) / 0.2,
-            measured=ratio,
-            tolerance=OMEGA * NEWTON / law(0.1) ** few / 0.1,
-            observation=f"At hω = 0.1 implicit Euler acts on an undamped oscillator like ζ = {ratio:.4f}.",
-        ),
-        finding(
-            claim="Ten periods at hω = 0.1 leave (1.01)^(−314) of the amplitude.",
-            quantity="amplitude left after 628 steps [-]",
-            predicted=1.01**-314,
-            measured=kept,
-            tolerance=OMEGA * NEWTON * ten_periods,
-            observation=f"After ten periods at 63 steps per period {100.0 * kept:.2f} % of the amplitude is left.",
-        ),
-    ]
+        rate = growth(lesson, IMPLICIT_EULER, y, steps=few)
+        check("Implicit Euler damps an undamped oscillator: the motion shrinks by (1 + (hω)²)^(−1/2) per step.",
+              f"growth per step at hω = {y:g} [-]", law=law(y), found=rate, within=OMEGA * NEWTON / law(y) ** few,
+              saw=f"At hω = {y:g} a step removes {100.0 * (1.0 - rate):.3g} % of the amplitude.")
+    ratio = -np.log(growth(lesson, IMPLICIT_EULER, 0.1, steps=few)) / 0.1
+    kept = growth(lesson, IMPLICIT_EULER, 0.1, steps=ten_periods) ** ten_periods
+    # e^(−ζ hω) per step: a growth known to OMEGA NEWTON in each of few steps, over hω
+    check("The decay equals that of a damping ratio of ln(1 + (hω)²)/2hω, nearly ½hω.",
+          "numerical damping ratio at hω = 0.1 [-]",
+          law=np.log(1.01) / 0.2, found=ratio, within=OMEGA * NEWTON / law(0.1) ** few / 0.1,
+          saw=f"At hω = 0.1 implicit Euler acts on an undamped oscillator like ζ = {ratio:.4f}.")
+    check("Ten periods at hω = 0.1 leave (1.01)^(−314) of the amplitude.", "amplitude left after 628 steps [-]",
+          law=1.01**-314, found=kept, within=OMEGA * NEWTON * ten_periods,
+          saw=f"After ten periods at 63 steps per period {100.0 * kept:.2f} % of the amplitude is left.")
     dots, fine = np.linspace(0.25, 4.0, 16), np.linspace(0.0, 4.0, 121)
-    return found, Picture(
-        "Implicit Euler: numerical damping",
-        "hω [-]",
-        "growth per step [-]",
-        [
-            series("implicit Euler, theory", fine, law(fine), LINE),
-            series("implicit Euler, measured", dots, [growth(lesson, step, y, steps=few) for y in dots], DOTS),
-            series("implicit midpoint, theory", fine, np.ones_like(fine), LINE),
-            series(
-                "implicit midpoint, measured",
-                dots,
-                [growth(lesson, "implicit_midpoint_step", y, steps=few) for y in dots],
-                DOTS,
-            ),
-        ],
-        ("Implicit Euler never grows because it always shrinks. Implicit midpoint is equally stable, and keeps the "
-         "amplitude."),
-    )
+    return Picture(
+        "Implicit Euler: numerical damping", "hω [-]", "growth per step [-]",
+        growth_curves(lesson, "implicit Euler, ", IMPLICIT_EULER, law, dots, fine, few)
+        + growth_curves(lesson, "implicit midpoint, ", IMPLICIT_MIDPOINT, np.ones_like, dots, fine, few),
+        "Implicit Euler never grows because it always shrinks. Implicit midpoint is equally stable, and keeps the "
+        "amplitude.")
 
 
-@case("phase-error", "Verlet and implicit midpoint: phase", compiled=False)
-def phase_error(lesson):
+@case("phase-error", "Phase errors of Verlet and implicit midpoint", compiled=False)
+def phase_error(lesson, check):
     """Verlet turns the motion by 2 asin(½hω) per step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
 
     Verlet follows the ellipse  x² (1 − (hω)²/4) + (v/ω)² = const,  implicit midpoint the circle  x² + (v/ω)² = const.
     *Source:* cos θ = ½ tr A; Hairer, Lubich, Wanner 2006, I.5.
     """
-    steps, fine, dots, found, drawn = 1000, np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8), [], []
-    methods = (("verlet_step", np.arcsin, 0.25, GROWTH), ("implicit_midpoint_step", np.arctan, 0.0, OMEGA * NEWTON))
-    for step, inverse, flat, known in methods:
-        name = LABEL[step]
-        law = lambda y, inverse=inverse: 2.0 * inverse(0.5 * y) / y
-        flatness = lambda y, flat=flat: np.sqrt(1.0 - flat * y * y)
-        frequency = lambda y, step=step, flatness=flatness: turning(lesson, step, y, steps, flatness(y)) / y
-        for y in (0.1, 0.5, 1.0):
-            got = frequency(y)
-            side = "ahead" if got > 1.0 else "behind"
-            found.append(finding(
-                claim=(f"{name[0].upper()}{name[1:]} oscillates at (2/h) {'asin' if flat else 'atan'}(hω/2) instead "
-                       "of ω."),
-                quantity=f"{name}: frequency over the true one at hω = {y:g} [-]",
-                predicted=law(y),
-                measured=got,
-                tolerance=known / y,
-                observation=(f"At hω = {y:g} {name} is a whole period {side} after {1.0 / abs(got - 1.0):,.0f} "
-                             "periods."),
-            ))
-        kept = growth(lesson, step, 0.5)
-        found.append(finding(
-            claim=f"{name[0].upper()}{name[1:]} keeps the amplitude.",
-            quantity=f"{name}: growth per step at hω = 0.5 [-]",
-            predicted=1.0,
-            measured=kept,
-            tolerance=known,
-            observation=(f"After {STEPS} steps of {name} the amplitude is {kept**STEPS:.10f} of the initial one: the "
-                         "error is all in the phase."),
-        ))
-        drawn += [series(f"{name}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
-                  series(f"{name}, measured", dots, [100.0 * (frequency(y) - 1.0) for y in dots], DOTS)]
-    return found, Picture("Phase: too fast and too slow", "hω [-]", "error of the frequency [%]", drawn,
-                          "At small steps Verlet leads by (hω)²/24 and implicit midpoint lags by twice as much; "
-                          "neither loses energy.")
+    verlet = phase_curves(lesson, check, VERLET, np.arcsin, 0.25, GROWTH)
+    implicit = phase_curves(lesson, check, IMPLICIT_MIDPOINT, np.arctan, 0.0, OMEGA * NEWTON)
+    return Picture("Phase: too fast and too slow", "hω [-]", "error of the frequency [%]", verlet + implicit,
+                   "At small steps Verlet leads by (hω)²/24 and implicit midpoint lags by twice as much; neither loses "
+                   "energy.")
 
+
+def phase_curves(lesson, check, method, inverse, flat, known):
+    """Check that a method turns by 2 inverse(½hω) per step, on the ellipse 1 − flat (hω)²; return its curves."""
+    name, title = method.label, capitalised(method.label)
+    law = lambda y: 2.0 * inverse(0.5 * y) / y
+    frequency = lambda y: turning(lesson, method, y, 1000, np.sqrt(1.0 - flat * y * y)) / y
+    for y in (0.1, 0.5, 1.0):
+        got = frequency(y)
+        side = "ahead" if got > 1.0 else "behind"
+        check(f"{title} oscillates at (2/h) {'asin' if flat else 'atan'}(hω/2) instead of ω.",
+              f"{name}: frequency over the true one at hω = {y:g} [-]", law=law(y), found=got, within=known / y,
+              saw=f"At hω = {y:g} {name} is a whole period {side} after {1.0 / abs(got - 1.0):,.0f} periods.")
+    kept = growth(lesson, method, 0.5)
+    check(f"{title} keeps the amplitude.", f"{name}: growth per step at hω = 0.5 [-]",
+          law=1.0, found=kept, within=known,
+          saw=f"After {STEPS} steps of {name} the amplitude is {kept**STEPS:.10f} of the initial one: the error is all "
+              "in the phase.")
+    fine, dots = np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8)
+    return [series(f"{name}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
+            series(f"{name}, measured", dots, [100.0 * (frequency(y) - 1.0) for y in dots], DOTS)]
+
+
+def capitalised(label):
+    """Return a method's label as the first word of a sentence."""
+    return label[0].upper() + label[1:]
+
+
+# ---------------------------------------------------------------------------------------------- stiff systems
 
 class StiffPair(NamedTuple):
     """A wall at 0, then a spring, a mass, a spring, a mass; at rest at x = (1, 2)."""
@@ -584,109 +425,83 @@ class StiffPair(NamedTuple):
     rest: float = 1.0        # rest length of each spring [m]
 
 
+PAIR = StiffPair()
+SQUEEZED = 0.5               # the first spring at the start [m]
+DT, TIMES = 0.002, 500       # a step [s], and their number
+SOFT, STIFF = np.sqrt(PAIR.k1 / (2.0 * PAIR.m)), np.sqrt(2.0 * PAIR.k2 / PAIR.m)     # frequencies of both modes [rad/s]
+# [m/s]: Newton's tolerance, 1e-12 of the fastest velocity, 9.7 m/s, at every step
+NEWTON_OF_THE_PAIR = NEWTON * SOFT * SQUEEZED * TIMES
+
+
 def stiff_pair(t, x, v, p):
     """a₁ = (F − k₁(x₁ − L))/m,  a₂ = −F/m,  F = k₂(x₂ − x₁ − L)."""
     F = p.k2 * (x[1] - x[0] - p.rest)
     return np.array([F - p.k1 * (x[0] - p.rest), -F]) / p.m
 
 
+def pair_run(lesson, method):
+    """Return places and velocities (TIMES + 1, 2) of the pair; NaN from the step on at which the run diverges."""
+    xs, vs = np.full((2, TIMES + 1, 2), np.nan)
+    x, v = xs[0], vs[0] = np.array([1.0, 2.0]) * PAIR.rest - SQUEEZED, np.zeros(2)
+    try:
+        for n in range(TIMES):
+            x, v = lesson.advance(getattr(lesson, method.function), stiff_pair, n * DT, x, v, DT, 1, PAIR)
+            xs[n + 1], vs[n + 1] = x, v
+    except (Diverged, np.linalg.LinAlgError):
+        pass
+    return xs, vs
+
+
+def soft_mode(lesson, check, method, angle, shrink, loose):
+    """Check a run against a method that turns the soft mode by `angle` and shrinks it by `shrink` per step.
+
+    loose    largest stretch that the method leaves in the stiff spring [m]
+    """
+    name, size = method.label, SQUEEZED * shrink**TIMES
+    xs, vs = pair_run(lesson, method)
+    middle, velocity = (xs - np.array([1.0, 2.0]) * PAIR.rest).mean(axis=1), vs.mean(axis=1)
+    turned = np.unwrap(np.arctan2(velocity / SOFT, -middle))[-1] / (TIMES * DT)
+    left = np.hypot(middle[-1], velocity[-1] / SOFT)
+    stretch = np.abs(xs[:, 1] - xs[:, 0] - PAIR.rest).max()
+    check("The soft mode oscillates at the frequency of the method, as if the stiff spring were a rod.",
+          f"{name}: frequency of the soft mode [rad/s]",
+          law=angle / DT, found=turned, within=NEWTON_OF_THE_PAIR / (SOFT * size) / (TIMES * DT),
+          saw=f"With hω₂ = {DT * STIFF:.1e} {name} oscillates at {turned:.6f} rad/s; the exact value is {SOFT:.6f}.")
+    check("Its amplitude is that of the same method on an oscillator without a stiff spring.",
+          f"{name}: amplitude of the soft mode after 1 s [m]", law=size, found=left, within=NEWTON_OF_THE_PAIR / SOFT,
+          saw=f"After 1 s {name} has {left:.6f} m of {SQUEEZED} m left.")
+    check("The stiff spring stays stable and keeps its length.", f"{name}: largest stretch of the stiff spring [m]",
+          law=0.0, found=stretch, within=2.0 * DT * loose + np.spacing(2.0),
+          saw=f"{capitalised(name)} keeps the stiff spring's length within {stretch:.1e} m; floats are 4.4e-16 m "
+              "apart.")
+    return series(name, DT * np.arange(TIMES + 1), 1.0 + middle, DOTS)
+
+
 @case("stiff-pair", "A stiff pair", compiled=False)
-def stiff_pair_case(lesson):
+def stiff_pair_case(lesson, check):
     """A stiff pair, released at rest from x = (0.5, 1.5), moves as one: ω² = k₁/2m = 375,  ω₂ = √(2k₂/m) = 1.4e10.
 
     The second spring starts unstretched and must pull with 187.5 N: it stretches by 1.9e-18 m, below a hundredth of the
     spacing of floats there.  Per step the mean of both turns by atan(hω) on a spiral under implicit Euler, and by
     2 atan(½hω) on a circle under implicit midpoint.  At dt = 10 ms the 1 in  1 + h²k₂  is below round-off, and Newton's
-    matrix is singular.
+    matrix is singular.  Implicit Euler removes the stiff mode at every step, implicit midpoint keeps what every step
+    leaves of it.
     """
-    p, dt, steps = StiffPair(), 0.002, 500
-    omega, stiff, amplitude = np.sqrt(p.k1 / (2.0 * p.m)), np.sqrt(2.0 * p.k2 / p.m), 0.5
-    # [m/s]: Newton's tolerance, 1e-12 of the fastest velocity, 9.7 m/s, at every step
-    newton = NEWTON * omega * amplitude * steps
-    y = omega * dt
-    laws = {"implicit_euler_step": (np.arctan(y), 1.0 / np.sqrt(1.0 + y * y)),
-            "implicit_midpoint_step": (2.0 * np.arctan(0.5 * y), 1.0)}
-    found, drawn = [], []
-    for step, (angle, shrink) in laws.items():
-        ts, middle, velocity, stretch = swing(lesson, step, p, dt, steps)
-        turned = np.unwrap(np.arctan2(velocity / omega, -middle))[-1] / (steps * dt)
-        left = np.hypot(middle[-1], velocity[-1] / omega)
-        size = amplitude * shrink**steps
-        # implicit Euler removes the stiff mode at every step, implicit midpoint keeps what every step leaves of it
-        loose = 2.0 * dt * (newton if shrink == 1.0 else newton / steps) + np.spacing(2.0)
-        found += [
-            finding(
-                claim="The soft mode oscillates at the frequency of the method, as if the stiff spring were a rod.",
-                quantity=f"{LABEL[step]}: frequency of the soft mode [rad/s]",
-                predicted=angle / dt,
-                measured=turned,
-                tolerance=newton / (omega * size) / (steps * dt),
-                observation=(f"With hω₂ = {dt * stiff:.1e} {LABEL[step]} oscillates at {turned:.6f} rad/s; the exact "
-                             f"value is {omega:.6f}."),
-            ),
-            finding(
-                claim="Its amplitude is that of the same method on an oscillator without a stiff spring.",
-                quantity=f"{LABEL[step]}: amplitude of the soft mode after 1 s [m]",
-                predicted=size,
-                measured=left,
-                tolerance=newton / omega,
-                observation=f"After 1 s {LABEL[step]} has {left:.6f} m of {amplitude} m left.",
-            ),
-            finding(
-                claim="The stiff spring stays stable and keeps its length.",
-                quantity=f"{LABEL[step]}: largest stretch of the stiff spring [m]",
-                predicted=0.0,
-                measured=stretch,
-                tolerance=loose,
-                observation=(f"{LABEL[step][0].upper()}{LABEL[step][1:]} keeps the stiff spring's length within "
-                             f"{stretch:.1e} m; floats are 4.4e-16 m apart."),
-            ),
-        ]
-        drawn.append(series(LABEL[step], ts, 1.0 + middle, DOTS))
-    x, v = np.array([0.5, 1.5]), np.zeros(2)
-    refused = refuse(EXPLICIT, lambda name: lesson.advance(getattr(lesson, name), stiff_pair, 0.0, x, v, dt, steps, p))
-    found.append(finding(
-        claim="Every explicit method must refuse: its step may not exceed about 2/ω₂ = 1.4e-10 s.",
-        quantity="explicit methods that raise Diverged [of 6]",
-        predicted=len(EXPLICIT),
-        measured=refused,
-        tolerance=0.0,
-        observation=(f"At dt = {dt} s {refused} of {len(EXPLICIT)} explicit methods end in an error instead of a "
-                     "number."),
-    ))
-    fine = np.linspace(0.0, steps * dt, 241)
-    drawn.insert(0, series("truth", fine, 1.0 - amplitude * np.cos(omega * fine), LINE))
-    return found, Picture(
-        "A stiff pair: motion of the soft mode",
-        "t [s]",
-        "position of mass 1 [m]",
-        drawn,
-        "The step is ten million times too long for the stiff spring, and both implicit methods follow the soft "
-        "mode. Implicit Euler damps it, implicit midpoint does not.",
-    )
-
-
-def swing(lesson, step, p, dt, steps):
-    """Return times, mean displacement and velocity of the pair, and the stiff spring's largest stretch.
-
-    NaN from the step on at which the run diverges.
-    """
-    x, v = np.array([0.5, 1.5]), np.zeros(2)
-    xs, vs = np.full((steps + 1, 2), np.nan), np.full((steps + 1, 2), np.nan)
-    xs[0], vs[0] = x, v
-    try:
-        for n in range(steps):
-            x, v = lesson.advance(getattr(lesson, step), stiff_pair, n * dt, x, v, dt, 1, p)
-            xs[n + 1], vs[n + 1] = x, v
-    except (Diverged, np.linalg.LinAlgError):
-        pass
-    at_rest = np.array([1.0, 2.0]) * p.rest
-    return (
-        dt * np.arange(steps + 1),
-        (xs - at_rest).mean(axis=1),
-        vs.mean(axis=1),
-        np.abs(xs[:, 1] - xs[:, 0] - p.rest).max(),
-    )
+    y = SOFT * DT
+    shrink = 1.0 / np.sqrt(1.0 + y * y)
+    euler = soft_mode(lesson, check, IMPLICIT_EULER, np.arctan(y), shrink, NEWTON_OF_THE_PAIR / TIMES)
+    midpoint = soft_mode(lesson, check, IMPLICIT_MIDPOINT, 2.0 * np.arctan(0.5 * y), 1.0, NEWTON_OF_THE_PAIR)
+    refused = refuse(EXPLICIT, lambda name: lesson.advance(
+        getattr(lesson, name), stiff_pair, 0.0, np.array([0.5, 1.5]), np.zeros(2), DT, TIMES, PAIR))
+    check("Every explicit method must refuse: its step may not exceed about 2/ω₂ = 1.4e-10 s.",
+          "explicit methods that raise Diverged [of 6]", law=len(EXPLICIT), found=refused, within=0.0,
+          saw=f"At dt = {DT} s {refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number.")
+    fine = np.linspace(0.0, TIMES * DT, 241)
+    return Picture(
+        "A stiff pair: motion of the soft mode", "t [s]", "position of mass 1 [m]",
+        [series("truth", fine, 1.0 - SQUEEZED * np.cos(SOFT * fine), LINE), euler, midpoint],
+        "The step is ten million times too long for the stiff spring, and both implicit methods follow the soft mode. "
+        "Implicit Euler damps it, implicit midpoint does not.")
 
 
 END = 1e11                   # of the reaction [s]
@@ -703,6 +518,13 @@ def robertson(t, x, v, p):
     return np.array([back - slow, slow - back - fast, fast])
 
 
+def fastest_rate(y):
+    """Return the largest |eigenvalue| [1/s] of the reaction's Jacobian."""
+    slow, fast = [-0.04, 1e4 * y[2], 1e4 * y[1]], [0.0, 6e7 * y[1], 0.0]
+    J = np.array([slow, [0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]], fast])
+    return np.abs(np.linalg.eigvals(J)).max()
+
+
 def react(lesson, step, ratio):
     """Return times and concentrations of the reaction from 10⁻⁵ s to END; each time is `ratio` times the one before."""
     ts = END * ratio ** np.arange(-round(16.0 / np.log10(ratio)), 1.0)
@@ -714,92 +536,12 @@ def react(lesson, step, ratio):
     return ts, np.array(ys)
 
 
-@case("robertson", "Robertson's reaction", compiled=False)
-def robertson_case(lesson):
-    """Robertson's reaction to 10¹¹ s, with the steps in a constant ratio.
-
-    Late, y₂ = 4·10⁻⁶ y₁ and  ẏ₁ = −c y₁²,  c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s:  y₁ = 1/ct.
-    Implicit Euler with times tₙ₊₁ = q tₙ turns that into  uₙ₊₁ = uₙ − (q − 1) tₙ c uₙ₊₁²,  solved by uₙ = q/(c tₙ).
-    Its relative error is q − 1, first order in the step.  The exact solution differs by 3.3e-6 from 1/ct, so the
-    error is known to about that.  Explicit Euler is limited by the fast rate |λ| = 0.04 + 10⁴ y₃ + … to steps below
-    2/|λ|.
-    """
-    found = []
-    beside = abs(PUBLISHED[0] * 4.8e-4 * END - 1.0)
-    for per_decade in (50, 100):
-        ratio = 10.0 ** (1.0 / per_decade)
-        ts, ys = reached(lesson, ratio)
-        for k, name in enumerate(("y₁", "y₂")):
-            error = ys[-1, k] / PUBLISHED[k] - 1.0
-            found.append(finding(
-                claim=f"With times in the ratio q implicit Euler is wrong by q − 1 in {name}: first order.",
-                quantity=f"relative error of {name} at 10¹¹ s, {per_decade} steps per decade [-]",
-                predicted=ratio - 1.0,
-                measured=error,
-                tolerance=beside,
-                observation=(f"{len(ts):,} steps reach 10¹¹ s with {name} {100.0 * error:.4f} % above the published "
-                             "value."),
-            ))
-    # in a step the terms dt·0.04 y₁ < 2 cancel, each rounded by 1.1e-16 of itself about eight times
-    total = ys[-1].sum()
-    found.append(finding(
-        claim="The total is conserved: y₁ + y₂ + y₃ = 1.",
-        quantity="sum of the concentrations at 10¹¹ s [-]",
-        predicted=1.0,
-        measured=total,
-        tolerance=len(ts) * 16 * 1.1e-16,
-        observation=f"After {len(ts):,} steps the sum differs from 1 by {abs(total - 1.0):.0e}.",
-    ))
-    refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
-    found.append(finding(
-        claim="Every explicit method must refuse such steps.",
-        quantity="explicit methods that raise Diverged [of 6]",
-        predicted=len(EXPLICIT),
-        measured=refused,
-        tolerance=0.0,
-        observation=f"{refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number.",
-    ))
-    longest = 2.0 / fastest_rate(PUBLISHED)
-    step = bisect(lambda dt: leaves(lesson, dt), 1e-5, 1e-3)
-    found.append(finding(
-        claim="Explicit Euler is limited to steps of 2/|λ| even at the end, where the concentrations hardly change.",
-        quantity="longest step of explicit Euler at 10¹¹ s [s]",
-        predicted=longest,
-        measured=step,
-        tolerance=EDGE * longest,
-        observation=(f"A disturbance of y₂ grows at steps above {step:.5e} s, so 10¹¹ s would take {END / step:.1e} "
-                     "steps."),
-    ))
-    late = ts > 1e3
-    drawn = [
-        series(f"{name}, implicit Euler", np.log10(ts), np.log10(y), LINE) for name, y in zip(("y₁", "y₂", "y₃"), ys.T)
-    ]
-    drawn += [series("published", [np.log10(END)] * 3, np.log10(PUBLISHED), DOTS),
-              series("1/ct", np.log10(ts[late]), -np.log10(4.8e-4 * ts[late]), LINE)]
-    return found, Picture(
-        "Robertson's reaction",
-        "log₁₀ of time [s]",
-        "log₁₀ of concentration [-]",
-        drawn,
-        f"Sixteen decades of time in {len(ts):,} steps, each {100.0 * (ratio - 1.0):.1f} % longer than the one "
-        "before. Implicit Euler ends that much above the published y₁ and y₂; late y₁ follows 1/ct.",
-    )
-
-
 def reached(lesson, ratio):
     """Return the end of implicit Euler's run, or NaN if it diverges."""
     try:
-        return react(lesson, "implicit_euler_step", ratio)
+        return react(lesson, IMPLICIT_EULER.function, ratio)
     except (Diverged, np.linalg.LinAlgError):
         return np.array([END]), np.full((1, 3), np.nan)
-
-
-def fastest_rate(y):
-    """Return the largest |eigenvalue| [1/s] of the reaction's Jacobian."""
-    J = np.array(
-        [[-0.04, 1e4 * y[2], 1e4 * y[1]], [0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]], [0.0, 6e7 * y[1], 0.0]]
-    )
-    return np.abs(np.linalg.eigvals(J)).max()
 
 
 def leaves(lesson, dt):
@@ -814,6 +556,54 @@ def leaves(lesson, dt):
     except Diverged:
         return True
     return abs(y[1] - PUBLISHED[1]) > 0.5 * PUBLISHED[1]
+
+
+@case("robertson", "Robertson's reaction", compiled=False)
+def robertson_case(lesson, check):
+    """Robertson's reaction to 10¹¹ s, with the steps in a constant ratio.
+
+    Late, y₂ = 4·10⁻⁶ y₁ and  ẏ₁ = −c y₁²,  c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s:  y₁ = 1/ct.
+    Implicit Euler with times tₙ₊₁ = q tₙ turns that into  uₙ₊₁ = uₙ − (q − 1) tₙ c uₙ₊₁²,  solved by uₙ = q/(c tₙ).
+    Its relative error is q − 1, first order in the step.  The exact solution differs by 3.3e-6 from 1/ct, so the
+    error is known to about that.  Explicit Euler is limited by the fast rate |λ| = 0.04 + 10⁴ y₃ + … to steps below
+    2/|λ|.
+    """
+    for per_decade in (50, 100):
+        ratio = 10.0 ** (1.0 / per_decade)
+        ts, ys = reached(lesson, ratio)
+        for name, y, published in zip(("y₁", "y₂"), ys[-1], PUBLISHED):
+            error = y / published - 1.0
+            check(f"With times in the ratio q implicit Euler is wrong by q − 1 in {name}: first order.",
+                  f"relative error of {name} at 10¹¹ s, {per_decade} steps per decade [-]",
+                  law=ratio - 1.0, found=error, within=abs(PUBLISHED[0] * 4.8e-4 * END - 1.0),
+                  saw=f"{len(ts):,} steps reach 10¹¹ s with {name} {100.0 * error:.4f} % above the published value.")
+    total = ys[-1].sum()
+    # in a step the terms dt·0.04 y₁ < 2 cancel, each rounded by 1.1e-16 of itself about eight times
+    check("The total is conserved: y₁ + y₂ + y₃ = 1.", "sum of the concentrations at 10¹¹ s [-]",
+          law=1.0, found=total, within=len(ts) * 16 * 1.1e-16,
+          saw=f"After {len(ts):,} steps the sum differs from 1 by {abs(total - 1.0):.0e}.")
+    refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
+    check("Every explicit method must refuse such steps.", "explicit methods that raise Diverged [of 6]",
+          law=len(EXPLICIT), found=refused, within=0.0,
+          saw=f"{refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number.")
+    longest, step = 2.0 / fastest_rate(PUBLISHED), bisect(lambda dt: leaves(lesson, dt), 1e-5, 1e-3)
+    check("Explicit Euler is limited to steps of 2/|λ| even at the end, where the concentrations hardly change.",
+          "longest step of explicit Euler at 10¹¹ s [s]", law=longest, found=step, within=EDGE * longest,
+          saw=f"A disturbance of y₂ grows at steps above {step:.5e} s, so 10¹¹ s would take {END / step:.1e} steps.")
+    return reaction_picture(ts, ys, ratio)
+
+
+def reaction_picture(ts, ys, ratio):
+    """Draw the concentrations of a run, their published ends, and the law of late times."""
+    late = ts > 1e3
+    drawn = [series(f"{name}, implicit Euler", np.log10(ts), np.log10(y), LINE)
+             for name, y in zip(("y₁", "y₂", "y₃"), ys.T)]
+    drawn += [series("published", [np.log10(END)] * 3, np.log10(PUBLISHED), DOTS),
+              series("1/ct", np.log10(ts[late]), -np.log10(4.8e-4 * ts[late]), LINE)]
+    return Picture(
+        "Robertson's reaction", "log₁₀ of time [s]", "log₁₀ of concentration [-]", drawn,
+        f"Sixteen decades of time in {len(ts):,} steps, each {100.0 * (ratio - 1.0):.1f} % longer than the one "
+        "before. Implicit Euler ends that much above the published y₁ and y₂; late y₁ follows 1/ct.")
 
 
 # ---------------------------------------------------------------------------------------------- one step
@@ -835,33 +625,43 @@ def swinging(t, x, v, p):
     return -p.k @ np.sin(x) - p.c @ np.tanh(v) + p.drive * np.cos(p.omega * t)
 
 
+def random_swing(rng):
+    """Return a random Swing, and (t, x, v, dt) of a step."""
+    k, c = rng.uniform(-1.0, 1.0, (2, 2, 2))
+    x, v, drive = rng.uniform(-1.0, 1.0, (3, 2))
+    t, dt, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
+    return Swing(k, c, drive, omega), t, x, v, dt
+
+
+def single_step(method, lesson, rng):
+    """Compare a step of a method with that of its table."""
+    p, *state = random_swing(rng)
+    p = p._replace(c=0.0 * p.c) if method is BLANES_MOAN else p
+    truth = schemes.step_of(method.table)(lambda t, x, v: swinging(t, x, v, p), *state)
+    return getattr(lesson, method.function)(swinging, *state, p), truth
+
+
+@random_law("Many steps are single steps, each at its own time.",
+            "history of Runge–Kutta 4: largest error in three steps [s, m, m/s]", ROUNDED)
+def history(lesson, rng):
+    """Compare a history, and the end of a run of many steps, with single steps, each at its own time."""
+    p, t, x, v, dt = random_swing(rng)
+    step, states = schemes.step_of(schemes.RK4), [(x, v)]
+    for n in range(3):
+        states.append(step(lambda t, x, v: swinging(t, x, v, p), t + n * dt, *states[-1], dt))
+    ts, xs, vs = lesson.trajectory(lesson.rk4_step, swinging, t, x, v, dt, 3, p)
+    end = lesson.advance(lesson.rk4_step, swinging, t, x, v, dt, 3, p)
+    return (ts, np.stack((xs, vs), axis=1), *end), (t + dt * np.arange(4), np.array(states), *states[-1])
+
+
 @case("one-step", "One step of each method", compiled=False)
-def one_step(lesson):
+def one_step(lesson, check):
     """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
-    rng, worst, history = np.random.default_rng(11), Worst(), 0.0
-    for _ in range(TRIED):
-        (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
-        t, h, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
-        for method in (*INTEGRATORS, BLANES_MOAN):
-            p = Swing(k, 0.0 * c if method is BLANES_MOAN else c, drive, omega)
-            law, step = lambda t, x, v, p=p: swinging(t, x, v, p), schemes.step_of(method.table)
-            truth = step(law, t, x, v, h)
-            got = getattr(lesson, method.function)(swinging, t, x, v, h, p)
-            worst.keep(method, np.max(np.abs(np.array(got) - truth)))
-        # a history is that of single steps, each at its own time, and ends where a run of many steps ends
-        p, states, rk4 = Swing(k, c, drive, omega), [(x, v)], lesson.rk4_step
-        for n in range(3):
-            law = lambda t, x, v, p=p: swinging(t, x, v, p)
-            states.append(schemes.step_of(schemes.RK4)(law, t + n * h, *states[-1], h))
-        ts, xs, vs = lesson.trajectory(rk4, swinging, t, x, v, h, 3, p)
-        end = np.array(lesson.advance(rk4, swinging, t, x, v, h, 3, p))
-        errors = np.stack((xs, vs), axis=1) - np.array(states), ts - t - h * np.arange(4), end - states[-1]
-        history = np.max((history, *(np.max(np.abs(error)) for error in errors)))
-    return [agreement(f"One step of {method.label} is that of its published coefficients.",
-                      f"{method.label}: largest error of a step [m, m/s]", error,
-                      100.0 * NEWTON if method in IMPLICIT else ROUNDED) for method, error in worst.items()] + [
-        agreement("Many steps are single steps, each at its own time.",
-                  "history of Runge–Kutta 4: largest error in three steps [s, m, m/s]", history, ROUNDED)], None
+    steps = [random_law(f"One step of {method.label} is that of its published coefficients.",
+                        f"{method.label}: largest error of a step [m, m/s]",
+                        100.0 * NEWTON if method in IMPLICIT else ROUNDED)(partial(single_step, method))
+             for method in (*INTEGRATORS, BLANES_MOAN)]
+    check.laws(lesson, (*steps, history), seed=11, times=TRIED)
 
 
 # ---------------------------------------------------------------------------------------------- adaptive steps
@@ -894,78 +694,86 @@ def counted_by_theory(e):
     return 2.0 * np.pi * np.mean(1.0 / np.sqrt(1.0 - e * np.cos(E))) / SHARE
 
 
+@random_law("A planet at any place of its ellipse moves as by the published rule.",
+            "positions after some revolutions: largest error, over a [-]", 100.0 * ROUNDED)
+def adaptive_run(lesson, rng):
+    """Compare a run from any place of an ellipse, anywhere in space, with the published rule in complex numbers."""
+    mu, a, e, before, T = rng.uniform((0.5, 0.5, 0.1, 0.0, 1.0), (2.0, 2.0, 0.8, 6.0, 4.0))
+    p = Planet(mu, a, e)
+    x, v = orbit(*perihelion(p), mu, before)
+    axis_1, axis_2, _ = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    plane = np.stack((axis_1, axis_2))
+    got, _ = lesson.advance_adaptive(lesson.blanes_moan_step, attracted, before, x @ plane, v @ plane, SHARE, T, p)
+    truth = adaptive_march(lambda t, x, v: -mu * x / abs(x) ** 3, complex(*x), complex(*v), SHARE, T)
+    return got / a, (truth.real, truth.imag) @ plane / a
+
+
 @case("adaptive-steps", "Steps that adapt to the distance", compiled=False)
-def adaptive_steps(lesson):
+def adaptive_steps(lesson, check):
     """A revolution takes as many steps as the rule promises, from any place, and a fall ends where the sun is."""
-    counts = np.array([steps_per_revolution(lesson, Planet(e=e)) for e in SHAPES])
-    theory = np.array([counted_by_theory(e) for e in SHAPES])
-    worst, rng = 0.0, np.random.default_rng(13)
-    for _ in range(TRIED // 2):
-        mu, a, e, before, T = rng.uniform((0.5, 0.5, 0.1, 0.0, 1.0), (2.0, 2.0, 0.8, 6.0, 4.0))
-        p = Planet(mu, a, e)
-        x, v = orbit(*perihelion(p), mu, before)
-        plane = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]              # of the ellipse, anywhere in space
-        got, _ = lesson.advance_adaptive(lesson.blanes_moan_step, attracted, before, x @ plane, v @ plane, SHARE, T, p)
-        truth = adaptive_march(lambda t, x, v, mu=mu: -mu * x / abs(x) ** 3, complex(*x), complex(*v), SHARE, T)
-        worst = np.max((worst, np.linalg.norm(got - (truth.real, truth.imag) @ plane) / a))
-    p, r = Planet(mu=2.0), 1.5
-    fall = np.pi / np.sqrt(8.0) * np.sqrt(r**3 / p.mu)
-    start = np.array([r, 0.0]), np.zeros(2)
-    found = bisect(lambda T: refuse((BLANES_MOAN,), lambda name: lesson.advance_adaptive(
-        getattr(lesson, name), attracted, 0.0, *start, SHARE, T, p)) == 1, 0.5 * fall, 2.0 * fall)
-    return [
-        agreement("A planet at any place of its ellipse moves as by the published rule.",
-                  "positions after some revolutions: largest error, over a [-]", worst, 100.0 * ROUNDED),
-        finding(claim="A revolution with the eccentricity 0.99 takes ∮(1 − e cos E)^(−1/2) dE/share steps.",
-                quantity="steps per revolution [-]", predicted=theory[-1], measured=counts[-1],
-                tolerance=COUNTED * theory[-1] + 0.1,
-                observation=f"It takes {counts[-1]:.1f} steps, and a circle {counts[0]:.1f}. Equal steps that are as "
-                            f"short near the sun would be {1e3 * 2.0 * np.pi / SHARE:,.0f}."),
-        finding(claim="A fall from rest reaches the origin after π/√8 √(r³/μ), and no step leads beyond.",
-                quantity="longest run that ends with a number [s]", predicted=fall, measured=found,
-                tolerance=(SHARE**4 + EDGE) * fall,
-                observation=f"A run of {found:.6f} s ends; a longer one raises Diverged."),
-    ], Picture(
+    check.laws(lesson, (adaptive_run,), seed=13, times=TRIED // 2)
+    counts = [steps_per_revolution(lesson, Planet(e=e)) for e in SHAPES]
+    theory, equal = counted_by_theory(SHAPES[-1]), 1e3 * 2.0 * np.pi / SHARE
+    check("A revolution with the eccentricity 0.99 takes ∮(1 − e cos E)^(−1/2) dE/share steps.",
+          "steps per revolution [-]", law=theory, found=counts[-1], within=COUNTED * theory + 0.1,
+          saw=f"It takes {counts[-1]:.1f} steps, and a circle {counts[0]:.1f}. Equal steps that are as short near the "
+              f"sun would be {equal:,.0f}.")
+    p, start = Planet(mu=2.0), np.array([1.5, 0.0])
+    fall = np.pi / np.sqrt(8.0) * np.sqrt(start[0]**3 / p.mu)
+    ends = lambda T: lambda name: lesson.advance_adaptive(
+        getattr(lesson, name), attracted, 0.0, start, np.zeros(2), SHARE, T, p)
+    longest = bisect(lambda T: refuse((BLANES_MOAN,), ends(T)) == 1, 0.5 * fall, 2.0 * fall)
+    check("A fall from rest reaches the origin after π/√8 √(r³/μ), and no step leads beyond.",
+          "longest run that ends with a number [s]", law=fall, found=longest, within=(SHARE**4 + EDGE) * fall,
+          saw=f"A run of {longest:.6f} s ends; a longer one raises Diverged.")
+    fine = np.linspace(0.0, 0.995, 100)
+    return Picture(
         "How many steps a revolution needs", "eccentricity [-]", "adaptive steps per revolution [-]",
-        [series("∮(1 − e cos E)^(−1/2) dE/share", curve := np.linspace(0.0, 0.995, 100),
-                [counted_by_theory(e) for e in curve], LINE),
+        [series("∮(1 − e cos E)^(−1/2) dE/share", fine, [counted_by_theory(e) for e in fine], LINE),
          series("counted in ten revolutions", SHAPES, counts, DOTS)],
         f"The share is {SHARE:g}: on a circle, the angle of a step. A comet that comes a hundred times nearer to the "
         "sun than a planet needs only about twice as many steps.")
 
 
-@case("what-measures-methods", "What measures a method", compiled=False)
-def what_measures_methods(lesson):
-    """The matrix of a step, its spectral radius and the order of convergence, on examples whose answers are known."""
-    rng, errors = np.random.default_rng(12), {"matrix": [], "newton": [], "radius": [], "order": []}
-    for _ in range(TRIED):
-        omega, zeta, h, order, scale = rng.uniform((0.5, 0.1, 0.1, 1.0, 0.1), (3.0, 2.0, 1.0, 4.0, 10.0))
-        euler = np.array([[1.0, h], [-h * omega**2, 1.0 - 2.0 * zeta * omega * h]])
-        errors["matrix"].append(np.max(np.abs(lesson.amplification_matrix(lesson.euler_step, omega, zeta, h) - euler)))
+# ---------------------------------------------------------------------------------------------- measures of a method
 
-        (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
-        slope = -h * k * np.cos(x + h * v) - c / np.cosh(v) ** 2
-        matrix = lesson.newton_matrix(swinging, 0.3, x, v, h, Swing(k, c, drive, 1.0))
-        errors["newton"].append(np.max(np.abs(matrix - (np.eye(2) - h * slope))))
+@random_law("The matrix of a step of Euler is 1 + h J.", "entries of the matrix: largest error [-]", ROUNDED)
+def matrix_of_euler(lesson, rng):
+    omega, zeta, h = rng.uniform((0.5, 0.1, 0.1), (3.0, 2.0, 1.0))
+    truth = np.array([[1.0, h], [-h * omega**2, 1.0 - 2.0 * zeta * omega * h]])
+    return lesson.amplification_matrix(lesson.euler_step, omega, zeta, h), truth
 
-        any_matrix = rng.uniform(-1.0, 1.0, (2, 2))
-        radius = np.max(np.abs(np.linalg.eigvals(any_matrix)))
-        errors["radius"].append(abs(lesson.spectral_radius(any_matrix) - radius))
 
-        dts = np.array([0.1, 0.05, 0.02, 0.01])
-        scattered = scale * dts**order * rng.uniform(0.9, 1.1, 4)
-        slope = np.polyfit(np.log(dts), np.log(scattered), 1)[0]
-        errors["order"].append(abs(lesson.observed_order(dts, scattered) - slope))
-    # a central difference of h = 6e-6 errs by h²/6 times a third derivative, and by round-off over h: 2e-10 in all;
-    # near a double eigenvalue round-off counts by its root
-    return [agreement("The matrix of a step of Euler is 1 + h J.", "entries of the matrix: largest error [-]",
-                      max(errors["matrix"]), ROUNDED),
-            agreement("Newton's matrix is 1 − dt ∂a/∂v, along x + dt v.", "Newton's matrix: largest error [-]",
-                      max(errors["newton"]), 1e-9),
-            agreement("The spectral radius is the largest absolute eigenvalue.", "spectral radius: largest error [-]",
-                      max(errors["radius"]), 1e-9),
-            agreement("The observed order is the slope of the least squares on logarithmic scales.",
-                      "order: largest error [-]", max(errors["order"]), 1e-12)], None
+@random_law("Newton's matrix is 1 − dt ∂a/∂v, along x + dt v.", "Newton's matrix: largest error [-]", 1e-9)
+def matrix_of_newton(lesson, rng):
+    p, t, x, v, dt = random_swing(rng)
+    slope = -dt * p.k * np.cos(x + dt * v) - p.c / np.cosh(v) ** 2
+    return lesson.newton_matrix(swinging, t, x, v, dt, p), np.eye(2) - dt * slope
+
+
+@random_law("The spectral radius is the largest absolute eigenvalue.", "spectral radius: largest error [-]", 1e-9)
+def largest_eigenvalue(lesson, rng):
+    matrix = rng.uniform(-1.0, 1.0, (2, 2))
+    return lesson.spectral_radius(matrix), np.max(np.abs(np.linalg.eigvals(matrix)))
+
+
+@random_law("The observed order is the slope of the least squares on logarithmic scales.",
+            "order: largest error [-]", 1e-12)
+def fitted_order(lesson, rng):
+    order, scale = rng.uniform((1.0, 0.1), (4.0, 10.0))
+    dts = np.array([0.1, 0.05, 0.02, 0.01])
+    errors = scale * dts**order * rng.uniform(0.9, 1.1, 4)
+    return lesson.observed_order(dts, errors), np.polyfit(np.log(dts), np.log(errors), 1)[0]
+
+
+@case("what-measures-methods", "Measures of a method", compiled=False)
+def what_measures_methods(lesson, check):
+    """The matrix of a step, its spectral radius and the order of convergence, on examples whose answers are known.
+
+    A central difference of h = 6e-6 errs by h²/6 times a third derivative, and by round-off over h: 2e-10 in all.  Near
+    a double eigenvalue round-off counts by its root.
+    """
+    check.laws(lesson, (matrix_of_euler, matrix_of_newton, largest_eigenvalue, fitted_order), seed=12, times=TRIED)
 
 
 # ---------------------------------------------------------------------------------------------- a million steps
@@ -1006,7 +814,7 @@ def walk_of_energy(dt):
 
 
 @case("a-million-steps", "A million steps of a planet")
-def a_million_steps(lesson):
+def a_million_steps(lesson, check):
     """On its discrete circle Verlet keeps the energy, so that nothing but rounding changes it: a random walk.
 
     After n steps it is off by √n times one step's share (Brouwer's law).  The step is a power of two, because a rounded
@@ -1018,16 +826,16 @@ def a_million_steps(lesson):
     law, longest = (jitted(attracted_each), MANY) if fast else (attracted_each, FEW)
     x, v = discrete_circle(DYADIC, np.arange(1.0, CIRCLES + 1.0))
     energy = lambda x, v: 0.5 * np.sum(v * v, axis=1) - 1.0 / np.sqrt(np.sum(x * x, axis=1))
-    counts, walks, share = [longest // 100, longest // 10, longest], [], walk_of_energy(DYADIC)
+    counts, share, walks = np.array([longest // 100, longest // 10, longest]), walk_of_energy(DYADIC), []
     for n in counts:
-        off = energy(*lesson.advance(lesson.verlet_step, law, 0.0, x, v, DYADIC, n, Planet())) - energy(x, v)
+        off = energy(*lesson.advance(lesson.verlet_step, law, 0.0, x, v, DYADIC, int(n), Planet())) - energy(x, v)
         walks.append(np.sqrt(np.mean(off**2)))
-    return [finding(
-        claim="Rounding changes the energy of a planet like a random walk, by √n times the share of one step.",
-        quantity=f"energy after {n:,} steps: root mean square of {CIRCLES} planets [J/kg]",
-        predicted=share * np.sqrt(n), measured=walk, tolerance=SPREAD * share * np.sqrt(n),
-        observation=f"After {n:,} steps, {n * 2.0 * np.arcsin(0.5 * DYADIC) / (2.0 * np.pi):,.0f} revolutions, the "
-                    f"energy is off by {walk:.1e} J/kg.") for n, walk in zip(counts, walks)], Picture(
+        revolutions = n * 2.0 * np.arcsin(0.5 * DYADIC) / (2.0 * np.pi)
+        check("Rounding changes the energy of a planet like a random walk, by √n times the share of one step.",
+              f"energy after {n:,} steps: root mean square of {CIRCLES} planets [J/kg]",
+              law=share * np.sqrt(n), found=walks[-1], within=SPREAD * share * np.sqrt(n),
+              saw=f"After {n:,} steps, {revolutions:,.0f} revolutions, the energy is off by {walks[-1]:.1e} J/kg.")
+    return Picture(
         "The energy of a planet, rounded a million times", "log₁₀ of the steps [-]",
         "log₁₀ of the energy's error [J/kg]",
         [series("√n times the share of one step", np.log10(counts), np.log10(share * np.sqrt(counts)), LINE),
@@ -1081,32 +889,28 @@ def sampled(lesson, starts, steps):
     return run[1][::steps // SLICES]
 
 
-@case("limit-of-prediction", "How long a double pendulum can be predicted", compiled=False)
-def limit_of_prediction(lesson):
+@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False)
+def limit_of_prediction(lesson, check):
     """A small error grows by a factor that the motion alone decides, whatever its cause: method, start or rounding."""
     ts, truth, factor = true_growth()
     starts = HELD + np.array([[0.0, 0.0], *([10.0**-k, 0.0] for k in EXPONENTS)])
     fine, coarse = (sampled(lesson, starts, steps) for steps in (500, 250))
-    apart = np.linalg.norm(fine[:, 1:] - fine[:, :1], axis=2).T
-    lost = [first_beyond(ts, np.linalg.norm(run[:, 0] - truth, axis=1)) for run in (fine, coarse)]
-    found = [finding(
-        claim="Two starts that differ by ε are apart by ε times the growth of a small error, while that is small.",
-        quantity=f"time until starts 1e-{k} rad apart differ by {HORIZON:g} rad [s]",
-        predicted=first_beyond(ts, factor * 10.0**-k), measured=first_beyond(ts, sizes), tolerance=RIPPLE,
-        observation=f"They differ by {HORIZON:g} rad after {first_beyond(ts, sizes):.2f} s.")
-        for k, sizes in zip(EXPONENTS, apart)]
-    later = first_beyond(ts, factor / np.interp(lost[1], ts, factor), 16.0)
-    found.append(finding(
-        claim="Half the step makes Runge–Kutta 4 sixteen times as accurate. The prediction then lasts until an error "
-              "has grown sixteen times larger.",
-        quantity="time until 500 steps per second err by 0.1 rad [s]", predicted=later, measured=lost[0],
-        tolerance=2.0 * RIPPLE,
-        observation=f"250 steps per second predict {lost[1]:.2f} s, and 500 predict {lost[0]:.2f} s."))
-    every = slice(None, None, 5)
-    return found, Picture(
-        "How two nearly equal starts part", "t [s]", "log₁₀ of the distance of the two [rad]",
-        [line for k, sizes in zip(EXPONENTS, apart) for line in (
-            series(f"1e-{k}, theory", ts[every], np.log10(np.minimum(10.0, factor[every] * 10.0**-k)), LINE),
-            series(f"1e-{k}, measured", ts[1::40], np.log10(np.maximum.accumulate(sizes)[1::40]), DOTS))],
+    drawn = []
+    for k, neighbour in zip(EXPONENTS, np.swapaxes(fine[:, 1:], 0, 1)):
+        apart, theory = np.linalg.norm(neighbour - fine[:, 0], axis=1), factor * 10.0**-k
+        differ = first_beyond(ts, apart)
+        check("Two starts that differ by ε are apart by ε times the growth of a small error, while that is small.",
+              f"time until starts 1e-{k} rad apart differ by {HORIZON:g} rad [s]",
+              law=first_beyond(ts, theory), found=differ, within=RIPPLE,
+              saw=f"They differ by {HORIZON:g} rad after {differ:.2f} s.")
+        drawn += [series(f"1e-{k}, theory", ts[::5], np.log10(np.minimum(10.0, theory[::5])), LINE),
+                  series(f"1e-{k}, measured", ts[1::40], np.log10(np.maximum.accumulate(apart)[1::40]), DOTS)]
+    lost, lost_by_half = (first_beyond(ts, np.linalg.norm(run[:, 0] - truth, axis=1)) for run in (coarse, fine))
+    check("Half the step makes Runge–Kutta 4 sixteen times as accurate. The prediction then lasts until an error has "
+          "grown sixteen times larger.", "time until 500 steps per second err by 0.1 rad [s]",
+          law=first_beyond(ts, factor / np.interp(lost, ts, factor), 16.0), found=lost_by_half, within=2.0 * RIPPLE,
+          saw=f"250 steps per second predict {lost:.2f} s, and 500 predict {lost_by_half:.2f} s.")
+    return Picture(
+        "How two nearly equal starts part", "t [s]", "log₁₀ of the distance of the two [rad]", drawn,
         f"After {AHEAD:g} s an error is {factor[-1]:.0e} times as large. A thousand times the accuracy buys only a few "
         "seconds. Rounding, which is 1e-16, limits every prediction, that of the truth included.")
