@@ -44,6 +44,27 @@ class Checks(list):
         """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
+    def laws(self, lesson, laws, *, seed, times):
+        """Add a Finding for each Law: it holds in so many random cases, which it draws from a seed of its own."""
+        for number, law in enumerate(laws, 100 * seed):
+            rng, worst = np.random.default_rng(number), Worst()
+            for _ in range(times):
+                worst.note(law, *law.compare(lesson, rng))
+            self.agree(law.claim, law.quantity, worst[law], law.within)
+
+
+class Law(NamedTuple):
+    """A statement about one random case after another: the function that follows @random_law."""
+    claim: str               # as in Finding
+    quantity: str
+    within: float
+    compare: Callable        # (lesson, rng) → (got, truth) of one case, as in Worst.note
+
+
+def random_law(claim, quantity, within):
+    """Make a Law of a function (lesson, rng) → (got, truth), for Checks.laws."""
+    return lambda compare: Law(claim, quantity, within, compare)
+
 
 class Picture(NamedTuple):
     """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS; or maps in their place."""
