@@ -185,6 +185,13 @@ class Worst(dict):
             self.keep(law, np.max(np.abs(np.where(got == truth, 0.0, got - truth))))
 
 
+def relative(*pairs):
+    """Return (got, truth) of all pairs (got, truth) together, each over the largest number of its truth."""
+    sizes = [np.max(np.abs(flat(truth))) for _, truth in pairs]
+    got, truths = zip(*pairs, strict=True)
+    return tuple(tuple(flat(part) / size for part, size in zip(parts, sizes, strict=True)) for parts in (got, truths))
+
+
 def flat(numbers):
     """Return all numbers of an array or of a tuple of arrays in one row."""
     parts = numbers if isinstance(numbers, tuple) else (numbers,)
