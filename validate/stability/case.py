@@ -120,6 +120,11 @@ def series(label, xs, ys, style):
     return (label, [float(x) for x in xs], [float(y) for y in ys], style)
 
 
+def log_series(label, xs, ys, style):
+    """Make one curve of a Picture whose axes are both logarithms to base 10."""
+    return series(label, np.log10(xs), np.log10(ys), style)
+
+
 # ---------------------------------------------------------------------------------------------- experiments
 
 def bisect(too_long, low, high):
