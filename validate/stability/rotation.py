@@ -1,21 +1,38 @@
-"""Rotation at its limits: energy drift, fast spins, needles, and the spin below which a sleeping top falls.
+"""Rotation at its limits: energy drift, fast spins, needles, and the spin of a sleeping top.
 
 Every bound here is a closed form; the experiment is a run of the lesson's own steps.
 pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so fast-spin omits it.
 *Source:* Euler 1758; Landau and Lifshitz, Mechanics, §§ 33 to 37; Klein and Sommerfeld 1897 for the sleeping top.
 """
 
+from functools import partial
+from types import SimpleNamespace
+
 import numpy as np
 
 from solutions.checks import Diverged
 from validate.methods import TURNS
+from validate.reference import turns
 from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
-from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, series
+from validate.stability.case import (
+    DOTS,
+    EDGE,
+    LINE,
+    Law,
+    Picture,
+    bisect,
+    case,
+    log_series,
+    random_law,
+    relative,
+    series,
+)
 
 EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
 KEEP_L = [m.function for m in TURNS if not m.function.endswith("gyroscopic_step")]
+KEEP_ENERGY = "midpoint_step", "composed_midpoint_step", "splitting_step", "composed_splitting_step"
 AT_START = np.array([1.0, 0.0, 0.0, 0.0])
 
 
@@ -55,9 +72,17 @@ def energies(lesson, method, I, omega, dt, ts):
     return np.array(found)
 
 
+def substeps(method):
+    """Return of how many rotations a step of a method consists."""
+    return 5 if method.startswith("composed") else 1
+
+
 # ---------------------------------------------------------------------------------------------- drift of energy
 
 CYLINDER, SPUN, MS = (0.04, 0.04, 0.02), (2.0, 4.0, 6.0), 1e-3     # moments [kg m²], ω [rad/s], step [s]
+SPUN_STEPS = 2_000           # of 1 ms
+SPUN_FOR = SPUN_STEPS * MS   # [s]
+GAINED = f"energy gained in {SPUN_FOR:g} s [-]"
 
 
 def gyroscopic_energy(t, sign):
@@ -84,81 +109,30 @@ def kept_L_energy(t, times=1.0):
     return energy(u) / energy(u0)
 
 
-SPUN_STEPS = 2_000           # of 1 ms
-SPUN_FOR = SPUN_STEPS * MS   # [s]
+def gyroscopic_drift_of_energy(check, energy):
+    """Judge both gyroscopic steps by ±½ dt ω̇ᵀIω̇, and each by the factor of ω_⊥²; energy: {method: gain in the run}.
 
-
-def first_order_drift(energy):
-    """Judge both gyroscopic steps by ±½ dt ω̇ᵀIω̇; energy: {method: gain in the whole run}."""
+    The first tolerance: sinh x = x (1 + x²/6 + …) with x = 2 · drift / share of ω_⊥ in the energy < 0.1.
+    """
     I, w = np.array(CYLINDER), np.array(SPUN)
     w_dot = np.cross(I * w, w) / I
     first = 0.5 * MS * (w_dot @ (I * w_dot)) * SPUN_FOR / (0.5 * w @ (I * w))
-    # The tolerance: sinh x = x (1 + x²/6 + …) with x = 2 · drift / share of ω_⊥ in the energy < 0.1.
-    return [
-        finding(
-            claim="A first-order step changes the energy by ±½ dt ω̇ᵀIω̇ per second.",
-            quantity=f"half the difference between the two gyroscopic steps after {SPUN_FOR:g} s [-]",
-            predicted=first,
-            measured=0.5 * (energy["gyroscopic_step"] - energy["implicit_gyroscopic_step"]),
-            tolerance=0.1**2 / 5.0 * first,
-            observation=(f"{SPUN_FOR:g} s at 1 ms: {100.0 * energy['gyroscopic_step']:+.2f} % and "
-                         f"{100.0 * energy['implicit_gyroscopic_step']:+.2f} % of the energy, about "
-                         f"±{100.0 * first:.2f} %."),
-        ),
-    ]
-
-
-def gyroscopic_drift_in_closed_form(energy):
-    """Judge each of them by the factor of ω_⊥²."""
-    found = []
+    begin, end = energy["gyroscopic_step"], energy["implicit_gyroscopic_step"]
+    check("A first-order step changes the energy by ±½ dt ω̇ᵀIω̇ per second.",
+          f"half the difference between the two gyroscopic steps after {SPUN_FOR:g} s [-]",
+          law=first, found=0.5 * (begin - end), within=0.1**2 / 5.0 * first,
+          saw=f"{SPUN_FOR:g} s at 1 ms: {100.0 * begin:+.2f} % and {100.0 * end:+.2f} % of the energy, about "
+              f"±{100.0 * first:.2f} %.")
     for method, sign, place in (("gyroscopic_step", 1, "beginning"), ("implicit_gyroscopic_step", -1, "end")):
-        law = gyroscopic_energy(SPUN_FOR, sign) - 1.0
-        found.append(finding(
-            claim=f"With the gyroscopic term at the {place} of the step ω_⊥² changes by (1 + (Ω dt)²)^(±1), exactly.",
-            quantity=f"{LABEL[method]}: energy gained in {SPUN_FOR:g} s [-]",
-            predicted=law,
-            measured=energy[method],
-            tolerance=20.0 * EPS * SPUN_STEPS,
-            observation=(f"With the term at the {place} of the step the energy changes by "
-                         f"{100.0 * energy[method]:+.4f} %, as in the closed form."),
-        ))
-    return found
-
-
-def drift_of_a_kept_momentum(energy):
-    """Judge the steps that keep L by the logistic curve."""
-    found = []
-    for method, times in (("axis_angle_step", 1.0), ("quaternion_step", 1.0), ("matrix_step", 3.0)):
-        law = kept_L_energy(SPUN_FOR, times) - 1.0
-        found.append(finding(
-            claim="A step that keeps L and turns with its first ω gains energy along a logistic curve.",
-            quantity=f"{LABEL[method]}: energy gained in {SPUN_FOR:g} s [-]",
-            predicted=law,
-            measured=energy[method],
-            tolerance=2.0 * np.linalg.norm(SPUN) * MS * law,
-            observation=(f"{LABEL[method]}: {100.0 * energy[method]:+.2f} % in {SPUN_FOR:g} s, although L is kept to "
-                         "the last digit."),
-        ))
-    return found
-
-
-def no_drift(energy):
-    """Judge the steps that keep the energy."""
-    found = []
-    for method in ("midpoint_step", "composed_midpoint_step", "splitting_step", "composed_splitting_step"):
-        found.append(finding(
-            claim="A step that is exact or preserves quadratic invariants keeps L and the energy.",
-            quantity=f"{LABEL[method]}: energy gained in {SPUN_FOR:g} s [-]",
-            predicted=0.0,
-            measured=energy[method],
-            tolerance=5.0 * 20.0 * EPS * SPUN_STEPS,
-            observation=f"{LABEL[method]}: {energy[method]:+.0e} of the energy after {SPUN_STEPS:,} steps.",
-        ))
-    return found
+        check(f"With the gyroscopic term at the {place} of the step ω_⊥² changes by (1 + (Ω dt)²)^(±1), exactly.",
+              f"{LABEL[method]}: {GAINED}", law=gyroscopic_energy(SPUN_FOR, sign) - 1.0, found=energy[method],
+              within=20.0 * EPS * SPUN_STEPS,
+              saw=f"With the term at the {place} of the step the energy changes by {100.0 * energy[method]:+.4f} %, "
+                  "as in the closed form.")
 
 
 @case("gyroscopic-drift", "Gyroscopic drift", compiled=False)
-def gyroscopic_drift(lesson):
+def gyroscopic_drift(lesson, check):
     """A first-order step changes the energy by  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ in body coordinates.
 
     For this cylinder that is ±0.95 % in 2 s at 1 ms.  With the gyroscopic term at the beginning,  I Δω = −dt
@@ -168,185 +142,151 @@ def gyroscopic_drift(lesson):
     same ΔE. Renormalising by columns adds  dt² κ  to the turn, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this cylinder
     twice the drift on top.
     """
-    ts, fine = np.linspace(0.0, SPUN_FOR, 11)[1:], np.linspace(0.0, SPUN_FOR, 101)
+    ts = np.linspace(0.0, SPUN_FOR, 11)[1:]
     runs = {m: energies(lesson, m, CYLINDER, SPUN, MS, ts) - 1.0 for m in LABEL}
     energy = {m: gained[-1] for m, gained in runs.items()}
-    found = first_order_drift(energy) + gyroscopic_drift_in_closed_form(energy)
-    found += drift_of_a_kept_momentum(energy) + no_drift(energy)
-    drawn = [series("theory, gyroscopic", fine, 100.0 * (gyroscopic_energy(fine, 1) - 1.0), LINE),
-             series("theory, gyroscopic, implicit", fine, 100.0 * (gyroscopic_energy(fine, -1) - 1.0), LINE),
-             series("theory, L kept", fine, 100.0 * (kept_L_energy(fine) - 1.0), LINE),
-             series("theory, renormalised", fine, 100.0 * (kept_L_energy(fine, 3.0) - 1.0), LINE)]
-    drawn += [
-        series(LABEL[m], ts, 100.0 * runs[m], DOTS)
-        for m in (
-            "gyroscopic_step",
-            "implicit_gyroscopic_step",
-            "quaternion_step",
-            "matrix_step",
-            "midpoint_step",
-            "splitting_step",
-        )
-    ]
-    return found, Picture(
-        "Energy of a thrown cylinder at 1 ms",
-        "t [s]",
-        "energy gained [%]",
-        drawn,
+    gyroscopic_drift_of_energy(check, energy)
+    for method, times in (("axis_angle_step", 1.0), ("quaternion_step", 1.0), ("matrix_step", 3.0)):
+        law = kept_L_energy(SPUN_FOR, times) - 1.0
+        check("A step that keeps L and turns with its first ω gains energy along a logistic curve.",
+              f"{LABEL[method]}: {GAINED}", law=law, found=energy[method], within=2.0 * np.linalg.norm(SPUN) * MS * law,
+              saw=f"{LABEL[method]}: {100.0 * energy[method]:+.2f} % in {SPUN_FOR:g} s, although L is kept to the last "
+                  "digit.")
+    for method in KEEP_ENERGY:
+        check("A step that is exact or preserves quadratic invariants keeps L and the energy.",
+              f"{LABEL[method]}: {GAINED}", law=0.0, found=energy[method], within=5.0 * 20.0 * EPS * SPUN_STEPS,
+              saw=f"{LABEL[method]}: {energy[method]:+.0e} of the energy after {SPUN_STEPS:,} steps.")
+    return drift_picture(ts, runs)
+
+
+def drift_picture(ts, runs):
+    """Draw the energy gained by six steps, and theory."""
+    fine, shown = np.linspace(0.0, SPUN_FOR, 101), ("gyroscopic_step", "implicit_gyroscopic_step", "quaternion_step",
+                                                    "matrix_step", "midpoint_step", "splitting_step")
+    laws = (("theory, gyroscopic", gyroscopic_energy(fine, 1)),
+            ("theory, gyroscopic, implicit", gyroscopic_energy(fine, -1)),
+            ("theory, L kept", kept_L_energy(fine)), ("theory, renormalised", kept_L_energy(fine, 3.0)))
+    return Picture(
+        "Energy of a thrown cylinder at 1 ms", "t [s]", "energy gained [%]",
+        [*(series(name, fine, 100.0 * (law - 1.0), LINE) for name, law in laws),
+         *(series(LABEL[m], ts, 100.0 * runs[m], DOTS) for m in shown)],
         "First-order steps gain or lose energy, three times as fast if R is renormalised by columns. The midpoint "
-        "turn and the splitting keep it.",
-    )
+        "turn and the splitting keep it.")
 
 
 # ---------------------------------------------------------------------------------------------- too fast
 
-@case("fast-spin", "Spin 10⁴ rad/s", compiled=False)
-def fast_spin(lesson):
+FAST, FAST_STEPS = (6000.0, 0.0, 8000.0), 200        # ω [rad/s]; of 1 ms
+
+
+def fast_angle():
+    """Return the angle [rad] by which the fast cylinder turns, about L and about its axis together."""
+    I, L = np.array(CYLINDER), np.array(CYLINDER) * FAST
+    return (np.linalg.norm(L) / I[0] + abs(1.0 - I[2] / I[0]) * FAST[2]) * FAST_STEPS * MS
+
+
+@case("fast-spin", "Spin at 10⁴ rad/s", compiled=False)
+def fast_spin(lesson, check):
     """A cylinder at 10⁴ rad/s with 10 rad per step keeps L, and two equal moments make the splitting exact.
 
     L does not change where it is the state.  Round-off: an angle of N rad is known to about 16 roundings of N/2⁵³.
     The gyroscopic term at the beginning multiplies ω_⊥ by √(1 + (Ω dt)²) = √17 per step.
     """
-    fast, steps = (6000.0, 0.0, 8000.0), 200
-    I, L = np.array(CYLINDER), np.array(CYLINDER) * fast
-    runs = {m: tried(lesson, m, CYLINDER, fast, MS, steps) for m in LABEL}
-    lost = max(np.abs(runs[m][1] - L).max() if runs[m] else np.inf for m in KEEP_L)
-    angle = (np.linalg.norm(L) / I[0] + abs(1.0 - I[2] / I[0]) * fast[2]) * steps * MS
-    found = [finding(
-        claim="A step with L as its state keeps L at any spin.",
-        quantity=f"largest change of L in {len(KEEP_L)} steps of the lesson [kg m²/s]",
-        predicted=0.0,
-        measured=lost,
-        tolerance=0.0,
-        observation=f"At 10⁴ rad/s and 10 rad per step, {steps:,} steps change no digit of L.",
-    )]
+    I, steps, seconds, angle = np.array(CYLINDER), FAST_STEPS, FAST_STEPS * MS, fast_angle()
+    runs = {m: tried(lesson, m, CYLINDER, FAST, MS, steps) for m in LABEL}
+    check("A step with L as its state keeps L at any spin.",
+          f"largest change of L in {len(KEEP_L)} steps of the lesson [kg m²/s]", law=0.0,
+          found=max(np.abs(runs[m][1] - I * FAST).max() if runs[m] else np.inf for m in KEEP_L), within=0.0,
+          saw=f"At 10⁴ rad/s and 10 rad per step, {steps:,} steps change no digit of L.")
     for method in ("splitting_step", "composed_splitting_step"):
-        off = relative_turn(runs[method][0], symmetric_top(I, np.array(fast), steps * MS))
-        many = 5 if method.startswith("composed") else 1
-        found.append(finding(
-            claim="With two equal moments the splitting turn is exact at any spin.",
-            quantity=f"{LABEL[method]}: error of the orientation after {steps * MS:g} s [rad]",
-            predicted=0.0,
-            measured=off,
-            tolerance=16.0 * EPS * angle * many,
-            observation=f"After {angle:,.0f} rad the orientation is off by {off:.0e} rad.",
-        ))
+        off = relative_turn(runs[method][0], symmetric_top(I, np.array(FAST), seconds))
+        check("With two equal moments the splitting turn is exact at any spin.",
+              f"{LABEL[method]}: error of the orientation after {seconds:g} s [rad]",
+              law=0.0, found=off, within=16.0 * EPS * angle * substeps(method),
+              saw=f"After {angle:,.0f} rad the orientation is off by {off:.0e} rad.")
     for method in ("midpoint_step", "composed_midpoint_step"):
         gained = runs[method][2] - 1.0 if runs[method] else np.nan
-        found.append(finding(
-            claim="The midpoint turn keeps the energy at any spin, but not the orientation.",
-            quantity=f"{LABEL[method]}: energy gained in {steps * MS:g} s [-]",
-            predicted=0.0,
-            measured=gained,
-            tolerance=5.0 * 20.0 * EPS * steps,
-            observation=f"{LABEL[method]}: {gained:+.0e} of the energy at 10 rad per step.",
-        ))
+        check("The midpoint turn keeps the energy at any spin, but not the orientation.",
+              f"{LABEL[method]}: energy gained in {seconds:g} s [-]",
+              law=0.0, found=gained, within=5.0 * 20.0 * EPS * steps,
+              saw=f"{LABEL[method]}: {gained:+.0e} of the energy at 10 rad per step.")
     refused = runs["gyroscopic_step"] is None
-    found.append(finding(
-        claim=("With the gyroscopic term at the beginning ω_⊥ grows by √17 per step: the run must end in an error "
-               "instead of a number."),
-        quantity="runs that raise Diverged [of 1]",
-        predicted=1,
-        measured=refused,
-        tolerance=0.0,
-        observation=f"The lecture's loop {'raises an error' if refused else 'returns a number'}.",
-    ))
+    check("With the gyroscopic term at the beginning ω_⊥ grows by √17 per step: the run must end in an error "
+          "instead of a number.", "runs that raise Diverged [of 1]", law=1, found=refused, within=0.0,
+          saw=f"The lecture's loop {'raises an error' if refused else 'returns a number'}.")
+    return spin_picture(lesson, I, angle)
+
+
+def spin_picture(lesson, I, angle):
+    """Draw the error of three steps over the spin."""
     spins = np.logspace(1.0, 5.0, 13)
-    drawn = [
-        series("theory, 16 roundings of the angle", np.log10(spins), np.log10(16.0 * EPS * angle / 1e4 * spins), LINE)
-    ]
+    drawn = [log_series("theory, 16 roundings of the angle", spins, 16.0 * EPS * angle / 1e4 * spins, LINE)]
     for method in ("splitting_step", "midpoint_step", "runge_kutta_step"):
         errors = []
-        for spin in spins:
-            omega = spin / 1e4 * np.array(fast)
-            run = tried(lesson, method, CYLINDER, omega, MS, steps)
-            off = max(relative_turn(run[0], symmetric_top(I, omega, steps * MS)), 1e-16) if run else np.pi
-            errors.append(np.log10(off))
-        drawn.append(series(LABEL[method], np.log10(spins), errors, DOTS))
-    return found, Picture(
-        "A cylinder at increasing spin, 1 ms per step",
-        "log₁₀ of the spin [rad/s]",
-        f"log₁₀ of the error after {steps * MS:g} s [rad]",
-        drawn,
-        ("The splitting loses only the digits that the angle itself loses to rounding. The other steps fail where "
-         "they turn by about a radian per step."),
-    )
+        for omega in spins[:, None] / 1e4 * np.array(FAST):
+            run = tried(lesson, method, CYLINDER, omega, MS, FAST_STEPS)
+            truth = symmetric_top(I, omega, FAST_STEPS * MS)
+            errors.append(max(relative_turn(run[0], truth), 1e-16) if run else np.pi)
+        drawn.append(log_series(LABEL[method], spins, errors, DOTS))
+    return Picture(
+        "A cylinder at increasing spin, 1 ms per step", "log₁₀ of the spin [rad/s]",
+        f"log₁₀ of the error after {FAST_STEPS * MS:g} s [rad]", drawn,
+        "The splitting loses only the digits that the angle itself loses to rounding. The other steps fail where "
+        "they turn by about a radian per step.")
 
 
 # ---------------------------------------------------------------------------------------------- a needle
 
 NEEDLE, PRICKED = (1.0, 1.0, 1e-6), (1.0, 0.5, 1000.0)
+PRICKED_STEPS = 2000         # of 1 ms
 
 
 @case("slender-body", "A needle", compiled=False)
-def slender_body(lesson):
+def slender_body(lesson, check):
     """A needle, I₃ = 10⁻⁶ I₁, one radian per step: L₃ = 10⁻³ is a small difference, known to 10⁻¹⁶ |L| per step.
 
     ω₃ = L₃/I₃.  Any orientation has an energy between L²/2I₁ and L²/2I₃.
     """
-    steps, I, w = 2000, np.array(NEEDLE), np.array(PRICKED)
-    L = I * w
-    size, energy = np.linalg.norm(L), 0.5 * L @ w
-    blurred = 4.0 * EPS * steps * size                                   # of L₃, if all roundings have one sign
-    runs = {m: tried(lesson, m, NEEDLE, PRICKED, MS, steps) for m in LABEL}
-    found = []
-    for method in ("midpoint_step", "composed_midpoint_step", "splitting_step", "composed_splitting_step"):
+    I, w, seconds = np.array(NEEDLE), np.array(PRICKED), PRICKED_STEPS * MS
+    energy = 0.5 * (I * w) @ w
+    blurred = 4.0 * EPS * PRICKED_STEPS * np.linalg.norm(I * w)          # of L₃, if all roundings have one sign
+    runs = {m: tried(lesson, m, NEEDLE, PRICKED, MS, PRICKED_STEPS) for m in LABEL}
+    for method in KEEP_ENERGY:
         gained = runs[method][2] - 1.0 if runs[method] else np.nan
-        many = 5 if method.startswith("composed") else 1
-        found.append(finding(
-            claim="The energy of a needle is kept to the accuracy of L₃.",
-            quantity=f"{LABEL[method]}: energy gained in {steps * MS:g} s [-]",
-            predicted=0.0,
-            measured=gained,
-            tolerance=many * blurred * w[2] / energy,
-            observation=f"{LABEL[method]}: {gained:+.0e} of the energy.",
-        ))
-    off = relative_turn(runs["splitting_step"][0], symmetric_top(I, w, steps * MS))
-    found.append(finding(
-        claim="Its spin is ω₃ = L₃/I₃, so the angle is known to T δL₃/2I₃.",
-        quantity=f"{LABEL['splitting_step']}: error of the orientation after {steps * MS:g} s [rad]",
-        predicted=0.0,
-        measured=off,
-        tolerance=0.5 * blurred / I[2] * steps * MS,
-        observation=f"After {w[2] * steps * MS:,.0f} rad about its axis the needle is off by {off:.0e} rad.",
-    ))
+        check("The energy of a needle is kept to the accuracy of L₃.",
+              f"{LABEL[method]}: energy gained in {seconds:g} s [-]",
+              law=0.0, found=gained, within=substeps(method) * blurred * w[2] / energy,
+              saw=f"{LABEL[method]}: {gained:+.0e} of the energy.")
+    off = relative_turn(runs["splitting_step"][0], symmetric_top(I, w, seconds))
+    check("Its spin is ω₃ = L₃/I₃, so the angle is known to T δL₃/2I₃.",
+          f"{LABEL['splitting_step']}: error of the orientation after {seconds:g} s [rad]",
+          law=0.0, found=off, within=0.5 * blurred / I[2] * PRICKED_STEPS * MS,
+          saw=f"After {w[2] * PRICKED_STEPS * MS:,.0f} rad about its axis the needle is off by {off:.0e} rad.")
+    bounds = np.linalg.norm(I * w) ** 2 / (2.0 * I[0]) / energy, np.linalg.norm(I * w) ** 2 / (2.0 * I[2]) / energy
+    needle_stays_finite(check, runs, bounds)
+    ts = np.linspace(0.0, seconds, 21)[1:]
+    shown = "splitting_step", "midpoint_step", "quaternion_step", "runge_kutta_step"
+    drawn = [series(LABEL[m], ts, np.log10(energies(lesson, m, NEEDLE, PRICKED, MS, ts)), DOTS) for m in shown]
+    drawn.append(series("greatest possible", (0.0, seconds), np.log10((bounds[1], bounds[1])), LINE))
+    drawn.append(series("least possible", (0.0, seconds), np.log10((bounds[0], bounds[0])), LINE))
+    return Picture(
+        "Energy of a needle, one radian per step", "t [s]", "log₁₀ of energy over its value at the start [-]", drawn,
+        "Splitting and midpoint keep the energy; the others vary between the bounds that L sets.")
+
+
+def needle_stays_finite(check, runs, bounds):
+    """Judge the numbers in which runs end, and their energies over the first by the bounds that L sets."""
     ended = sum(run is None or bool(np.all(np.isfinite(run[0])) and np.isfinite(run[2])) for run in runs.values())
     refused = [LABEL[m] for m, run in runs.items() if run is None]
-    found.append(finding(
-        claim="A step ends in finite numbers or raises an error.",
-        quantity=f"steps that do so [of {len(runs)}]",
-        predicted=len(runs),
-        measured=ended,
-        tolerance=0.0,
-        observation=f"Of {len(runs)} steps {len(refused)} refused: {', '.join(refused)}.",
-    ))
-    bounds = size**2 / (2.0 * I[0]) / energy, size**2 / (2.0 * I[2]) / energy
-    inside = sum(
-        run is None or (1.0 - 1e-9) * bounds[0] <= run[2] <= (1.0 + 1e-9) * bounds[1]
-        for m, run in runs.items()
-        if m in KEEP_L
-    )
-    found.append(finding(
-        claim="Where L is kept the energy stays between L²/2I₁ and L²/2I₃, whatever the error of the orientation.",
-        quantity=f"steps that stay inside [of {len(KEEP_L)}]",
-        predicted=len(KEEP_L),
-        measured=inside,
-        tolerance=0.0,
-        observation=(f"{inside} of {len(KEEP_L)} steps stay between {bounds[0]:.2f} and {bounds[1]:,.0f} times the "
-                     "initial energy."),
-    ))
-    ts = np.linspace(0.0, steps * MS, 21)[1:]
-    drawn = [series(LABEL[m], ts, np.log10(energies(lesson, m, NEEDLE, PRICKED, MS, ts)), DOTS)
-             for m in ("splitting_step", "midpoint_step", "quaternion_step", "runge_kutta_step")]
-    drawn.append(series("greatest possible", (0.0, steps * MS), np.log10((bounds[1], bounds[1])), LINE))
-    drawn.append(series("least possible", (0.0, steps * MS), np.log10((bounds[0], bounds[0])), LINE))
-    return found, Picture(
-        "Energy of a needle, one radian per step",
-        "t [s]",
-        "log₁₀ of energy over its value at the start [-]",
-        drawn,
-        "Splitting and midpoint keep the energy; the others vary between the bounds that L sets.",
-    )
+    check("A step ends in finite numbers or raises an error.", f"steps that do so [of {len(runs)}]",
+          law=len(runs), found=ended, within=0.0,
+          saw=f"Of {len(runs)} steps {len(refused)} refused: {', '.join(refused)}.")
+    least, most = (1.0 - 1e-9) * bounds[0], (1.0 + 1e-9) * bounds[1]
+    inside = sum(runs[m] is None or least <= runs[m][2] <= most for m in KEEP_L)
+    check("Where L is kept the energy stays between L²/2I₁ and L²/2I₃, whatever the error of the orientation.",
+          f"steps that stay inside [of {len(KEEP_L)}]", law=len(KEEP_L), found=inside, within=0.0,
+          saw=f"{inside} of {len(KEEP_L)} steps stay between {bounds[0]:.2f} and {bounds[1]:,.0f} times the "
+              "initial energy.")
 
 
 # ---------------------------------------------------------------------------------------------- a sleeping top
@@ -355,6 +295,7 @@ ACROSS, ALONG, MGL = 5.0, 1.0, 20.0                       # I₁, I₃ about the
 ASLEEP = 1e-7  # initial tilt [rad]: its square is round-off, so it obeys a linear equation
 AWAKE = 500.0                # a top has fallen at this multiple of that tilt [-]
 WATCHED = 200.0              # duration of a run [s]
+STANDS = np.sqrt(4.0 * ACROSS * MGL) / ALONG             # least spin of a sleeping top [rad/s]
 
 
 def tilts(lesson, spin, tilt, dt, seconds, look):
@@ -375,8 +316,18 @@ def falls(lesson, spin):
     return any(tilt > AWAKE * ASLEEP for tilt in tilts(lesson, spin, ASLEEP, 0.02, WATCHED, 25))
 
 
+def fallen(lesson, spin):
+    """Return the largest tilt [rad] in 40 s from nearly upright: enough for one fall unless within 2 % of the edge."""
+    return max(tilts(lesson, spin, 1e-5, 0.01, 40.0, 1))
+
+
+def lowest_cosine(spin):
+    """Return cos θ where a top that falls from upright turns back."""
+    return (ALONG * spin) ** 2 / (2.0 * ACROSS * MGL) - 1.0
+
+
 @case("sleeping-top", "A sleeping top")
-def sleeping_top(lesson):
+def sleeping_top(lesson, check):
     """A sleeping top stands if and only if ω₃² > 4I₁Mgl/I₃²: 20 rad/s here.
 
     Near the vertical ξ = θ e^(iφ) obeys  I₁ξ̈ − iI₃ω₃ξ̇ − Mgl ξ = 0.  With a = I₃ω₃/2I₁ and λ² = Mgl/I₁ − a²
@@ -384,120 +335,49 @@ def sleeping_top(lesson):
     which reaches AWAKE in time t if  sinh(λt)/λt ≈ AWAKE/at:  for t = 200 s at λ = 0.006, where ω₃ is λ²I₁/2Mgl = 4e-6
     below the edge.  A top that falls from upright falls as far as  cos θ = I₃²ω₃²/2I₁Mgl − 1.
     """
-    threshold = np.sqrt(4.0 * ACROSS * MGL) / ALONG
-    found_at = bisect(lambda slower: falls(lesson, 2.0 * threshold - slower), 0.8 * threshold, 1.2 * threshold)
-    measured = 2.0 * threshold - found_at
-    found = [finding(
-        claim="A top stands upright while ω₃² > 4 I₁Mgl/I₃².",
-        quantity="least spin at which it stands [rad/s]",
-        predicted=threshold,
-        measured=measured,
-        tolerance=threshold * (5e-6 + 1.2 * EDGE),
-        observation=f"The top falls below {measured:.4f} rad/s, and stands above.",
-    )]
-    flips = falls(lesson, 0.999 * threshold) and not falls(lesson, 1.001 * threshold)
-    found.append(finding(
-        claim="The edge flips within ±0.1 %.",
-        quantity="edges that flip [of 1]",
-        predicted=1,
-        measured=flips,
-        tolerance=0.0,
-        observation=("A thousandth below the edge it "
-                     f"{'falls, a thousandth above it stands' if flips else 'does not behave as above it'}."),
-    ))
+    measured = 2.0 * STANDS - bisect(lambda slower: falls(lesson, 2.0 * STANDS - slower), 0.8 * STANDS, 1.2 * STANDS)
+    check("A top stands upright while ω₃² > 4 I₁Mgl/I₃².", "least spin at which it stands [rad/s]",
+          law=STANDS, found=measured, within=STANDS * (5e-6 + 1.2 * EDGE),
+          saw=f"The top falls below {measured:.4f} rad/s, and stands above.")
+    flips = falls(lesson, 0.999 * STANDS) and not falls(lesson, 1.001 * STANDS)
+    check("The edge flips within ±0.1 %.", "edges that flip [of 1]", law=1, found=flips, within=0.0,
+          saw="A thousandth below the edge it "
+              f"{'falls, a thousandth above it stands' if flips else 'does not behave as above it'}.")
+    tilt_of_a_top(lesson, check)
+    spins, fine = np.linspace(12.0, 24.0, 13), np.linspace(12.0, 24.0, 121)
+    return Picture(
+        "How far a sleeping top falls", "spin [rad/s]", "largest tilt [°]",
+        [series("theory", fine, np.degrees(np.arccos(np.minimum(1.0, lowest_cosine(fine)))), LINE),
+         series("measured", spins, [np.degrees(fallen(lesson, s)) for s in spins], DOTS)],
+        "Above 20 rad/s the top stays upright, asleep. Below that it wakes, tilts as far as its energy permits, and "
+        "comes back.")
+
+
+def tilt_of_a_top(lesson, check):
+    """Compare small tilts with the linear equation, and the fall of a top with its energy.
+
+    The method is of fourth order at the faster rate a + |λ| < 3 rad/s: 30 (0.03)⁴.  Tilts are below 1e-4 rad, and
+    their squares below 1e-8.  Between two samples of a fall, 10 ms apart, cos θ changes by at most ½ü (5 ms)² with
+    ü = Mgl/I₁ (1 − u)², u = cos θ; the method adds the same error, with rate 10.
+    """
+    seconds, fourth = 10.0, 30.0 * 0.03**4
     for spin in (19.0, 21.0):
-        a, seconds = ALONG * spin / (2.0 * ACROSS), 10.0
+        a = ALONG * spin / (2.0 * ACROSS)
         rate = np.sqrt(complex(MGL / ACROSS - a * a))
         law = abs(np.cosh(rate * seconds) + 1j * a / rate * np.sinh(rate * seconds))
-        leans = np.array(list(tilts(lesson, spin, ASLEEP, 0.01, seconds, 1)))
-        # Fourth order at the faster rate a + |λ| < 3 rad/s: 30 (0.03)⁴.  Tilts are below 1e-4 rad, and their
-        # squares below 1e-8.
-
-        found.append(finding(
-            claim="Its tilt follows a linear equation.",
-            quantity=f"tilt after 10 s over its first, at {spin:g} rad/s [-]",
-            predicted=law,
-            measured=leans[-1] / ASLEEP,
-            tolerance=law * (30.0 * 0.03**4 + 1e-8),
-            observation=(f"At {spin:g} rad/s the tilt is {leans[-1] / ASLEEP:.5g} times its first after 10 s, and "
-                         f"{leans.max() / ASLEEP:.4g} times at most."),
-        ))
-    reached = fallen(lesson, 19.0)
-    lowest = (ALONG * 19.0) ** 2 / (2.0 * ACROSS * MGL) - 1.0
-    # Between two samples, 10 ms apart, cos θ changes by at most ½ü (5 ms)² with ü = Mgl/I₁ (1 − u)², u = cos θ.
-    # The method adds its fourth-order error, as above, with rate 10.
-
-    found.append(finding(
-        claim="A top that falls from upright falls as far as cos θ = I₃²ω₃²/2I₁Mgl − 1.",
-        quantity="least cos θ at 19 rad/s [-]",
-        predicted=lowest,
-        measured=np.cos(reached),
-        tolerance=0.5 * MGL / ACROSS * (1.0 - lowest) ** 2 * 0.005**2 + 30.0 * 0.03**4,
-        observation=f"At 19 rad/s it falls to {np.degrees(reached):.2f}°, and rises again.",
-    ))
-    spins, fine = np.linspace(12.0, 24.0, 13), np.linspace(12.0, 24.0, 121)
-    deepest = lambda spin: np.degrees(np.arccos(min(1.0, (ALONG * spin) ** 2 / (2.0 * ACROSS * MGL) - 1.0)))
-    return found, Picture(
-        "How far a sleeping top falls",
-        "spin [rad/s]",
-        "largest tilt [°]",
-        [
-            series("theory", fine, [deepest(s) for s in fine], LINE),
-            series("measured", spins, [np.degrees(fallen(lesson, s)) for s in spins], DOTS),
-        ],
-        ("Above 20 rad/s the top stays upright, asleep. Below that it wakes, tilts as far as its energy permits, and "
-         "comes back."),
-    )
+        leans = np.array(list(tilts(lesson, spin, ASLEEP, 0.01, seconds, 1))) / ASLEEP
+        check("Its tilt follows a linear equation.", f"tilt after 10 s over its first, at {spin:g} rad/s [-]",
+              law=law, found=leans[-1], within=law * (fourth + 1e-8),
+              saw=f"At {spin:g} rad/s the tilt is {leans[-1]:.5g} times its first after 10 s, and "
+                  f"{leans.max():.4g} times at most.")
+    reached, lowest = fallen(lesson, 19.0), lowest_cosine(19.0)
+    check("A top that falls from upright falls as far as cos θ = I₃²ω₃²/2I₁Mgl − 1.",
+          "least cos θ at 19 rad/s [-]", law=lowest, found=np.cos(reached),
+          within=0.5 * MGL / ACROSS * (1.0 - lowest) ** 2 * 0.005**2 + fourth,
+          saw=f"At 19 rad/s it falls to {np.degrees(reached):.2f}°, and rises again.")
 
 
-def fallen(lesson, spin):
-    """Return the largest tilt [rad] in 40 s from nearly upright: enough for one fall unless within 2 % of the edge."""
-    return max(tilts(lesson, spin, 1e-5, 0.01, 40.0, 1))
-
-
-@case("loads-and-derivatives", "Loads, derivatives, and the tennis racket", compiled=False)
-def loads_and_derivatives(lesson):
-    """Forces do the same work as their sum and torque on every rigid motion: Σ f · (V + ω × r) = F · V + τ · ω.
-
-    Ṡ is compared with P/M, F, τ and ω × each axis, ω from a linear solve.  The growth rate of a disturbance is the
-    largest real part of the eigenvalues of Euler's equations, linearised by differences that are exact for them,
-    because they are quadratic.
-    """
-    rng, worst = np.random.default_rng(55), Worst()
-    for _ in range(50):
-        x, points, forces = rng.normal(size=3), rng.normal(size=(5, 3)), rng.normal(size=(5, 3))
-        F, tau = lesson.total_load(x, points, forces)
-        for V, omega in rng.normal(size=(6, 2, 3)):
-            work = np.sum(forces * (V + np.cross(omega, points - x)))
-            worst.keep("load", abs(F @ V + tau @ omega - work) / np.sum(np.abs(forces)))
-
-        R, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-        R *= np.sign(np.linalg.det(R))
-        m, I_body = rng.uniform(0.5, 2.0), np.sort(rng.uniform(1.0, 1.9, 3))[rng.permutation(3)]
-        P, L, F, tau = rng.normal(size=(4, 3))
-        S = lesson.RigidBodyState(x, R, P, L)
-        rate = lesson.state_derivative(S, F, tau, lesson.RigidBody(m, I_body))
-        omega = np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
-        truth = np.concatenate((P / m, np.stack([np.cross(omega, axis) for axis in R.T], axis=1).ravel(), F, tau))
-        got = np.concatenate([np.ravel(part) for part in rate])
-        worst.keep("derivative", np.linalg.norm(got - truth) / np.linalg.norm(truth))
-
-        k, spin = int(rng.integers(3)), rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 5.0)
-        euler = lambda w, I=I_body: np.cross(I * w, w) / I
-        about = spin * np.eye(3)[k]
-        matrix = np.stack([0.5 * (euler(about + e) - euler(about - e)) for e in np.eye(3)], axis=1)
-        growth = max(0.0, np.linalg.eigvals(matrix).real.max())
-        worst.keep("rate", abs(lesson.tumbling_rate(I_body, k, spin) - growth) / abs(spin))
-    return [
-        agreement("A load is what does the same work on every rigid motion.", "power: largest relative error [-]",
-                  worst["load"], 1e-12),
-        agreement("The state changes by P/M, ω × R, F and τ.", "derivative of the state: largest relative error [-]",
-                  worst["derivative"], 1e-12),
-        agreement("A rotation about the middle axis is unstable, with the rate of the linearised Euler equations.",
-                  "rate of growth over the spin: largest error [-]", worst["rate"], 1e-10)], None
-
-
-# ---------------------------------------------------------------------------------------------- one step
+# ---------------------------------------------------------------------------------------------- laws
 
 TRIED = 25                   # random bodies [-]
 
@@ -520,222 +400,272 @@ def gram_schmidt(M):
     return Q * np.sign(np.diag(upper))
 
 
-def tau_of(t, R, a, b):
-    """Return a torque (3,) [N m] that depends on time and orientation, a at rest in the world and b in the body."""
-    return np.cos(3.0 * t) * a + np.sin(2.0 * t) * (R @ b)
+def random_turn(rng):
+    """Return a random orientation, as a unit quaternion and as a matrix."""
+    q = rng.normal(size=4)
+    q /= np.linalg.norm(q)
+    return q, quaternion_matrix(*q)
 
 
-def explicit_step(update, t, R, L, dt, I, a, b):
-    L = L + dt * tau_of(t, R, a, b)
-    return update(R, R @ ((R.T @ L) / I)), L
+@random_law("A load is what does the same work on every rigid motion.", "power: largest relative error [-]", 1e-12)
+def load(lesson, rng):
+    x, points, forces = rng.normal(size=3), rng.normal(size=(5, 3)), rng.normal(size=(5, 3))
+    F, tau = lesson.total_load(x, points, forces)
+    motions = rng.normal(size=(6, 2, 3))
+    work = [np.sum(forces * (V + np.cross(omega, points - x))) for V, omega in motions]
+    size = np.sum(np.abs(forces))
+    return np.array([F @ V + tau @ omega for V, omega in motions]) / size, np.array(work) / size
 
 
-def gyroscopic(t, R, L, dt, I, a, b):
-    """ω by Euler's equation in the body, with the gyroscopic term at the beginning."""
-    w, tau = R.T @ L / I, R.T @ tau_of(t, R, a, b)
-    omega = R @ (w + dt * (tau - np.cross(w, I * w)) / I)
-    R = cayley(dt * omega) @ R
-    return R, R @ (I * (R.T @ omega))
+@random_law("The state changes by P/M, ω × R, F and τ.", "derivative of the state: largest relative error [-]", 1e-12)
+def derivative_of_the_state(lesson, rng):
+    (_, R), m, I_body = random_turn(rng), rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3)
+    x, P, L, F, tau = rng.normal(size=(5, 3))
+    rate = lesson.state_derivative(lesson.RigidBodyState(x, R, P, L), F, tau, lesson.RigidBody(m, I_body))
+    omega = np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
+    return relative((tuple(rate), (P / m, cross_matrix(omega) @ R, F, tau)))
 
 
-def implicit_gyroscopic(t, R, L, dt, I, a, b):
-    """One iteration of Newton's method for I (w' − w) + dt (w' × I w' − τ) = 0 from w; the derivative has no error."""
-    w, tau = R.T @ L / I, R.T @ tau_of(t, R, a, b)
-    law = lambda new: I * (new - w) + dt * (np.cross(new, I * new) - tau)
-    slope = np.stack([np.imag(law(w + 1e-20j * e)) / 1e-20 for e in np.eye(3)], axis=1)
-    omega = R @ (w - np.linalg.solve(slope, law(w)))
-    R = cayley(dt * omega) @ R
-    return R, R @ (I * (R.T @ omega))
+@random_law("A rotation about the middle axis is unstable, with the rate of the linearised Euler equations.",
+            "rate of growth over the spin: largest error [-]", 1e-10)
+def growth(lesson, rng):
+    I_body, k = rng.uniform(1.0, 1.9, 3), int(rng.integers(3))
+    spin = rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 5.0)
+    euler, axis = lambda w: np.cross(I_body * w, w) / I_body, spin * np.eye(3)[k]
+    matrix = np.stack([0.5 * (euler(axis + e) - euler(axis - e)) for e in np.eye(3)], axis=1)
+    rate = max(0.0, np.linalg.eigvals(matrix).real.max())
+    return lesson.tumbling_rate(I_body, k, spin) / abs(spin), rate / abs(spin)
 
 
-def runge_kutta(t, q, L, dt, I, a, b):
-    """Runge–Kutta 4 for q̇ = ½ (0, ω) q and L̇ = τ, from its table; in between, R is the orientation of q/|q|."""
-    def rate(t, q, L):
-        R = quaternion_matrix(*(q / np.linalg.norm(q)))
-        omega = R @ ((R.T @ L) / I)
-        return 0.5 * np.append(-omega @ q[1:], q[0] * omega + np.cross(omega, q[1:])), tau_of(t, R, a, b)
-    stages = []
-    for c in (0.0, 0.5, 0.5, 1.0):
-        before = stages[-1] if stages else (0.0, 0.0)
-        stages.append(rate(t + c * dt, q + c * dt * before[0], L + c * dt * before[1]))
-    q, L = (y + dt * sum(weight * stage[k] for weight, stage in zip((1 / 6, 1 / 3, 1 / 3, 1 / 6), stages, strict=True))
-            for k, y in enumerate((q, L)))
-    return quaternion_matrix(*(q / np.linalg.norm(q))), L
+@case("loads-and-derivatives", "Loads, derivatives, and the tennis racket", compiled=False)
+def loads_and_derivatives(lesson, check):
+    """Forces do the same work as their sum and torque on every rigid motion: Σ f · (V + ω × r) = F · V + τ · ω.
+
+    Ṡ is compared with P/M, F, τ and ω × each axis, ω from a linear solve.  The growth rate of a disturbance is the
+    largest real part of the eigenvalues of Euler's equations, linearised by differences that are exact for them,
+    because they are quadratic.
+    """
+    check.laws(lesson, (load, derivative_of_the_state, growth), seed=55, times=50)
 
 
-def free_midpoint(R, L, I, dt):
-    """The implicit midpoint rule for ℓ = RᵀL, by a fixed point; then the turn by ω of the middle."""
-    start = R.T @ L
-    middle = start
-    for _ in range(100):
-        middle = start + 0.5 * dt * np.cross(middle, middle / I)
-    return R @ cayley(dt * middle / I)
+# ---------------------------------------------------------------------------------------------- one step
+
+GAMMA = turns.GAMMA
+EARLIER = np.cumsum([0.0, GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA])        # times of Suzuki's substeps [dt]
+FIVE = tuple(np.stack((EARLIER[:-1], EARLIER[1:]), axis=1).ravel())
+SECOND_WRITING = {           # step of the lesson: the same in the reference, and the times of its torques [dt]
+    "matrix_step": (turns.MATRIX, (0.0,)),
+    "axis_angle_step": (turns.AXIS_ANGLE, (0.0,)),
+    "quaternion_step": (turns.QUATERNION, (0.0,)),
+    "gyroscopic_step": (turns.GYROSCOPIC, (0.0,)),
+    "implicit_gyroscopic_step": (turns.IMPLICIT_GYROSCOPIC, (0.0,)),
+    "runge_kutta_step": (turns.RUNGE_KUTTA, (0.0, 0.5, 0.5, 1.0)),
+    "midpoint_step": (turns.MIDPOINT_TURN, (0.0, 1.0)),
+    "splitting_step": (turns.SPLITTING, (0.0, 1.0)),
+    "composed_midpoint_step": (turns.COMPOSED_MIDPOINT, FIVE),
+    "composed_splitting_step": (turns.COMPOSED_SPLITTING, FIVE),
+}
 
 
-def free_splitting(R, L, I, dt):
-    """Half a turn about axis a, one about c, half about a, and a turn about L; b is the middle axis."""
-    b = int(np.argsort(I)[1])
-    a, c = (b + 1) % 3, (b + 2) % 3
-    for axis, share in ((a, 0.5), (c, 1.0), (a, 0.5)):
-        R = R @ about(np.eye(3)[axis], share * dt * (1.0 / I[axis] - 1.0 / I[b]) * (R.T @ L)[axis])
-    return turned_by(dt / I[b] * L) @ R
+def random_motion(lesson, rng):
+    """Return a free body with unlike moments under a torque (t, q, L, body) of time and orientation, and a step of it.
+
+    Its fields are body, q, R, L, t, dt, torque, and tau(t, R) [N m], which has a part at rest in the world and one at
+    rest in the body.
+    """
+    (q, R), (L, a, b) = random_turn(rng), rng.normal(size=(3, 3))
+    tau = lambda t, R: np.cos(3.0 * t) * a + np.sin(2.0 * t) * (R @ b)
+    return SimpleNamespace(
+        body=lesson.RigidBody(1.0, rng.uniform(1.0, 1.9, 3)), q=q, R=R, L=L, t=rng.uniform(), dt=rng.uniform(0.05, 0.3),
+        tau=tau, torque=lambda t, q, L, body: tau(t, quaternion_matrix(*q)))
 
 
-def kicked(free, t, R, L, dt, I, a, b):
-    """Half of the angular impulse before, half after a free rotation, at the times of both ends."""
-    L = L + 0.5 * dt * tau_of(t, R, a, b)
-    R = free(R, L, I, dt)
-    return R, L + 0.5 * dt * tau_of(t + dt, R, a, b)
+def written_again(method, on, n=1):
+    """Return [(R, L)] before and after each of n steps of a motion by the reference, which knows no time.
+
+    So its k-th torque of a step is that of the k-th time in SECOND_WRITING.
+    """
+    step, times = SECOND_WRITING[method]
+    w, x, y, z = on.q
+    q, L, states = (complex(w, -z), complex(-y, -x)), tuple(on.L), [(on.R, on.L)]
+    for k in range(n):
+        clock = iter(on.t + (k + np.array(times)) * on.dt)
+        q, L = step.step(lambda M, clock=clock: on.tau(next(clock), np.array(M)), q, L, on.body.I_body, on.dt)
+        states.append((np.array(turns.matrix(q)), np.array(L)))
+    return states
 
 
-def composed(free, t, R, L, dt, I, a, b):
-    """Suzuki's five substeps: their shares add up to 1, and the sum of their cubes vanishes."""
-    gamma = 1.0 / (4.0 - np.cbrt(4.0))
-    for share in (gamma, gamma, 1.0 - 4.0 * gamma, gamma, gamma):
-        R, L = kicked(free, t, R, L, share * dt, I, a, b)
-        t += share * dt
-    return R, L
+def one_step_of(method, lesson, rng):
+    """Compare one step of a method with its second writing."""
+    on = random_motion(lesson, rng)
+    q, L = getattr(lesson, method)(on.torque, on.t, on.q, on.L, on.dt, on.body)
+    return (quaternion_matrix(*q), L), written_again(method, on)[-1]
 
 
-def by_matrices(t, q, L, dt, I, a, b):
-    """Return {step of the lesson: (R, L) after it}."""
-    R = quaternion_matrix(*q)
-    given = t, R, L, dt, I, a, b
-    return {
-        "matrix_step": explicit_step(lambda R, w: gram_schmidt(R + dt * cross_matrix(w) @ R), *given),
-        "axis_angle_step": explicit_step(lambda R, w: turned_by(dt * w) @ R, *given),
-        "quaternion_step": explicit_step(lambda R, w: cayley(dt * w) @ R, *given),
-        "gyroscopic_step": gyroscopic(*given),
-        "implicit_gyroscopic_step": implicit_gyroscopic(*given),
-        "runge_kutta_step": runge_kutta(t, q, L, dt, I, a, b),
-        "midpoint_step": kicked(free_midpoint, *given),
-        "splitting_step": kicked(free_splitting, *given),
-        "composed_midpoint_step": composed(free_midpoint, *given),
-        "composed_splitting_step": composed(free_splitting, *given),
-    }
+@random_law("Each update turns by its own law: forwards, backwards, and slowly.",
+            "largest error of the orientation [-]", 1e-12)
+def updates(lesson, rng):
+    (q, R), omega, dt = random_turn(rng), rng.normal(size=3), rng.uniform(0.05, 0.3)
+    got, truth = [], []
+    for w, h in ((omega, dt), (omega, -dt), (1e-5 * omega, dt)):
+        got += [lesson.matrix_update(R, w, h), lesson.axis_angle_update(R, w, h),
+                quaternion_matrix(*lesson.quaternion_update(q, w, h))]
+        truth += [gram_schmidt(R + h * cross_matrix(w) @ R), turned_by(h * w) @ R, cayley(h * w) @ R]
+    return np.array(got), np.array(truth)
+
+
+@random_law("Splitting is exact for a symmetric body.",
+            "largest error of the orientation of a symmetric body [-]", 1e-12)
+def symmetric_bodies(lesson, rng):
+    """Turn the body about L and about its axis, both at once."""
+    (q, R), L, dt, k = random_turn(rng), rng.normal(size=3), rng.uniform(0.05, 0.3), int(rng.integers(3))
+    across, along = rng.uniform(1.0, 1.9, 2)
+    I = np.where(np.arange(3) == k, along, across)
+    own = about(np.eye(3)[k], dt * (1.0 / along - 1.0 / across) * (R.T @ L)[k])
+    got = quaternion_matrix(*lesson.splitting_free_rotation(q, L, I, dt))
+    return got, turned_by(dt / across * L) @ R @ own
+
+
+@random_law("Many steps are single steps, each at its own time.", "largest error of the history [s, -, kg m²/s]", 1e-12)
+def histories(lesson, rng):
+    """Compare a history and the end of a run with three single steps."""
+    on = random_motion(lesson, rng)
+    states = written_again("quaternion_step", on, 3)
+    run = lesson.quaternion_step, on.torque, on.t, on.q, on.L, on.dt, 3, on.body
+    (ts, qs, Ls), (q, L) = lesson.rotation_trajectory(*run), lesson.advance_rotation(*run)
+    truth = [np.array(part) for part in zip(*states, strict=True)]
+    return (ts, np.array([quaternion_matrix(*q) for q in qs]), Ls, quaternion_matrix(*q), L), \
+        (on.t + on.dt * np.arange(4), *truth, *states[-1])
+
+
+@random_law("A product of quaternions is the product of their matrices.", "largest error of the matrix [-]", 1e-12)
+def products(lesson, rng):
+    (p, first), (q, second) = random_turn(rng), random_turn(rng)
+    return (quaternion_matrix(*lesson.quaternion_product(p, q)), lesson.rotation_matrix(q)), (first @ second, second)
+
+
+@random_law("The energy of rotation is ½ L · I⁻¹ L in the world.", "largest error of the energy [J]", 1e-12)
+def energy_of_rotation(lesson, rng):
+    (q, R), L, I = random_turn(rng), rng.normal(size=3), rng.uniform(1.0, 1.9, 3)
+    return lesson.kinetic_energy(q, L, I), 0.5 * L @ np.linalg.solve(R @ np.diag(I) @ R.T, L)
+
+
+@random_law("Gravity turns a top about its pivot with l𝐞 × (−Mg ẑ).", "largest error of the torque [N m]", 1e-12)
+def torque_of_a_top(lesson, rng):
+    (q, R), L, I = random_turn(rng), rng.normal(size=3), rng.uniform(1.0, 1.9, 3)
+    return lesson.heavy_top_torque(0.0, q, L, lesson.Top(I, 2.5)), np.cross(R[:, 2], [0.0, 0.0, -2.5])
+
+
+@random_law("A point of a body moves with v + ω × r.", "largest error of the velocity [m/s]", 1e-12)
+def velocities(lesson, rng):
+    v, omega, r = rng.normal(size=(3, 3))
+    return (lesson.point_velocity(v, omega, r), lesson.skew(omega)), (v + np.cross(omega, r), cross_matrix(omega))
 
 
 @case("one-step", "One step of each rotation", compiled=False)
-def one_step(lesson):
-    """A step is its definition by matrices: three unlike moments, any orientation, a torque of time and orientation."""
-    rng, errors, parts = np.random.default_rng(56), Worst(), Worst()
-    for _ in range(TRIED):
-        I = rng.uniform(1.0, 1.9, 3)[rng.permutation(3)]
-        q, (L, a, b, r, v) = rng.normal(size=4), rng.normal(size=(5, 3))
-        q /= np.linalg.norm(q)
-        t, dt, R, body = rng.uniform(), rng.uniform(0.05, 0.3), quaternion_matrix(*q), lesson.RigidBody(1.0, I)
-        torque = lambda t, q, L, body, a=a, b=b: tau_of(t, quaternion_matrix(*q), a, b)
-        steps = by_matrices(t, q, L, dt, I, a, b)
-        for name in LABEL:
-            new_q, new_L = getattr(lesson, name)(torque, t, q, L, dt, body)
-            errors.note(name, (quaternion_matrix(*new_q), new_L), steps[name])
+def one_step(lesson, check):
+    """A step is its second writing by complex numbers, for unlike moments, any orientation, and a torque that changes.
 
-        # a symmetric body turns about L and about its axis, both at once and exactly
-        k, sides = int(rng.integers(3)), np.full(3, I[0])
-        sides[k] = I[1]
-        own = about(np.eye(3)[k], dt * (1.0 / I[1] - 1.0 / I[0]) * (R.T @ L)[k])
-        turned = quaternion_matrix(*lesson.splitting_free_rotation(q, L, sides, dt))
-        parts.note("symmetric", turned, turned_by(dt / I[0] * L) @ R @ own)
-
-        # the three updates by themselves: forwards, backwards, and slowly
-        for w, h in ((L, dt), (L, -dt), (1e-5 * L, dt)):
-            parts.note("update", lesson.matrix_update(R, w, h), gram_schmidt(R + h * cross_matrix(w) @ R))
-            parts.note("update", lesson.axis_angle_update(R, w, h), turned_by(h * w) @ R)
-            parts.note("update", quaternion_matrix(*lesson.quaternion_update(q, w, h)), cayley(h * w) @ R)
-
-        # a history is that of single steps, each at its own time, and ends where a run of many steps ends
-        states = [(R, L)]
-        for n in range(3):
-            states.append(explicit_step(lambda R, w, dt=dt: cayley(dt * w) @ R, t + n * dt, *states[-1], dt, I, a, b))
-        ts, qs, Ls = lesson.rotation_trajectory(lesson.quaternion_step, torque, t, q, L, dt, 3, body)
-        end_q, end_L = lesson.advance_rotation(lesson.quaternion_step, torque, t, q, L, dt, 3, body)
-        parts.note("history", (ts, Ls), (t + dt * np.arange(4), np.array([L for _, L in states])))
-        parts.note("history", np.array([quaternion_matrix(*q) for q in qs]), np.array([R for R, _ in states]))
-        parts.note("history", (quaternion_matrix(*end_q), end_L), states[-1])
-
-        p = rng.normal(size=4)
-        p /= np.linalg.norm(p)
-        product = quaternion_matrix(*lesson.quaternion_product(p, q))
-        parts.keep("product", np.max(np.abs(product - quaternion_matrix(*p) @ R)),
-                   np.max(np.abs(lesson.rotation_matrix(q) - R)))
-        energy = 0.5 * L @ np.linalg.solve(R @ np.diag(I) @ R.T, L)
-        parts.keep("energy", abs(lesson.kinetic_energy(q, L, I) - energy))
-        tau = np.cross(R[:, 2], [0.0, 0.0, -2.5])
-        parts.keep("top", np.max(np.abs(lesson.heavy_top_torque(t, q, L, lesson.Top(I, 2.5)) - tau)))
-        parts.keep("velocity", np.max(np.abs(lesson.point_velocity(v, L, r) - v - np.cross(L, r))),
-                   np.max(np.abs(lesson.skew(L) - cross_matrix(L))))
-    claims = (("update", "Each update turns by its own law: forwards, backwards, and slowly.", "orientation [-]"),
-              ("symmetric", "Splitting is exact for a symmetric body.", "orientation of a symmetric body [-]"),
-              ("history", "Many steps are single steps, each at its own time.", "history [s, -, kg m²/s]"),
-              ("product", "A product of quaternions is the product of their matrices.", "matrix [-]"),
-              ("energy", "The energy of rotation is ½ L · I⁻¹ L in the world.", "energy [J]"),
-              ("top", "Gravity turns a top about its pivot with l𝐞 × (−Mg ẑ).", "torque [N m]"),
-              ("velocity", "A point of a body moves with v + ω × r.", "velocity [m/s]"))
-    return [agreement(f"One step of {LABEL[name]} is its definition by matrices.",
-                      f"{LABEL[name]}: largest error of a step [-, kg m²/s]", error, 1e-11)
-            for name, error in errors.items()] + [
-        agreement(claim, f"largest error of the {quantity}", parts[name], 1e-12)
-        for name, claim, quantity in claims], None
+    The torque depends on time and orientation.  All other laws are written with matrices.
+    """
+    steps = [Law(f"One step of {LABEL[name]} is what a second writing by complex numbers gives.",
+                 f"{LABEL[name]}: largest error of a step [-, kg m²/s]", 1e-11, partial(one_step_of, name))
+             for name in LABEL]
+    check.laws(lesson, (*steps, updates, symmetric_bodies, histories, products, energy_of_rotation, torque_of_a_top,
+                        velocities), seed=56, times=TRIED)
 
 
-def looped(t, x, R, v, omega, dt, m, I, f, a):
-    """Return (x, R, v, ω) after a step under the force f cos t and the torque a sin t: velocities first."""
-    tensor = R @ np.diag(I) @ R.T
-    v = v + dt / m * np.cos(t) * f
-    omega = omega + dt * np.linalg.solve(tensor, np.sin(t) * a - np.cross(omega, tensor @ omega))
-    return x + dt * v, cayley(dt * omega) @ R, v, omega
+# ---------------------------------------------------------------------------------------------- the lecture's loop
+
+@random_law("The loop takes new velocities for positions, and Euler's equation for ω.",
+            "loop: largest error of the state [m, m/s, -, rad/s]", 1e-10)
+def loop(lesson, rng):
+    """Take one step and two under the force f cos t and the torque a sin t."""
+    (q, R), m, I = random_turn(rng), rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3)
+    (x, v, omega, f, a), t, dt = rng.normal(size=(5, 3)), rng.uniform(), rng.uniform(0.01, 0.1)
+    force = lambda t, x, q, v, omega, body: (np.cos(t) * f, np.sin(t) * a)
+    begin, body, got, truth = (x, q, v, omega), lesson.make_rigid_body(m, I), [], []
+    for steps in (1, 2):
+        now, tensor = t + (steps - 1) * dt, R @ np.diag(I) @ R.T
+        v = v + dt / m * np.cos(now) * f
+        omega = omega + dt * np.linalg.solve(tensor, np.sin(now) * a - np.cross(omega, tensor @ omega))
+        x, R = x + dt * v, cayley(dt * omega) @ R
+        end = lesson.advance_rigid_body(lesson.rigid_body_step, force, t, *begin, dt, steps, body)
+        got += [end[0], quaternion_matrix(*end[1]).ravel(), *end[2:]]
+        truth += [x, R.ravel(), v, omega]
+    return tuple(got), tuple(truth)
+
+
+def random_ball(lesson, rng):
+    """Return (ball, m, state) of a ball of any size on a floor; its state is t, x, q, v, ω."""
+    m, (radius, mu, inertia) = rng.uniform(0.5, 2.0), rng.uniform((0.1, 0.2, 0.01), (0.5, 0.5, 0.1))
+    gravity = np.array([*rng.normal(size=2), -9.81])
+    x, v, omega = rng.normal(size=(3, 3))
+    ball = lesson.RollingBall(m, np.full(3, inertia), radius, mu, gravity)
+    return ball, m, (rng.uniform(), x, random_turn(rng)[0], v, omega)
+
+
+def rolled(lesson, rng, least, most):
+    """Return a ball's step whose slip is between `least` and `most` times what friction can stop in it.
+
+    Its fields: ball, begin (t, x, q, v, ω) and dt; the levers r and the slip before, without friction; the greatest
+    impulse of friction `limit`; the new velocities v and ω, and the impulse J of friction.
+    """
+    ball, m, (t, x, q, v, omega) = random_ball(lesson, rng)
+    dt, along, r = rng.uniform(0.01, 0.1), np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, -ball.radius])
+    limit = ball.mu * m * 9.81 * dt
+    size = rng.uniform(least, most) * limit * (1.0 / m + ball.radius**2 / ball.I_body[0])
+    before = size * v * along / np.linalg.norm(v * along)
+    start = before - (np.cross(omega, r) + dt * ball.gravity) * along
+    _, _, end, spin = lesson.rolling_step(lesson.supported_weight, t, x, q, start, omega, dt, ball)
+    return SimpleNamespace(ball=ball, begin=(t, x, q, start, omega), dt=dt, r=r, before=before, limit=limit, v=end,
+                           omega=spin, J=m * (end - start - dt * ball.gravity * along))
+
+
+@random_law("The second-order step moves and turns by the means of the old and the new velocities.",
+            "means: largest error of the state of the ball [m, -, m/s, rad/s]", 1e-10)
+def means(lesson, rng):
+    on = rolled(lesson, rng, 0.0, 3.0)
+    _, x, q, v, omega = on.begin
+    new_x, new_q, *rates = lesson.average_rolling_step(lesson.supported_weight, *on.begin, on.dt, on.ball)
+    R = turned_by(0.5 * on.dt * (omega + on.omega)) @ quaternion_matrix(*q)
+    return (new_x, quaternion_matrix(*new_q), *rates), (x + 0.5 * on.dt * (v + on.v), R, on.v, on.omega)
+
+
+@random_law("A floor takes what presses on it, and does not hold what is lifted.",
+            "support: largest error of the force [N]", 1e-10)
+def support(lesson, rng):
+    ball, m, state = random_ball(lesson, rng)
+    forces, truth = [], []
+    for up in (-9.81, 2.0):                                      # gravity presses the ball on the floor, or lifts it
+        gravity = np.array([*ball.gravity[:2], up])
+        forces += lesson.supported_weight(*state, ball._replace(gravity=gravity))
+        truth += [m * np.maximum(gravity, [-np.inf, -np.inf, 0.0]), np.zeros(3)]
+    return np.array(forces), np.array(truth)
+
+
+@random_law("Friction turns the ball by r × J.", "impulse: largest error of the angular momentum [kg m²/s]", 1e-10)
+def turn_of_friction(lesson, rng):
+    on = rolled(lesson, rng, 0.0, 3.0)
+    return on.ball.I_body * (on.omega - on.begin[-1]), np.cross(on.r, on.J)
+
+
+@random_law("A fast slip has the friction μ N against it.", "cone: largest error of the impulse [N s]", 1e-10)
+def fast_slip(lesson, rng):
+    on = rolled(lesson, rng, 1.01, 5.0)
+    return on.J, -on.limit * on.before / np.linalg.norm(on.before)
+
+
+@random_law("A slow slip is stopped in the step.", "slip: largest error of the slip that is left [m/s]", 1e-10)
+def slow_slip(lesson, rng):
+    on = rolled(lesson, rng, 0.0, 0.99)
+    return (on.v + np.cross(on.omega, on.r))[:2], np.zeros(2)
 
 
 @case("one-step-of-the-loop", "One step of the lecture's loop, and of a rolling ball", compiled=False)
-def one_step_of_the_loop(lesson):
+def one_step_of_the_loop(lesson, check):
     """A body under a force and a torque of time; a ball of any size whose friction stops its slip within the cone."""
-    rng, worst = np.random.default_rng(57), Worst()
-    for _ in range(TRIED):
-        m, I, dt, t = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), rng.uniform(0.01, 0.1), rng.uniform()
-        q, (x, v, omega, f, a) = rng.normal(size=4), rng.normal(size=(5, 3))
-        q /= np.linalg.norm(q)
-        R = quaternion_matrix(*q)
-        load = lambda t, x, q, v, omega, body, f=f, a=a: (np.cos(t) * f, np.sin(t) * a)
-        state = x, R, v, omega
-        for steps in (1, 2):
-            state = looped(t + (steps - 1) * dt, *state, dt, m, I, f, a)
-            new_x, new_q, new_v, new_omega = lesson.advance_rigid_body(
-                lesson.rigid_body_step, load, t, x, q, v, omega, dt, steps, lesson.make_rigid_body(m, I))
-            worst.note("loop", (new_x, quaternion_matrix(*new_q), new_v, new_omega), state)
-
-        (radius, mu, inertia), g = rng.uniform((0.1, 0.2, 0.01), (0.5, 0.5, 0.1)), rng.normal(size=3)
-        along = np.array([1.0, 1.0, 0.0])                        # the floor's share of a vector
-        for up in (-9.81, 2.0):                                  # gravity presses the ball on the floor, or lifts it
-            ball = lesson.RollingBall(m, np.full(3, inertia), radius, mu, np.array([g[0], g[1], up]))
-            F, tau = lesson.supported_weight(t, x, q, v, omega, ball)
-            rests = m * np.array([g[0], g[1], max(0.0, up)])
-            worst.keep("support", np.max(np.abs(F - rests)), np.max(np.abs(tau)))
-        ball, r = ball._replace(gravity=np.array([g[0], g[1], -9.81])), np.array([0.0, 0.0, -radius])
-        for speed in (1e-3, 3.0):                                # friction stops the first slip, and not the second
-            before, limit = speed * v * along, mu * m * 9.81 * dt
-            start = before - (np.cross(omega, r) + dt * g) * along
-            _, _, end, spin = lesson.rolling_step(lesson.supported_weight, t, x, q, start, omega, dt, ball)
-            J = m * (end - start - dt * g * along)
-            new_x, new_q, *rates = lesson.average_rolling_step(lesson.supported_weight, t, x, q, start, omega, dt, ball)
-            worst.note("means", (new_x, quaternion_matrix(*new_q), *rates),
-                       (x + 0.5 * dt * (start + end), turned_by(0.5 * dt * (omega + spin)) @ R, end, spin))
-            worst.keep("impulse", np.max(np.abs(inertia * (spin - omega) - np.cross(r, J))))
-            after = (end + np.cross(spin, r)) * along
-            stops = np.linalg.norm(before) / (1.0 / m + radius**2 / inertia) <= limit
-            if stops:
-                worst.keep("slip", np.max(np.abs(after)))
-            else:
-                worst.keep("cone", np.max(np.abs(J + limit * before / np.linalg.norm(before))))
-    claims = (("loop", "The loop takes new velocities for positions, and Euler's equation for ω.",
-               "state [m, m/s, -, rad/s]"),
-              ("means", "The second-order step moves and turns by the means of the old and the new velocities.",
-               "state of the ball [m, -, m/s, rad/s]"),
-              ("support", "A floor takes what presses on it, and does not hold what is lifted.", "force [N]"),
-              ("impulse", "Friction turns the ball by r × J.", "angular momentum [kg m²/s]"),
-              ("cone", "A fast slip has the friction μ N against it.", "impulse [N s]"),
-              ("slip", "A slow slip is stopped in the step.", "slip that is left [m/s]"))
-    return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], 1e-10)
-            for name, claim, quantity in claims], None
+    check.laws(lesson, (loop, means, support, turn_of_friction, fast_slip, slow_slip), seed=57, times=TRIED)
 
 
 # ---------------------------------------------------------------------------------------------- a million steps
@@ -761,7 +691,7 @@ def drifts(lesson, n, tops):
 
 
 @case("a-million-steps", "A million steps of a top")
-def a_million_steps(lesson):
+def a_million_steps(lesson, check):
     """Gravity has no torque about the vertical, nor about the axis of a symmetric top: L_z and L₃ stay.
 
     The splitting keeps both, so that rounding alone changes them.  The torque is computed with a vertical component of
@@ -771,16 +701,14 @@ def a_million_steps(lesson):
     rng, longest = np.random.default_rng(7), LONG_RUN if hasattr(lesson.splitting_step, "py_func") else SHORT_RUN
     places, spins = rng.normal(size=(THROWN, 4)), 10.0 * rng.normal(size=(THROWN, 3))
     tops = [(q / np.linalg.norm(q), L) for q, L in zip(places, spins)]
-    counts = [longest // 100, longest // 10, longest]
-    vertical, axial = np.moveaxis([drifts(lesson, n, tops) for n in counts], 2, 0)
-    sizes = np.sqrt(np.mean(axial**2, axis=1))
-    return [
-        agreement("The angular momentum about the vertical keeps every bit.",
-                  f"change of L_z after {longest:,} steps, over |L| [-]", np.max(np.abs(vertical)), 0.0),
-        agreement("Rounding changes the angular momentum about the axis by less than ε per step.",
-                  f"change of L₃ after {longest:,} steps, over |L| [-]", np.max(np.abs(axial[-1])), longest * EPS),
-    ], Picture(
+    counts = np.array([longest // 100, longest // 10, longest])
+    vertical, axial = np.moveaxis([drifts(lesson, n, tops) for n in counts.tolist()], 2, 0)
+    check.agree("The angular momentum about the vertical keeps every bit.",
+                f"change of L_z after {longest:,} steps, over |L| [-]", np.max(np.abs(vertical)), 0.0)
+    check.agree("Rounding changes the angular momentum about the axis by less than ε per step.",
+                f"change of L₃ after {longest:,} steps, over |L| [-]", np.max(np.abs(axial[-1])), longest * EPS)
+    return Picture(
         "The angular momentum of a top about its axis", "log₁₀ of the steps [-]", "log₁₀ of its change over |L| [-]",
-        [series("ε per step", np.log10(counts), np.log10(EPS * np.array(counts)), LINE),
-         series("measured", np.log10(counts), np.log10(sizes), DOTS)],
+        [log_series("ε per step", counts, EPS * counts, LINE),
+         log_series("measured", counts, np.sqrt(np.mean(axial**2, axis=1)), DOTS)],
         "Rounding adds up, because every step rounds in the same way. After a million steps eleven digits are left.")
