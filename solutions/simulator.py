@@ -16,7 +16,7 @@ Given in support/simulator.py: a loop with joints.  Given in support/invariants.
 
 import numpy as np
 
-from .checks import check_end, check_load, check_shape, checked_run
+from .checks import check_end, check_load, check_shape, checked_run, float_copy
 from .contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from .impulses import cross_2d
 from .integrators import rk4_step
@@ -118,7 +118,7 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
     """
     ### BEGIN SOLUTION 10.2
     F, tau = load(t, x, q, v, omega, p)
-    v, omega = v + dt * p.inv_mass[:, None] * F, omega.copy()
+    v, omega = v + dt * p.inv_mass[:, None] * F, float_copy(omega)
     for i in range(omega.shape[0]):
         if p.inv_inertia[i, 0] > 0.0:
             omega[i] = omega[i] + dt * angular_acceleration(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i])
@@ -148,7 +148,7 @@ def free_step(load, t, x, q, v, omega, dt, p):
     """
     ### BEGIN SOLUTION 10.4
     v, omega = new_velocities(load, t, x, q, v, omega, dt, p)
-    q = q.copy()
+    q = float_copy(q)
     for i in range(q.shape[0]):
         q[i] = quaternion_update(q[i], omega[i], dt)
     return x + dt * v, q, v, omega
