@@ -288,7 +288,6 @@ UNDERFLOW = 1e-150           # numbers that count as 0, because what is computed
 ALLOWED = {
     "observed_order": 1e-15,     # logarithms: a sum in place of a product
     "solve_lcp": 1e-14,          # rows of A beside rows of the identity matrix: elimination picks other pivots
-    "composed_joint_step_2d": 1e-6,      # joints close to 1e-14 (1 m + |x|), which is in metres
 }
 
 NOT_SCALED = {
