@@ -246,7 +246,7 @@ def carried_step(load, t, x, q, v, omega, dt, ball):
         x ← x + dt (v + v_new)/2,      q ← quaternion_product(exponential(½ dt (ω + ω_new)), q)
 
     From step to step the floor below changes by dt (3/2 v − 1/2 v_before), which is Adams and Bashforth's method.
-    *Source:* the ball on a turntable moves on circles, Lamb 1914.
+    *Source:* the ball on a turntable moves on circles, Weltner 1979.
     """
     ### BEGIN SOLUTION 10.9
     pushed, turned = stop_slip(v, omega, support_velocity(x + dt * v, ball), dt, ball)
