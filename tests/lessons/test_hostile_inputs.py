@@ -1,7 +1,7 @@
 """No hostile input gives a silently wrong answer: the result is right, or visibly NaN, or an error names the bad value.
 
 Ordinary calls of most functions are recorded while the worked answers run the grading tests; the others are written
-in started.py and given_calls.py. Then one value at a time is made hostile. There are two groups of functions:
+in started.py. Then one value at a time is made hostile. There are two groups of functions:
 
 - Functions that a person calls to construct or start something (STARTED: `make_*`, loops over steps, whole problems)
   answer every hostile value with BadInput, with Diverged, or with a right result.
@@ -22,6 +22,7 @@ from solutions.checks import COUNTABLE, BadInput, Diverged
 from validate import modules
 
 from .given_calls import calls_of_all
+from .ordinary import ordinary_calls
 from .started import STARTED
 
 # Inner functions that trust an earlier check. They may lose a NaN and divide by zero, but whole numbers stay right.
@@ -81,7 +82,7 @@ ANOTHER_PROBLEM = {
 def ordinary():
     """{(lesson, function): (function, a few ordinary calls)} for every public function."""
     return {(lesson, name): (function, STARTED[lesson].get(name, some[:2]))
-            for (lesson, name), (function, some) in calls_of_all().items()}
+            for (lesson, name), (function, some) in ordinary_calls().items()}
 
 
 def leaves(value, path=()):
@@ -272,6 +273,15 @@ def test_no_hostile_value_gives_an_answer_that_is_silently_wrong(ordinary, capsy
             for kind, counts in table.items():
                 print(f"{kind:18}" + "".join(f"{counts[c]:18}" for c in columns))
     assert not faults, f"{len(faults)}:\n" + "\n".join(dict.fromkeys(faults))
+
+
+@pytest.mark.long
+def test_whole_numbers_are_right_in_every_public_function():
+    """In those of given_calls.py, too: a step that copies whole numbers and writes into the copy drops fractions."""
+    faults = [f"{lesson}.{name}: {path}" for (lesson, name), (function, calls) in calls_of_all().items()
+              for call in STARTED[lesson].get(name, calls[:2]) for path in leaves(call)
+              if outcome(function, call, path, "integer") == "WRONG"]
+    assert not faults, "\n".join(dict.fromkeys(faults))
 
 
 TWO_AT_ONCE = st.sampled_from([(lesson, name, k) for lesson, names in STARTED.items()
