@@ -365,8 +365,9 @@ def solve_impacts(body, r, n, e, mu):
     sweeps are not enough, return settle_impacts(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, μ) of the
     body before the impact, given in support/impact_modes.py: it relaxes the sweeps, tries all choices of open, sticking
     and sliding points, and last of all takes the impact that dissipates most, which is no answer of the law.
-    The law may have no answer, also for μ = 1, and then the residual shows that.  Of 8,000 random impacts at one to
-    four points, μ from 0.3 to 5, sweeps left 246, and settle_impacts found an answer to about half of these.
+    The law may have no answer, also for μ = 1, and then the residual shows that.  Of 48,000 random impacts at one to
+    four points with μ up to 1, 16 were left without one, and an independent search found none to them either.  Of 140
+    with μ = 2 or 5, nine were left; for μ above 1 it is not known how often an answer is missed.
     Answers need not be unique.
 
     The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.

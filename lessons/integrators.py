@@ -151,7 +151,7 @@ def blanes_moan_step(acceleration, t, x, v, dt, p):
     error stays bounded, as with Verlet.  It is smaller by orders of magnitude, for seven times the work.
     *Source:* Blanes and Moan 2002, the Runge–Kutta–Nyström method SRKN₆ᵇ of order 4.
     """
-    x, v = x.copy(), v.copy()
+    x, v = float_copy(x), float_copy(v)
     for kick, drift in SPLITTING:
         a = acceleration(t, x, v, p)
         for k in range(x.size):

@@ -16,7 +16,7 @@ Given in support/simulator.py: a loop with joints.  Given in support/invariants.
 
 import numpy as np
 
-from solutions.checks import check_end, check_load, check_shape, checked_run
+from solutions.checks import check_end, check_load, check_shape, checked_run, float_copy
 from solutions.contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from solutions.impulses import cross_2d
 from solutions.integrators import rk4_step
@@ -207,7 +207,7 @@ def carried_step(load, t, x, q, v, omega, dt, ball):
         x ← x + dt (v + v_new)/2,      q ← quaternion_product(exponential(½ dt (ω + ω_new)), q)
 
     From step to step the floor below changes by dt (3/2 v − 1/2 v_before), which is Adams and Bashforth's method.
-    *Source:* the ball on a turntable moves on circles, Lamb 1914.
+    *Source:* the ball on a turntable moves on circles, Weltner 1979.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.9: carried_step")

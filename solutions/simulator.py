@@ -16,7 +16,7 @@ Given in support/simulator.py: a loop with joints.  Given in support/invariants.
 
 import numpy as np
 
-from .checks import check_end, check_load, check_shape, checked_run
+from .checks import check_end, check_load, check_shape, checked_run, float_copy
 from .contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from .given.bodies import (
     Bodies,
@@ -118,7 +118,7 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
     """
     ### BEGIN SOLUTION 10.2
     F, tau = load(t, x, q, v, omega, p)
-    v, omega = v + dt * p.inv_mass[:, None] * F, omega.copy()
+    v, omega = v + dt * p.inv_mass[:, None] * F, float_copy(omega)
     for i in range(omega.shape[0]):
         if p.inv_inertia[i, 0] > 0.0:
             omega[i] = omega[i] + dt * angular_acceleration(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i])
@@ -148,7 +148,7 @@ def free_step(load, t, x, q, v, omega, dt, p):
     """
     ### BEGIN SOLUTION 10.4
     v, omega = new_velocities(load, t, x, q, v, omega, dt, p)
-    q = q.copy()
+    q = float_copy(q)
     for i in range(q.shape[0]):
         q[i] = quaternion_update(q[i], omega[i], dt)
     return x + dt * v, q, v, omega
@@ -246,7 +246,7 @@ def carried_step(load, t, x, q, v, omega, dt, ball):
         x ← x + dt (v + v_new)/2,      q ← quaternion_product(exponential(½ dt (ω + ω_new)), q)
 
     From step to step the floor below changes by dt (3/2 v − 1/2 v_before), which is Adams and Bashforth's method.
-    *Source:* the ball on a turntable moves on circles, Lamb 1914.
+    *Source:* the ball on a turntable moves on circles, Weltner 1979.
     """
     ### BEGIN SOLUTION 10.9
     pushed, turned = stop_slip(v, omega, support_velocity(x + dt * v, ball), dt, ball)

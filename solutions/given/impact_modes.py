@@ -33,7 +33,7 @@ ANGLE = 1e-7                 # for differences of the slip over the angle [rad]:
 TURN = 0.5                   # longest Newton step [rad]
 STILL = 1e-13                # Newton step that ends the search [rad]
 ROUNDS = 30                  # of Newton's method [-]; with 16 some answers are missed
-STARTS = (1, 16, 64, 64, 64) # of Newton's method for so many sliding points [-]; with 1, 16, 48 and 16 some are missed
+STARTS = (1, 18, 66, 66, 66) # of Newton's method for so many sliding points [-]; with 1, 16, 48 and 16 some are missed
 FREE_ROWS = (6, 3, 1, 0, 0)  # motions that are left to a body that sticks at so many points [-]
 EVEN = 0.8566748838545029    # (Eᵏ, E²ᵏ, …) without whole parts fill the unit cube evenly: 1/E solves x⁵ = x + 1
 
@@ -214,18 +214,38 @@ def impulses_of_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, i
     return after, impact_residual(contact_matrix, cone_impulse, after, r, n, Js, u_sep, impact.mu)
 
 
-def try_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, modes, goal):
-    """Return (BodyState3D, residual [m/s]) of these modes, from the first start that leaves at most the goal."""
+def directions_of_pull(after, r, impact):
+    """Return the angles (points,) [rad] at which the law pushes each point if it slides with the velocities `after`."""
+    angles = np.zeros(len(r))
+    for i in range(len(r)):
+        u = times(impact.frames[i], velocity_at(after, r[i]))
+        pull = -impact.sides[i, :, 0] * u[1] - impact.sides[i, :, 1] * u[2]
+        angles[i] = np.arctan2(pull[1], pull[0])
+    return angles
+
+
+def start_of(number, s):
+    """Return the angles (s,) [rad] of one of the starts that fill all directions evenly."""
+    angles = np.zeros(s)
+    for a in range(s):
+        angles[a] = 2.0 * np.pi * ((number + 1) * EVEN ** (a + 1) % 1.0)
+    return angles
+
+
+def try_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, modes, near, starts, goal):
+    """Return (BodyState3D, residual [m/s]) of these modes, from the first start that leaves at most the goal.
+
+    starts: the number of the first one, and of the one after the last.  Half of them follow `slide` with clear, and
+    the first two are the angles near (points,).
+    """
     points = np.flatnonzero(modes == SLIDES)
     best, least = body, np.inf
     u, A, hold, aim = held_points(impact, modes)
     sliding, s = sliding_of(impact, points, u, A), points.size
-    for start in range(STARTS[s]):
+    for start in range(starts[0], min(starts[1], STARTS[s])):
         J = np.zeros(u.size)
         if s > 0:
-            angles = np.zeros(s)
-            for a in range(s):
-                angles[a] = 2.0 * np.pi * ((start // 2 + 1) * EVEN ** (a + 1) % 1.0)
+            angles = start_of(start // 2 - 1, s) if start > 1 else near[points]
             pushes, mismatch = slide(find_angles(angles, sliding, start % 2 == 0), sliding, False)
             if not np.all(pushes[::3] >= 0.0) or not np.all(np.isfinite(mismatch)):
                 continue
@@ -240,13 +260,29 @@ def try_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, m
     return best, least
 
 
+def search_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, near, starts, goal):
+    """Return (BodyState3D, residual [m/s]) of the first choice of modes that leaves at most the goal; else of the last.
+    """
+    after, residual = body, np.inf
+    for choice in range(3 ** len(r)):
+        modes = np.array([choice // 3**i % 3 for i in range(len(r))])
+        slides = np.sum(modes == SLIDES)
+        if slides == 0 or slides <= FREE_ROWS[np.sum(modes == STICKS)]:
+            after, residual = try_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, modes, near,
+                                        starts, goal)
+            if residual <= goal:
+                break
+    return after, residual
+
+
 def settle_impacts(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu):
     """Given.  Return (BodyState3D, residual [m/s]) after impacts for which the sweeps of solve_impacts do not settle.
 
     1. relaxed_sweeps, and if these do not settle either:
     2. up to MAX_POINTS points: each may be open, stick or slide.  For every choice, Newton's method finds the
-       directions of sliding, from STARTS starts.  The first answer with a residual of at most SOLVED times
-       largest_speed(body, r) is returned.  Points that others make redundant count as open.
+       directions of sliding: first from those after relaxed_sweeps, which often circle round an answer, and then from
+       STARTS starts.  The first answer with a residual of at most SOLVED times largest_speed(body, r) is returned.
+       Points that others make redundant count as open.
     3. most_dissipative_impact, whose residual shows that it is no answer of the law.
     With 3. there may still be an answer: that 2. finds one where there is one has been tested, not proved.
     """
@@ -256,12 +292,10 @@ def settle_impacts(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, m
         return after, residual
     if len(r) <= MAX_POINTS:
         impact = impact_of(contact_matrix, apply_impulse, body, r, n, e, mu)
-        for choice in range(3 ** len(r)):
-            modes = np.array([choice // 3**i % 3 for i in range(len(r))])
-            slides = np.sum(modes == SLIDES)
-            if slides == 0 or slides <= FREE_ROWS[np.sum(modes == STICKS)]:
-                after, residual = try_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, modes,
-                                            goal)
-                if residual <= goal:
-                    return after, residual
+        near = directions_of_pull(after, r, impact)
+        for starts in ((0, 2), (2, max(STARTS))):
+            after, residual = search_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, impact, near,
+                                           starts, goal)
+            if residual <= goal:
+                return after, residual
     return most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu)

@@ -28,6 +28,7 @@ from ..checks import (
     check_restitution,
     check_shape,
     finite_array,
+    float_copy,
 )
 from ..rotation import SUZUKI, body_angular_momentum, exponential, quaternion_product, splitting_free_rotation
 from ..support.arms import apply_impulses, apply_impulses_2d, normal_velocities_2d, point_velocity_of, world_inertia
@@ -236,7 +237,7 @@ def close_joints_2d(x, q, v, omega, dt, p):
     that; then the directions at the end serve.  Such a step is of second order, also within a composed one.
     Raises Diverged where a step is too long for that, or where bodies go where the joints cannot stay closed.
     """
-    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms_2d(q, p.joints)
+    v, omega, joints, arms = float_copy(v), float_copy(omega), p.joints, joint_arms_2d(q, p.joints)
     open_by, turned = 0.0, np.max(np.abs(q))
     for _ in range(MOST if joints.a.size > 0 else 0):
         there, end = x + dt * v, joint_arms_2d(q + dt * omega, joints)
@@ -268,7 +269,7 @@ def joint_velocities_2d(v, omega, arms, joints):
 
 def hold_joints_2d(q, v, omega, p):
     """(v, omega) after the impulses with which both points of each joint have the same velocity."""
-    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms_2d(q, p.joints)
+    v, omega, joints, arms = float_copy(v), float_copy(omega), p.joints, joint_arms_2d(q, p.joints)
     J, _ = impulses_2d(arms, arms, joint_velocities_2d(v, omega, arms, joints), p)
     apply_impulses_2d(v, omega, J, joints, arms, p.inv_mass, p.inv_inertia)
     return v, omega
@@ -360,7 +361,7 @@ def turn_on(q, omega, dt, inv_body):
 
     What no torque can turn keeps its ω.
     """
-    q, omega = q.copy(), omega.copy()
+    q, omega = float_copy(q), float_copy(omega)
     for i in range(q.shape[0]):
         if inv_body[i, 0] > 0.0:
             L = body_angular_momentum(q[i], omega[i], 1.0 / inv_body[i])
@@ -373,7 +374,7 @@ def turn_on(q, omega, dt, inv_body):
 
 def close_joints(x, q, v, omega, dt, p):
     """(v, omega) as in the plane: all joints are closed when the bodies have moved and turned on for dt."""
-    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms(q, p.joints)
+    v, omega, joints, arms = float_copy(v), float_copy(omega), p.joints, joint_arms(q, p.joints)
     inv_inertia, open_by = spatial_inertia(q, p.inv_inertia), 0.0
     for _ in range(MOST if joints.a.size > 0 else 0):
         there, end = x + dt * v, joint_arms(turn_on(q, omega, dt, p.inv_inertia)[0], joints)
@@ -405,7 +406,7 @@ def joint_velocities(v, omega, arms, joints):
 
 def hold_joints(q, v, omega, p):
     """(v, omega) as in the plane: both points of each joint have the same velocity."""
-    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms(q, p.joints)
+    v, omega, joints, arms = float_copy(v), float_copy(omega), p.joints, joint_arms(q, p.joints)
     inv_inertia, u = spatial_inertia(q, p.inv_inertia), joint_velocities(v, omega, arms, joints)
     J, _ = impulses_3d(arms, arms, u, p.inv_mass, inv_inertia, joints)
     apply_impulses(v, omega, J, joints, arms, p.inv_mass, inv_inertia)
@@ -415,7 +416,7 @@ def hold_joints(q, v, omega, p):
 def kick(load, t, x, q, v, omega, dt, p):
     """(v, omega) after the loads have acted for dt; the gyroscopic term is in turn_on."""
     F, tau = load(t, x, q, v, omega, p)
-    v, omega = v + dt * p.inv_mass[:, None] * F, omega.copy()
+    v, omega = v + dt * p.inv_mass[:, None] * F, float_copy(omega)
     for i in range(q.shape[0]):
         omega[i] += dt * rotate(q[i], p.inv_inertia[i] * unrotate(q[i], tau[i]))
     return v, omega

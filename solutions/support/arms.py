@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import float_copy
 from ..vectors import dot
 from .tuples import across, axis, minus, plus, put, row, scaled, times
 
@@ -119,7 +120,7 @@ def world_inertia(turn, inv_body):
 
 def turn_freely(turn, omega, inv_body, dt):
     """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit."""
-    omega = omega.copy()
+    omega = float_copy(omega)
     for i in range(turn.shape[0]):
         w = row(omega, i)
         a, b, c = dot(axis(turn, i, 0), w), dot(axis(turn, i, 1), w), dot(axis(turn, i, 2), w)
@@ -132,7 +133,7 @@ def turn_freely(turn, omega, inv_body, dt):
 
 def turn_quaternions(q, omega, dt):
     """quaternion_update of lesson 5 for all bodies."""
-    q = q.copy()
+    q = float_copy(q)
     for i in range(q.shape[0]):
         w, a = q[i, 0], (q[i, 1], q[i, 2], q[i, 3])
         h = (0.5 * dt * omega[i, 0], 0.5 * dt * omega[i, 1], 0.5 * dt * omega[i, 2])

@@ -138,7 +138,7 @@ def test_the_processes_of_a_killed_worker_end_with_it(settings):
         until(lambda: len(like_a_worker.children(recursive=True)) >= 2)                # grading process and sandbox
         begun = like_a_worker.children(recursive=True)
         process.kill()
-        assert not psutil.wait_procs(begun, timeout=5.0)[1]                             # it looks once a second
+        assert not psutil.wait_procs(begun, timeout=UP_WITHIN)[1]                       # it looks once a second
 
 
 @pytest.mark.long

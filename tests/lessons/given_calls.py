@@ -1,10 +1,13 @@
 """Ordinary calls of given functions that no grading test calls: {lesson: {function: calls}}."""
 
+import functools
+
 import numpy as np
 
 from validate.subject import modules
 
-from . import test_hostile_inputs as scenes
+from . import started as scenes
+from .ordinary import ordinary_calls
 
 collisions, contact, friction, impulses, pbd = map(
     modules.bind, ("collisions", "contact", "friction", "impulses", "pbd"))
@@ -240,3 +243,14 @@ def given_calls():
         "simulator": of_simulator(),
         "kinematics": of_kinematics(),
     }
+
+
+@functools.cache
+def calls_of_all():
+    """{(lesson, function): (function, calls)} of every public function: recorded ones, and those written by hand."""
+    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls().items()}
+    for lesson, name, calls in ((lesson, name, calls) for written in (scenes.STARTED, given_calls())
+                                for lesson, functions in written.items() for name, calls in functions.items()):
+        function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
+        found[lesson, name] = function, [*recorded, *calls]
+    return found

@@ -47,6 +47,25 @@ def test_axes_of_whole_numbers_rotate_like_axes_of_floats():
     assert np.allclose(turned, [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], rtol=0.0, atol=ROUND_OFF)
 
 
+def test_one_step_of_whole_numbers_is_that_of_floats():
+    """These steps are called without a loop, which would convert the state."""
+    oscillator = integrators.Oscillator(3.0, 0.0)
+    state, p = two_balls("make_bodies")
+    x, q, v = np.array([[0, 0, 1], [0, 0, 2], [0, 0, 0]]), np.tile([1, 0, 0, 0], (3, 1)), np.zeros((3, 3), dtype=int)
+    omega = np.array([[1, 2, 3], [3, 0, 1], [0, 0, 0]])
+    joined = simulator.make_joints(state._replace(x=1.0 * x), p, [0], [1], [(0.0, 0.0, 1.5)], 0.0)
+    for function, before, whole, after in (
+            (integrators.blanes_moan_step, (integrators.oscillator_acceleration, 0), (np.array([1]), np.array([0])),
+             (0.1, oscillator)),
+            (simulator.new_velocities, (simulator.weight, 0), (x, q, v, omega), (0.1, p)),
+            (simulator.free_step, (simulator.weight, 0), (x, q, v, omega), (0.1, p)),
+            (simulator.joint_step, (simulator.weight, 0), (x, q, v, 0 * omega), (0.01, joined)),
+            (simulator.turn_quaternions, (), (q, omega), (0.1,))):
+        floats = [1.0 * one for one in whole]
+        for found, expected in zip(function(*before, *whole, *after), function(*before, *floats, *after), strict=True):
+            assert np.array_equal(found, expected), function.__name__
+
+
 # ---------------------------------------------------------------------------------------------- no gain of energy
 
 def test_no_loop_starts_with_a_parameter_that_creates_energy():

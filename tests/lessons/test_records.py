@@ -18,7 +18,8 @@ from solutions.given.bodies import CarriedBall, Toppled
 from solutions.support.records import RULES, Inner, check_record
 from validate.subject import modules
 
-from .test_hostile_inputs import STARTED, at, put
+from .started import STARTED
+from .test_hostile_inputs import at, put
 
 integrators, springs, friction, rotation = map(modules.bind, ("integrators", "springs", "friction", "rotation"))
 collisions, impulses, pbd, contact = map(modules.bind, ("collisions", "impulses", "pbd", "contact"))
@@ -305,7 +306,7 @@ MOVES = (pbd.network_gravity, 0.0, points, 0.0 * points, 0.004, 2, network)
 FLAT_STATE = flat[0][:4]
 NETWORK_STEPS = pbd.pbd_step, pbd.xpbd_step, pbd.rattle_step, pbd.constraint_projection_step
 
-# Calls beside those of test_hostile_inputs.
+# Calls beside those of started.py.
 MORE = {
     "advance": [(step, *MOVES) for step in NETWORK_STEPS],
     "advance_rigid_body": [(simulator.carried_step, *ON_A_FLOOR, EXAMPLES[8][0])],

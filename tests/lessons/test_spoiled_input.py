@@ -15,8 +15,9 @@ from solutions.integrators import solve
 from solutions.kinematics import solve_2r, solve_3r
 from validate.subject import modules
 
+from .started import STARTED
 from .test_contact import stack_of
-from .test_hostile_inputs import STARTED, at, leaves, put
+from .test_hostile_inputs import at, leaves, put
 
 MOST_CALLS = 200             # of functions before bad input is refused [-]: checks of a few arrays; one sweep is one
 BOXES = stack_of(contact, [1.0, 2.0, 0.5])

@@ -17,9 +17,7 @@ import pytest
 from solutions.checks import BadInput, Diverged
 from validate.subject import modules
 
-from .given_calls import given_calls
-from .ordinary import ordinary_calls
-from .test_hostile_inputs import STARTED
+from .given_calls import calls_of_all
 
 BASE = {"m": (1, 0, 0), "kg": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "J": (2, 1, -2),
         "rad": (0, 0, 0), "1": (0, 0, 0), "-": (0, 0, 0)}
@@ -290,7 +288,6 @@ UNDERFLOW = 1e-150           # numbers that count as 0, because what is computed
 ALLOWED = {
     "observed_order": 1e-15,     # logarithms: a sum in place of a product
     "solve_lcp": 1e-14,          # rows of A beside rows of the identity matrix: elimination picks other pivots
-    "composed_joint_step_2d": 1e-6,      # joints close to 1e-14 (1 m + |x|), which is in metres
 }
 
 NOT_SCALED = {
@@ -422,17 +419,6 @@ def has_floats(value):
 
 
 # ---------------------------------------------------------------------------------------------- the tests
-
-@functools.cache
-def calls_of_all():
-    """{(lesson, function): (function, calls)}."""
-    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls().items()}
-    for lesson, name, calls in ((lesson, name, calls) for written in (STARTED, given_calls())
-                                for lesson, functions in written.items() for name, calls in functions.items()):
-        function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
-        found[lesson, name] = function, [*recorded, *calls]
-    return found
-
 
 def result_of(function, call):
     """(result, None), or (None, the class of the error)."""
