@@ -1251,6 +1251,8 @@ wrongs("9.11", forces, {
     "adds the load twice": {"loaded": 2.0},
 })
 edits("9.11", {
+    "adds the gaps to the accelerations": ("G @ (w * load.ravel()), mu",
+                                           "G @ (w * load.ravel()) + np.repeat(contacts.gap, 2), mu"),
     "leaves out the acceleration of the last body": (
         "a.reshape(-1, 3)", "a.reshape(-1, 3) * (np.arange(x.shape[0]) < x.shape[0] - 1)[:, None]"),
     "returns forces as one row": ("return F.reshape(-1, 2)", "return F"),
