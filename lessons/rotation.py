@@ -153,7 +153,7 @@ def axis_angle_update(R, omega, dt):
     θ = |ω| dt,   n = ω/|ω|
     r ← cos θ r + sin θ n × r + (1 − cos θ)(n · r) n
 
-    Exact for constant ω.  Where ω = 0 the orientation stays R.
+    Exact for constant ω.  Where ω = 0 the orientation stays R.  Returns a new array, there too.
     *Source:* first lecture deck, “Extract axis-angle from ω(t) and rotate columns of R(t)”; Rodrigues 1840.
     """
     # YOUR CODE HERE

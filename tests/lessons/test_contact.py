@@ -660,6 +660,7 @@ def stack_of(lesson, masses, width=1.0):
                     [(s, k) for k in range(n) for s in places], [MIDDLE] * (2 * n))
     load = np.zeros((n + 1, 3))
     load[1:, 1] = -G * np.array(masses)
+    c = c._replace(gap=1e-3 * (-1.0) ** np.arange(2 * n))                # forces do not depend on gaps
     return x, np.append(0.0, 1.0 / np.array(masses)), np.append(0.0, 6.0 / np.array(masses)), c, load
 
 
@@ -1052,6 +1053,8 @@ def test_no_box_has_left_while_all_are_inside(lesson, draw):
         for what, parts in (("exactly as low as they may be", (wide[0], high)),
                             ("exactly as high as they may be", (low, wide[1])), ("as wide as they may be", wide)):
             truth(f"whether any box has left, all {what}", lesson.has_left_margin(*parts, *wide), False)
+        truth("whether any box has left, no bodies",
+              lesson.has_left_margin(*(part[:0] for part in (low, high, *wide))), False)
         everywhere = np.full(low.shape, np.inf)
         truth("whether any box has left where the widened boxes are all of space",
               lesson.has_left_margin(low, high, -everywhere, everywhere), False)
@@ -1235,6 +1238,11 @@ def test_a_contact_does_not_pull(lesson, draw):
     got_v, _, got = lesson.velocity_sweep_2d(v.copy(), omega, 0.0 * J, np.full(5, -200.0), np.zeros(5), c, arms, pile)
     close("J of contacts that may approach as they do [N s]", np.asarray(got), np.zeros((5, 2)), 0.0)
     close("velocities that no impulse changes [m/s]", np.asarray(got_v), v, 0.0)
+    v_fast = v + np.array([-1e3, 0.0, 0.0, 0.0])[:, None] * c.n[0]       # body 0 closes a gap too fast
+    slowed = lesson.velocity_sweep_2d(v_fast, omega, 0.0 * J, np.where(np.arange(5) == 0, -20.0, -2e4), np.zeros(5), c,
+                                      arms, pile._replace(mu=0.0))
+    close("speed at the one contact that may approach at 20 m/s at most [m/s]",
+          velocities_at(x, c, np.column_stack(slowed[:2]))[0] @ c.n[0], -20.0, 1e-9)
     one = np.where(np.arange(5) == 0, 200.0, -2000.0)
     pushed = lesson.velocity_sweep_2d(v, omega, 0.0 * J, one, np.zeros(5), c, arms, pile._replace(mu=0.0))
     close("speed at the one contact that must separate at 200 m/s [m/s]",

@@ -77,6 +77,27 @@ def three_points(theta, target, arm):
 TASKS = ((reach, 1), (three_points, 3))                                  # and the number of points that it moves
 
 
+def pose(theta, target, arm):
+    """Task of the tests: place and direction of the end of a planar arm; target (3,), J (3, n)."""
+    J, x, y, phi = np.zeros((3, theta.size)), 0.0, 0.0, 0.0
+    for k in range(theta.size):
+        phi += theta[k]
+        along, up = arm.lengths[k] * np.cos(phi), arm.lengths[k] * np.sin(phi)
+        x, y = x + along, y + up
+        J[2, k] = 1.0
+        for i in range(k + 1):
+            J[0, i] -= up
+            J[1, i] += along
+    return np.array((target[0] - x, target[1] - y, target[2] - phi)), J
+
+
+def posed(draw, n):
+    """(lengths, θ, target, e, J) of such a task."""
+    lengths, theta, e = lengths_of(draw, n), turned(draw, n), draw(0.3, 1.0, 3)
+    return (lengths, theta, np.append(joints(theta, lengths)[-1], theta.sum()) + e, e,
+            np.vstack((slopes(theta, lengths), np.ones(n))))
+
+
 def points_of(theta, lengths, count=1):
     """The last so many points of a planar arm, one after the other (2 count,)."""
     return joints(theta, lengths)[-count:].ravel()
@@ -274,7 +295,8 @@ def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
 
 
 @exercise("11.4", points=0.5,
-          hint="the products under the roots, and half the angle, keep the digits of θ₂; there may be a third length")
+          hint="the products under the roots, and half the angle, keep the digits of θ₂, the arctangents those of θ₁; "
+               "there may be a third length")
 def test_the_elbow_keeps_its_digits_where_the_arm_is_nearly_straight_or_folded(lesson, draw):
     """tan²(θ₂/2) is a quotient of four factors.  Each is exact here, so θ₂ is known to its last digits.
 
@@ -292,6 +314,8 @@ def test_the_elbow_keeps_its_digits_where_the_arm_is_nearly_straight_or_folded(l
             got = np.asarray(lesson.solve_2r(target, lengths, 1.0))
             close("bend of an arm near the edge of its reach, over the right one [-]", (got[1] - straight) / bend,
                   -1.0 if straight else 1.0, 1e-10,
+                  given=f"distance {r} m, lengths {lengths} m")
+            close("end of an arm near the edge of its reach [m]", joints(got, lengths[:2])[-1], target, ROUND_OFF,
                   given=f"distance {r} m, lengths {lengths} m")
 
 
@@ -407,7 +431,7 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
     still = np.array([1.0, 0.0, 0.0, 0.0])
     close("rotation vector from an orientation to itself [rad]", lesson.rotation_error(q, q), np.zeros(3), 1e-15)
     close("rotation vector of no rotation at all [rad]", lesson.rotation_error(still, still), np.zeros(3), 0.0)
-    for least in (3e-8, 1e-9, 1e-5, 1e-3, 1e-2):
+    for least in (3e-8, 1e-9, 1e-13, 1e-5, 1e-3, 1e-2):
         angle = draw(least, 1.3 * least)
         close("rotation vector over its small angle [-]",
               np.asarray(lesson.rotation_error(still, quaternion(axis, angle))) / angle, axis, ROUND_OFF,
@@ -440,6 +464,10 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
             close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain,
                   -0.5 * np.array(slope) / DIFFERENCE, 1e-6,
                   given=f"θ = {theta}, target {target} m, α = {gain}, {2 * count} rows")
+    lengths, theta, target, e, J = posed(draw, 4)
+    got = lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=gain, **NARROW))
+    close("change of θ towards a place and a direction, over the gain [-]", (np.asarray(got) - theta) / gain, e @ J,
+          SOLVED, given=f"θ = {theta}, target {target}, α = {gain}, 3 rows")
 
 
 @exercise("11.9", points=0.5,
@@ -478,11 +506,11 @@ def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
         close("J⁺ applied to the lost direction, times σ₁ [-]", sigma[0] * got @ u[:, 2], np.zeros(n), SOLVED,
               given=f"σ = {sigma}")
         close("J J⁺ applied to the others [-]", J @ got @ u[:, :2], u[:, :2], SOLVED, given=f"σ = {sigma}")
-    for size in (1.0, 1e-3):                                             # of an arm of metres, and of millimetres
-        sigma = size * np.array([1.0, draw(2e-10, 1e-9)])
-        J, u = with_singular_values(draw, sigma, 3)
-        close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(2), 1e-4,
-              given=f"σ = {sigma}")
+    for size, large in ((1.0, 1), (1e-3, 1), (1.0, 4)):                  # the sum of four large σ is 3.6 σ₁
+        sigma = size * np.append(draw(0.9, 1.0, large), draw(2e-10, 3e-10))
+        J, u = with_singular_values(draw, sigma, large + 2)
+        close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(large + 1),
+              1e-4, given=f"σ = {sigma}")
     close("J⁺ of a J of zeros", lesson.pseudo_inverse(np.zeros((2, 3))), np.zeros((3, 2)), 0.0)
 
 
@@ -504,6 +532,10 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
             got = lesson.damped_step(task, theta, target, arm_of(lesson, lengths, damping=damping, **NARROW))
             close("θ after a step [rad]", got, theta + damped(J, e, damping), SOLVED,
                   given=f"θ = {theta}, target {target} m, λ = {damping} m")
+    lengths, theta, target, e, J = posed(draw, 4)
+    got = lesson.damped_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7, **NARROW))
+    close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), SOLVED,
+          given=f"θ = {theta}, target {target}, λ = 0.7 m")
     lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
     expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
     got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
@@ -579,16 +611,22 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
 @exercise("11.13", points=0.5,
           hint="stop each joint at its limit, and turn the end by the actual change of the angle")
 def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
-    for _ in range(5):
+    for trial in range(8):                                               # both limits of a joint above 0, or both below
         n = draw.whole(3, 6)
         lengths, theta, target = lengths_of(draw, n), draw(-0.3, 0.3, n), draw(-2.0, 2.0, 2)
-        around = np.append(2.0 * np.pi * draw.whole(0, 1), np.zeros(n - 1))
+        around = draw(0.9, 1.5, n) * (-1.0) ** (np.arange(n) + trial)
+        around[0] += 2.0 * np.pi * draw.whole(0, 1)
         theta, low, high = theta + around, around + draw(-0.9, -0.3, n), around + draw(0.3, 0.9, n)
         arm = arm_of(lesson, lengths, low=low, high=high)
         got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep between limits [rad]", got, expected, 1e-9,
               given=f"θ = {theta}, target {target} m, limits {arm.low} to {arm.high}")
+    theta = np.array([0.0, np.pi, -2.0 * np.pi])                         # folded, so that its end is at its base
+    arm = arm_of(lesson, draw(0.5, 2.0) * np.array([1.0, 0.5, 0.5]), low=theta - np.eye(3)[0],
+                 high=theta + np.eye(3)[0])
+    got = np.asarray(lesson.ccd_step(reach, theta, draw(0.5, 1.0, 2), arm))
+    between("θ₁ of a stiff arm whose end is at its base [rad]", got[0], -1.0, 1.0, given=f"θ = {theta}")
 
 
 def there_and_back(x, target, lengths):
@@ -723,14 +761,23 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
                   given=f"e = {e} m")
             shortest = np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]          # from z to the nearest such Δθ
             close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
-    for n in (2, 4):                             # straight but for round-off: no joint moves the end along the arm
-        lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), draw(1e-13, 1e-12, n - 1))
+    lengths, theta, target, e, J = posed(draw, 5)
+    arm, z = arm_of(lesson, lengths, rest=rest[:5], pull=pull, **NARROW), pull * (rest[:5] - theta)
+    got = np.asarray(lesson.null_space_step(pose, theta, target, arm)) - theta
+    close("change of θ towards a place and a direction [rad]", got,
+          z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9, given=f"θ = {theta}, rest {rest[:5]}, κ = {pull}")
+    for n, bend in ((2, 1e-13), (4, 1e-13), (2, 1.5e-11), (4, 1.5e-11)):      # σ₂ is below SINGULAR σ₁
+        lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), bend * draw(1.0, 2.0, n - 1))
         e, z = draw(-0.5, 0.5, 2), pull * (rest[:n] - theta)
         sideways, r = np.array([-np.sin(theta[0]), np.cos(theta[0])]), np.cumsum(lengths[::-1])[::-1]
         arm = arm_of(lesson, lengths, rest=rest[:n], pull=pull, **NARROW)
         got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e, arm)
         close("change of θ of an arm that is straight [rad]", np.asarray(got) - theta,
               z + r * (sideways @ e - r @ z) / (r @ r), 1e-9, given=f"θ = {theta}, rest {rest[:n]}, e = {e} m")
+    theta = np.array([draw(-3.0, 3.0), draw(1e-8, 2e-8)])                # nearly straight: σ₂ is above SINGULAR σ₁
+    e, J, arm = draw(0.2, 0.5, 2), slopes(theta, lengths[:2]), arm_of(lesson, lengths[:2], rest=rest[:2], pull=pull)
+    change = np.asarray(lesson.null_space_step(reach, theta, joints(theta, lengths[:2])[-1] + e, arm)) - theta
+    close("J Δθ of an arm that is nearly straight [m]", J @ change, e, 1e-5, given=f"θ = {theta}, e = {e} m")
 
 
 @exercise("11.16", points=0.5, hint="among all angles that reach the target, the arm comes to rest near arm.rest")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate.grading.expect import between, close, raises
+from validate.grading.expect import between, close, raises, truth
 
 exercise = pytest.mark.exercise
 EXACT = 1e-12                # a few dozen operations, each with a round-off of 1e-16, on numbers below 100
@@ -170,7 +170,10 @@ def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
     close("input R after the call: unchanged", R, kept, 0.0)
     back = lesson.axis_angle_update(np.asarray(got, dtype=float), omega, -dt)
     close("orientation after dt and −dt: back", back, R, EXACT)
-    close("orientation at ω = 0: R itself", lesson.axis_angle_update(R, np.zeros(3), dt), R, 0.0)
+    still = lesson.axis_angle_update(R, np.zeros(3), dt)
+    close("orientation at ω = 0: that of R", still, R, 0.0)
+    truth("whether this is the array that was handed in: orientation at ω = 0",
+          np.shares_memory(np.asarray(still), R), False)
 
 
 @exercise("5.7", points=0.75,

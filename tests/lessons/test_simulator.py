@@ -872,6 +872,9 @@ def test_the_centre_of_the_floor_has_the_velocity_of_the_floor(lesson, draw):
           ball.floor_v + np.array([0.0, arm * ball.floor_omega[2], 0.0]), ROUND_OFF)
     close("velocity of the floor at its centre [m/s]", lesson.support_velocity(ball.centre, ball), ball.floor_v,
           ROUND_OFF)
+    belt = ball._replace(floor_omega=np.zeros(3), floor_v=draw(-300.0, 300.0, 3))
+    close("velocity of a fast belt, which does not turn [m/s]", lesson.support_velocity(beside, belt), belt.floor_v,
+          ROUND_OFF)
 
 
 def supported(t, x, q, v, omega, ball):
@@ -885,6 +888,15 @@ def supported(t, x, q, v, omega, ball):
         F[0] += 0.3 * ball.mu * ball.m * G
         tau[2] = 0.1 * ball.m * G * ball.radius
     return F, tau
+
+
+def tethered(t, x, q, v, omega, ball):
+    """A force towards the origin."""
+    return -ball.m * x, np.zeros(3)
+
+
+def unloaded(t, x, q, v, omega, ball):
+    return np.zeros(3), np.zeros(3)
 
 
 def rolling_on(lesson, x, v, ball):
@@ -910,6 +922,13 @@ def test_a_step_brings_the_lowest_point_to_the_velocity_of_the_floor_ahead(lesso
     mean = 0.5 * (omega + got[3])
     rate = np.linalg.norm(mean)
     close("orientation after a step, as a matrix", matrix(got[1]), about(mean / rate, rate * dt) @ matrix(q), MANY)
+    sloping = ball._replace(gravity=np.append(draw(-1.0, 1.0, 2), -G))
+    pulled, free = (lesson.carried_step(load, T_0, x, q, v, omega, dt, sloping) for load in (tethered, unloaded))
+    close("what a load at the old place adds to the velocity [m/s]", np.asarray(pulled[2]) - free[2], -dt * x, MANY,
+          given=f"F = −m x, x = {x} m")
+    close("velocity of the lowest point without a load, on a sloping turntable [m/s]",
+          np.asarray(free[2]) + np.cross(free[3], r), ahead - dt * sloping.gravity * [1.0, 1.0, 0.0], MANY,
+          given=f"gravity {sloping.gravity} m/s², which friction holds for dt")
 
 
 @exercise("10.9", points=0.25, hint="stop_slip first; then rigid_body_step adds the load, at the time t and for dt")
@@ -1045,6 +1064,10 @@ def test_what_rolls_does_not_slip_and_what_is_too_steep_never_rolls(lesson, draw
     steep = ball._replace(gravity=ball.gravity + draw(1.1, 1.5) * brake(ball) * (1.0 + 1.0 / share) * e)
     endless = np.isinf(lesson.slip_time(v, 0.5 * rolls, steep))
     truth("whether it slips forever on a steep floor", endless, True)
+    endless = np.isinf(lesson.slip_time(v, 0.5 * rolls, ball._replace(mu=0.0)))
+    truth("whether it slips forever without friction", endless, True)
+    between("time of a ball on a floor of infinite friction [s]",
+            lesson.slip_time(v, 0.5 * rolls, ball._replace(mu=np.inf)), 0.0, 0.0)
 
 
 @exercise("10.11", points=0.25, hint="one part until slip_time, but at most dt; another part for the rest of dt")
@@ -1243,8 +1266,9 @@ def test_the_largest_gain_is_found_among_all_pairs_of_times(lesson, draw):
         expected = max((energies - work)[k] - (energies - work)[j] for k in range(n) for j in range(k + 1))
         close("largest gain [J]", lesson.gain_without_source(energies, work), expected, ROUND_OFF,
               given=f"E − W = {energies - work} J")
-    close("largest gain of a run in nanojoules [J]", lesson.gain_without_source(1e-9 * energies, 1e-9 * work),
-          1e-9 * expected, 1e-9 * MANY)
+    for size, unit in ((1e-9, "nanojoules"), (1e-15, "femtojoules")):
+        close(f"largest gain of a run in {unit} [J]", lesson.gain_without_source(size * energies, size * work),
+              size * expected, size * MANY)
 
 
 @exercise("10.15", points=0.25, hint="energies, work = checked_histories(energies, work) comes first")

@@ -239,6 +239,10 @@ wrongs("9.2", delassus, {
     "reverses the order of the rows": {"result": lambda A: A[::-1].copy()},
 })
 edits("9.2", {
+    "keeps only the rotation": ("(G * w)", "(G * w * (np.arange(w.size) % 3 == 2))"),
+    "shifts the inverse masses by one coordinate": ("(G * w)", "(G * np.roll(w, 1))"),
+    "divides by the trace": ("return (G * w) @ np.ascontiguousarray(G.T)",
+                             "A = (G * w) @ G.T; return A / max(np.trace(A), 1e-300)"),
     "takes the sizes of the entries of G": ("(G * w)", "(np.abs(G) * w)"),
     "has no Gᵀ": ("(G * w) @ np.ascontiguousarray(G.T)", "G * w"),
     "changes its input": ("return (G * w)", "G *= w; return G"),
@@ -338,6 +342,12 @@ wrongs("9.3", lcp_residual, {
                                                                                 np.minimum(x, u))},
 })
 edits("9.3", {
+    "divides the velocity by the diagonal": ("A @ lam + b", "(A @ lam + b) / np.diag(A)"),
+    "takes the last contact only": ("np.max(np.abs(np.minimum(np.diag(A) * lam, A @ lam + b)))",
+                                    "np.abs(np.minimum(np.diag(A) * lam, A @ lam + b))[-1]"),
+    "takes the first contact only": ("np.max(np.abs(np.minimum(np.diag(A) * lam, A @ lam + b)))",
+                                     "np.abs(np.minimum(np.diag(A) * lam, A @ lam + b))[0]"),
+    "takes pulls for zero in the velocity": ("A @ lam + b", "A @ np.maximum(lam, 0.0) + b"),
     "leaves out the impulses of the other contacts": ("A @ lam + b", "np.diag(A) * lam + b"),
     "omits the impulses in the velocity": ("A @ lam + b", "b"),
     "returns an impulse, not a velocity": ("np.minimum(np.diag(A) * lam, A @ lam + b)",
@@ -895,6 +905,13 @@ edit("9.9", "omits the impulses in the velocity", "A @ J + b", "b")
 edit("9.9", "does not limit the normal impulse to zero or more",
      "np.maximum(0.0, J[n] - u[n] / A[n, n])", "J[n] - u[n] / A[n, n]")
 edits("9.9", {
+    "adds up all contacts": ("worst = np.maximum(worst,", "worst = worst + np.maximum(0.0,"),
+    "limits the friction on the upper side only": (
+        "np.minimum(np.maximum(J[t] - u[t] / A[t, t], -limit), limit)", "np.minimum(J[t] - u[t] / A[t, t], limit)"),
+    "has a negative limit where the contact pulls": ("mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * J[n]"),
+    "uses μ of number 2k for contact k": ("mu[n // 2]", "mu[min(n, mu.size - 1)]"),
+    "looks only at contacts that push": ("J_n = np.maximum(0.0, J[n] - u[n] / A[n, n])",
+                                         "J_n = np.maximum(0.0, J[n] - u[n] / A[n, n]) if J[n] > 0.0 else J[n]"),
     "uses the limit of the contact before": ("mu[n // 2] * J[n]", "mu[n // 2 - 1] * J[n]"),
     "uses the mean of μ": ("mu[n // 2] * J[n]", "np.mean(mu) * J[n]"),
     "divides by μ": ("mu[n // 2] * J[n]", "J[n] / mu[n // 2]"),
@@ -1038,6 +1055,10 @@ edit("9.10", "always slides: takes the limit",
      "np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)",
      "limit * np.sign(J[t] - (A[t] @ J + b[t]) / A[t, t])")
 edits("9.10", {
+    "uses the friction coefficient of the last contact for all": ("mu[n // 2]", "mu[-1]"),
+    "has no friction where the cone does not hold it": (
+        "J[t] = np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)",
+        "stick = J[t] - (A[t] @ J + b[t]) / A[t, t]; J[t] = stick if abs(stick) <= limit else 0.0"),
     "leaves out the first contact": ("range(0, J.size, 2)", "range(2, J.size, 2)"),
     "leaves out the last contact": ("range(0, J.size, 2)", "range(0, J.size - 2, 2)"),
     "takes all normals first, then all tangents, in J": ("t = n + 1", "t = J.size // 2 + n // 2"),
@@ -1230,6 +1251,12 @@ wrongs("9.11", forces, {
     "adds the load twice": {"loaded": 2.0},
 })
 edits("9.11", {
+    "adds the gaps to the accelerations": ("G @ (w * load.ravel()), mu",
+                                           "G @ (w * load.ravel()) + np.repeat(contacts.gap, 2), mu"),
+    "leaves out the acceleration of the last body": (
+        "a.reshape(-1, 3)", "a.reshape(-1, 3) * (np.arange(x.shape[0]) < x.shape[0] - 1)[:, None]"),
+    "returns forces as one row": ("return F.reshape(-1, 2)", "return F"),
+    "reads the loads column by column": ("G @ (w * load.ravel())", "G @ (w * load.T.ravel())"),
     "returns a only": ("    return F.reshape(-1, 2), a.reshape(-1, 3)", "    return a.reshape(-1, 3)"),
     "returns a first": ("F.reshape(-1, 2), a.reshape(-1, 3)", "a.reshape(-1, 3), F.reshape(-1, 2)"),
     "returns accelerations as one row": ("a.reshape(-1, 3)", "a"),
@@ -1384,6 +1411,12 @@ wrongs("9.12", soft, {
     "exchanges aim and give of an open contact": {"opens": lambda gap, dt: (0.0, -gap / dt)},
 })
 edits("9.12", {
+    "adds 1 to the denominator of aim": ("(dt * (2.0 * zeta + s))", "(dt * (1.0 + 2.0 * zeta + s))"),
+    "aims at a fifth of the gap per step": ("-s * gap / (dt * (2.0 * zeta + s))", "-0.2 * gap / dt"),
+    "aims at half of the velocity": ("-s * gap /", "-0.5 * s * gap /"),
+    "tolerates an overlap of a centimetre": ("s = 2.0", "gap = min(0.0, gap + 0.01); s = 2.0"),
+    "limits aim to 4 m/s": ("return -s * gap / (dt * (2.0 * zeta + s))",
+                            "return min(4.0, -s * gap / (dt * (2.0 * zeta + s)))"),
     "turns the condition round": ("if gap > 0.0:", "if gap < 0.0:"),
     "treats every contact as open": ("if gap > 0.0:", "if True:"),
     "treats every contact as an overlap": ("if gap > 0.0:", "if False:"),
@@ -1589,6 +1622,12 @@ wrongs("9.14", kept, {
     "requires exactly the same normal": {"alike": 1.0 - 1e-9},
 })
 edits("9.14", {
+    "turns the size of the normal impulse into the new normal": (
+        "J[k, c] = J_old[s, c]", "J[k, c] = np.dot(J_old[s], old.n[s]) * contacts.n[k, c]"),
+    "compares the normals, not the places": ("contacts.p[k, c] - old.p[s, c]", "contacts.n[k, c] - old.n[s, c]"),
+    "reads the first old contact of number k, not of body a": (
+        "range(old.first[i], old.first[i + 1])",
+        "range(old.first[min(k, old.first.size - 2)], old.first[min(k, old.first.size - 2) + 1])"),
     "takes the last old contact that is near enough, not the nearest": ("nearest = squared", "pass"),
     "takes the first old contact that is near enough, not the nearest": ("nearest = squared", "nearest = 0.0"),
     "leaves out the first old contact of a body": ("range(old.first[i], old.first[i + 1])",
@@ -1757,6 +1796,9 @@ wrongs("9.15", leaves, {
     "returns the answer as a word": {"answer": lambda inside: "no" if inside.all() else "yes"},
 })
 edits("9.15", {
+    "returns True where there are no bodies": ("    return False", "    return low.shape[0] == 0"),
+    "allows an excess of 1 mm on the upper side": ("<= wide_high[i, c]", "<= wide_high[i, c] + 1e-3"),
+    "compares high with the lower edge of the widened box": ("high[i, c] <= wide_high", "low[i, c] <= wide_high"),
     "requires that a box has left on both sides": ("if not (wide_low[i, c] <= low[i, c] and high[i, c] <= "
                                                    "wide_high[i, c])",
                                                    "if not (wide_low[i, c] <= low[i, c] or high[i, c] <= "
@@ -1880,6 +1922,13 @@ edit("9.16", "reverses the rotation in the velocity of a's point",
      "v[a, 0] - omega[a] * a_y", "v[a, 0] + omega[a] * a_y")
 edit("9.16", "starts each impulse from zero", "J_n += (aim", "J_n = (aim")
 edits("9.16", {
+    "skips contacts that may approach": ("J_n += (aim[k]", "J_n += 0.0 if aim[k] < 0.0 else (aim[k]"),
+    "adds the velocities of a and b": ("- v[b, 0] + omega[b] * b_y", "+ v[b, 0] - omega[b] * b_y"),
+    "forgets the impulses so far along normal and tangent": (
+        "J_n, J_t = n_x * J[k, 0] + n_y * J[k, 1], n_x * J[k, 1] - n_y * J[k, 0]", "J_n, J_t = 0.0, 0.0"),
+    "rubs with the whole limit": ("-limit if J_t < -limit else limit if J_t > limit else J_t",
+                                  "-limit if u_t > 0.0 else limit"),
+    "returns J before omega": ("return v, omega, J", "return v, J, omega"),
     "reverses the rotation in the velocity of a's point, along y": ("v[a, 1] + omega[a] * a_x",
                                                                     "v[a, 1] - omega[a] * a_x"),
     "reverses the rotation in the velocity of b's point": ("v[b, 0] + omega[b] * b_y", "v[b, 0] - omega[b] * b_y"),

@@ -80,6 +80,11 @@ edits("10.1 10.2",
 
 TORQUE = "omega + dt * p.inv_inertia * tau"
 edits("10.1",
+      ("returns the change of the velocity in place of the velocity", "v + dt * p.inv_mass", "dt * p.inv_mass"),
+      ("evaluates the load for bodies that turn and do not move", "q, v, omega, p)", "q, 0.0 * v, omega, p)"),
+      ("evaluates the load at the angle 0", "load(t, x, q", "load(t, x, 0.0 * q"),
+      ("uses the mean of the inverse masses for all", "p.inv_mass[:, None]", "np.mean(p.inv_mass)"),
+      ("omits the force on the last row", LOADS, f"{LOADS}; F[-1] = 0.0"),
       ("does not change the spin", TORQUE, "omega"),
       ("reverses the torque", "omega + dt *", "omega - dt *"),
       ("forgets dt beside the torque", "omega + dt * p", "omega + p"),
@@ -118,6 +123,7 @@ edits("10.1",
 TURN = "angular_acceleration(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i])"
 ROTATE = "unrotate(q[i] * np.array([1.0, -1.0, -1.0, -1.0]), {})"       # from the body to the world
 edits("10.2",
+      ("reverses the torque", "omega[i], tau[i], 1.0", "omega[i], -tau[i], 1.0"),
       ("omits the gyroscopic term", "omega[i], tau[i], 1.0", "0.0 * omega[i], tau[i], 1.0"),
       ("reverses the gyroscopic term", TURN, f"(2.0 * {TURN.replace('omega[i]', '0.0 * omega[i]')} - {TURN})"),
       ("adds the gyroscopic term twice", TURN, f"(2.0 * {TURN} - {TURN.replace('omega[i]', '0.0 * omega[i]')})"),
@@ -243,6 +249,8 @@ for number, name, turned in (("10.3", "new_velocities_2d", "q + dt * {}"),
 
 FIRST = "v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)"
 edits("10.3",
+      ("adds ½ g dt² to the positions", "x + dt * v", "x + dt * v + 0.5 * dt * dt * p.gravity"),
+      ("rotates all rows with the mean angular velocity", "q + dt * omega", "q + dt * np.mean(omega)"),
       ("returns q before x", "x + dt * v, q + dt * omega,", "q + dt * omega, x + dt * v,"),
       ("does not change the angles", "q + dt * omega", "q"),
       ("changes the angles in place", "q + dt * omega", "np.add(q, dt * omega, out=q)"),
@@ -690,6 +698,10 @@ edits("10.8",
       ("uses ω × (ω × r), which is an acceleration", SUPPORT,
        f"ball.floor_v + cross(ball.floor_omega, cross(ball.floor_omega, {WAY}))"),
       ("uses ω × v of the centre in place of ω × r", SUPPORT, "ball.floor_v + cross(ball.floor_omega, ball.floor_v)"),
+      ("omits ω about z", "ball.floor_omega, place", "ball.floor_omega * np.array([1.0, 1.0, 0.0]), place"),
+      ("converts ω from degrees", "ball.floor_omega, place", "np.radians(ball.floor_omega), place"),
+      ("returns zero for a floor that does not rotate", "return",
+       "return np.zeros(3) if norm(ball.floor_omega) == 0.0 else"),
       ("returns zero at the centre", "return", f"return np.zeros(3) if norm({WAY}) == 0.0 else"),
       ("adds gravity", SUPPORT, f"{SUPPORT} + ball.gravity"),
       ("changes its input in place", WAY, "np.subtract(place, ball.centre, out=place)"))
@@ -714,6 +726,13 @@ edits("10.9",
       ("takes the velocity of the floor two steps ahead", AHEAD, "support_velocity(x + 2.0 * dt * v, ball)"),
       ("takes the velocity of the floor a step behind", AHEAD, "support_velocity(x - dt * v, ball)"),
       ("forgets dt in the place of the floor", AHEAD, "support_velocity(x + v, ball)"),
+      ("takes the velocity of the floor where gravity would take the ball", AHEAD,
+       "support_velocity(x + dt * v + 0.5 * dt * dt * ball.gravity, ball)"),
+      ("evaluates the load at the next position", "(load, t, x,", "(load, t, x + dt * v,"),
+      ("lets friction act twice, before and after the load", SLIP,
+       f"{SLIP}; a, b = pushed, turned; _, _, a, b = rigid_body_step(load, t, x, q, a, b, dt, ball); "
+       f"v_new, omega_new = stop_slip(a, b, {AHEAD}, dt, ball); "
+       f"return x + 0.5 * dt * (v + v_new), {ROTATED}, v_new, omega_new"),
       ("takes the floor to be at rest", AHEAD, "0.0 * x"),
       ("omits the rotation of the floor", AHEAD, "ball.floor_v"),
       ("reverses the velocity of the floor", AHEAD, f"-{AHEAD}"),
@@ -786,6 +805,9 @@ def slip_time(v, omega, ball):
 SPUN = "ball.m * ball.radius * ball.radius / ball.I_body[0]"
 ENDS, LOWEST = "size / rate if rate > 0.0 else np.inf", "point_velocity(v, omega, np.array([0.0, 0.0, -ball.radius]))"
 edits("10.10",
+      ("uses the size of the slip along x only", "norm(slip)", "abs(slip[0])"),
+      ("returns zero where nothing changes the slip", "np.inf", "(0.0 if rate == 0.0 else np.inf)"),
+      ("returns infinity for infinite friction", "if rate > 0.0", "if 0.0 < rate < np.inf"),
       ("uses the velocity of the highest point", "-ball.radius]", "ball.radius]"),
       ("uses an arm of length 1 in place of the radius", "-ball.radius]", "-1.0]"),
       ("omits the spin", "point_velocity(v, omega,", "point_velocity(v, 0.0 * omega,"),
@@ -945,6 +967,10 @@ MOMENT, ANGULAR = f"1.0 / inv_inertia + {SQUARE} / inv_mass", "L = omega / inv_i
 SPIN_OF = f"omega = L / ({MOMENT})"
 AFTER, BEFORE = f"return omega * {ACROSS}, omega", "old = omega; "
 edits("10.12",
+      ("halves the new spin", "omega = L / (", "omega = 0.5 * L / ("),
+      ("exchanges masses and their inverses in the inertia about the corner",
+       "(1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)",
+       "(inv_inertia + (r[0] * r[0] + r[1] * r[1]) * inv_mass)"),
       ("omits the orbital angular momentum", "omega / inv_inertia - cross_2d(r, v) / inv_mass", "omega / inv_inertia"),
       ("omits the spin in the angular momentum", "omega / inv_inertia - cross", "-cross"),
       ("reverses the orbital angular momentum", "- cross_2d(r, v)", "+ cross_2d(r, v)"),
@@ -1057,6 +1083,8 @@ edits("10.13 10.14",
 KINETIC, POTENTIAL = "0.5 * dot(v[i], v[i])", "- dot(p.gravity, x[i])"
 MASS, ROTATION = "x[i])) / p.inv_mass[i]", "0.5 * np.sum(w * w / p.inv_inertia[i])"
 edits("10.13",
+      ("reverses the sign of the energy of translation", "0.5 * dot(v[i], v[i])", "-0.5 * dot(v[i], v[i])"),
+      ("divides by the number of rows", "return energy", "return energy / x.shape[0]"),
       ("reverses the sign of the potential energy", POTENTIAL, "+ dot(p.gravity, x[i])"),
       ("omits the potential energy", POTENTIAL, ""),
       ("forgets the mass in the potential energy", POTENTIAL, "- dot(p.gravity, x[i]) * p.inv_mass[i]"),
@@ -1093,6 +1121,7 @@ edits("10.13",
 
 ORBIT, OWN = "cross(x[i], v[i]) / p.inv_mass[i]", "body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])"
 edits("10.14",
+      ("converts ω to body axes", "omega[i], 1.0", "unrotate(q[i], omega[i]), 1.0"),
       ("adds velocities in place of momenta", "P += v[i] / p.inv_mass[i]", "P += v[i]"),
       ("multiplies by the inverse mass", "P += v[i] / p.inv_mass[i]", "P += v[i] * p.inv_mass[i]"),
       ("multiplies the orbital part by the inverse mass", ORBIT, "cross(x[i], v[i]) * p.inv_mass[i]"),
@@ -1152,6 +1181,9 @@ OVER = "for k in range(energies.size):"
 PAIRS = "return max([0.0] + [{} for k in range(energies.size) for j in range(k + 1)])"
 ALL = "e = energies - work; return {}"
 edits("10.15",
+      ("takes gains below 1e-12 J for none", DONE, "return gain if gain > 1e-12 else 0.0"),
+      ("measures the gain from the mean value", "rest - lowest", "rest - np.mean(energies - work)"),
+      ("returns the lowest value, too", DONE, "return gain, lowest"),
       ("does not check its input", CHECK, "energies, work"),
       ("does not check its input", CHECK, "np.asarray(energies), np.asarray(work)"),
       ("checks the energies only", CHECK, "checked_histories(energies, energies)[0], np.asarray(work, dtype=float)"),
