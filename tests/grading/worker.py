@@ -159,9 +159,10 @@ def describe(e):
 NOTED = {event: kind for kind, events in {
     "process": "os.fork os.forkpty os.posix_spawn os.system os.exec subprocess.Popen",
     "signal": "os.kill os.killpg signal.pthread_kill",
-    "write": "os.remove os.rename os.mkdir os.rmdir os.truncate os.link os.symlink os.chmod",
-    "read": "open os.listdir os.scandir",
-    "inside": "gc.get_objects gc.get_referrers gc.get_referents sys.settrace sys.setprofile sys._current_frames",
+    "write": "os.remove os.rename os.mkdir os.rmdir os.truncate os.link os.symlink os.chmod os.chown os.utime",
+    "read": "open os.listdir os.scandir os.chdir sqlite3.connect",
+    "inside": "gc.get_objects gc.get_referrers gc.get_referents sys.settrace sys.setprofile sys._current_frames "
+              "sys.addaudithook",
     "limit": "resource.setrlimit resource.prlimit",
 }.items() for event in events.split()}
 FAMILIES = {"socket.": "network", "ctypes.": "native"}
@@ -189,17 +190,18 @@ def watcher():
     places = {sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), os.devnull}
     ours = (*places, config["given"], config["student"], config["wire"])
     writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-    kind_of, text = type, str
+    kind_of, text, number = type, str, int
 
     def hook(event, arguments):
         kind = kinds.get(event) or families.get(event[:7])
         if kind == "read":
             path = arguments[0]
-            if kind_of(path) is not text:                              # a descriptor, which has been opened before
+            if kind_of(path) is number:                                # a descriptor, which has been opened before
                 return
-            if event == "open" and arguments[2] & writing and path != "/dev/null":
+            plain = kind_of(path) is text                              # not bytes, nor a class of the student's
+            if event == "open" and arguments[2] & writing and not (plain and path == "/dev/null"):
                 kind = "write"
-            elif path.startswith(ours):
+            elif plain and path.startswith(ours) and "/.." not in path:
                 return
         if kind:
             board[place[kind]] = 1
