@@ -1,12 +1,11 @@
 """One worker process with one student's file, which exchanges only plain data with the trusted parent.
 
 The worker runs in the sandbox.  There it can read Python, NumPy, the file and the lessons as handed out.  What it notes
-for the instructor lies in a page of memory that it shares with the parent.
+for the instructor comes through a pipe of its own, so that nothing takes a note back.
 """
 
 import contextlib
 import json
-import mmap
 import os
 import re
 import secrets
@@ -23,7 +22,7 @@ import numpy as np
 from solutions.checks import BadInput, Diverged
 from validate.loading import alarm
 
-from . import sandbox, shipping, watch, wire
+from . import calls, sandbox, shipping, watch, wire
 from .line import Ended, Line
 from .meter import LOOK, Meter
 
@@ -110,8 +109,7 @@ class Sandbox:
     Attributes:
     secret: errors keep no text of the student's code, which may know secret inputs · failed: an error of the grader
     itself · late: the time was up or the system ended the worker, perhaps because of other processes · overdue: the
-    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into · board: the memory
-    that is shared with the worker, in which a byte for each of watch.NOTES says that it was seen.
+    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into.
     """
 
     def __init__(self, lesson, text, given, earlier, budget, records=(), limits=LIMITS):
@@ -131,10 +129,7 @@ class Sandbox:
         config = {"lesson": lesson, "earlier": names}
         ours = {HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}
         self.binds = {**ours, given: "/given", self.folder: "/student"}
-        self.notes = os.memfd_create("notes")
-        os.ftruncate(self.notes, mmap.PAGESIZE)
-        self.board = mmap.mmap(self.notes, mmap.PAGESIZE)
-        inside = {"wire": "/box", "given": "/given", "student": "/student", "notes": self.notes, "noted": watch.NOTES}
+        inside = {"wire": "/box", "given": "/given", "student": "/student", "noted": watch.NOTES, "kept": calls.KEPT}
         whole = json.dumps({**config, **inside, "limits": limits})
         self.program = [sys.executable, "-I", "-B", "-u", "/box/worker.py", whole]
 
@@ -259,8 +254,14 @@ class Sandbox:
 
     def start(self):
         pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-        self.process = sandbox.started(self.binds, self.program, keep=(self.notes,), **pipes)
-        self.line, self.own, self.names, self.heard = Line(self.process, self.hear), {}, {}, 0
+        notes, inside = os.pipe()
+        self.notes = os.fdopen(notes, "rb", buffering=0)
+        try:
+            program = [*self.program, str(inside)]
+            self.process = sandbox.started(self.binds, program, keep=(inside,), **pipes)
+        finally:
+            os.close(inside)
+        self.line, self.own, self.names, self.heard = Line(self.process, self.hear, self.notes, self.note), {}, {}, 0
         self.peer = wire.Peer(
             self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
             fatal=(KeyboardInterrupt, wire.WireError, Lost, Late),
@@ -366,16 +367,17 @@ class Sandbox:
                 os.killpg(self.process.pid, 9)
             self.process.wait()
             if self.line.drain(ENDED_WITHIN):                          # its pipes end with the last of its processes
-                for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
+                for pipe in (self.process.stdin, self.process.stdout, self.process.stderr, self.notes):
                     pipe.close()
             self.process = None
-            self.seen |= {code for place, code in enumerate(watch.NOTES) if self.board[place]}
 
     def close(self):
         self.stop()
-        self.board.close()
-        os.close(self.notes)
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def note(self, chunk):
+        """Keep the kinds of what the worker notes; other bytes are the student's own."""
+        self.seen |= {watch.NOTES[code] if code < len(watch.NOTES) else "inside" for code in {*chunk}}
 
     def hear(self, chunk):
         """Keep the beginning of the printed text, and drop the rest."""

@@ -347,9 +347,11 @@ def test_a_worker_that_does_not_listen_is_ended_and_what_waits_is_given_up():
 def test_more_than_a_frame_that_no_one_asked_for_breaks_the_rules():
     read, write = os.pipe()
     silent, kept = os.pipe()
-    pipes = [os.fdopen(number, mode, buffering=0) for number, mode in ((write, "wb"), (silent, "rb"))]
+    noted, note = os.pipe()
+    pipes = [os.fdopen(number, mode, buffering=0) for number, mode in ((write, "wb"), (silent, "rb"), (noted, "rb"))]
     process = types.SimpleNamespace(stdin=pipes[0], stdout=os.fdopen(read, "rb", buffering=0), stderr=pipes[1])
-    place = line.Line(process, lambda chunk: None)
+    notes = []
+    place = line.Line(process, lambda chunk: None, pipes[2], notes.append)
     place.arrived += bytes(line.LONGEST + 1)
     with pytest.raises(wire.WireError, match="more than anyone asked for"):
         place.pump(0.0)
@@ -363,13 +365,14 @@ def test_more_than_a_frame_that_no_one_asked_for_breaks_the_rules():
     assert wire.unpack(*place.frame()) == ("value", 1.5, ()) and place.frame() is None
     process.stdin.close()
     os.close(kept)
+    os.write(note, b"\3")
+    os.close(note)
     assert place.drain(5.0) and not place.open
     with pytest.raises(line.Ended):
         place.frame()
-    process.stdout.close()
-    process.stderr.close()
-
-
+    assert b"".join(notes) == b"\3"
+    for pipe in (process.stdout, process.stderr, pipes[2]):
+        pipe.close()
 
 
 @pytest.mark.long
