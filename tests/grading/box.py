@@ -117,7 +117,7 @@ class Sandbox:
         self.lines = text.count(b"\n") + 1
         self.printed, self.seen = b"", set()
         self.process, self.broken, self.failed = None, None, None
-        self.secret, self.late, self.overdue, self.depth = False, False, False, 0
+        self.secret, self.late, self.overdue, self.depth, self.ours = False, False, False, 0, time.thread_time()
         self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
         self.ends = time.monotonic() + CROWDED * budget                # nothing that the worker does extends it
         self.begin(budget)
@@ -224,6 +224,8 @@ class Sandbox:
         try:
             if self.process is None:
                 self.start()
+            if self.depth == 1:
+                self.ours = time.thread_time()
             return self.peer.call(name, arguments)
         except wire.WireError as e:
             self.breach()
@@ -232,6 +234,7 @@ class Sandbox:
             raise self.too_long() from None
         finally:
             self.depth -= 1
+            self.charge()
             self.meter.look(False)
 
     def breach(self):
@@ -295,12 +298,14 @@ class Sandbox:
             raise wire.WireError("a call that no test asks for")
         if self.depth > 1:
             return self.peer.served(name, arguments)
-        began = time.thread_time()
-        try:
-            with alarm(self.until - self.meter.used, Late, own=True):
-                self.peer.served(name, arguments)
-        finally:
-            self.meter.used += time.thread_time() - began
+        self.charge()
+        with alarm(self.until - self.meter.used, Late, own=True):
+            self.peer.served(name, arguments)
+
+    def charge(self):
+        """Count what this process does for a call: it answers, and unpacks what the worker sends."""
+        now = time.thread_time()
+        self.meter.used, self.ours = self.meter.used + now - self.ours, now
 
     def send(self, frame):
         """Send a frame to the worker, or begin to."""
@@ -327,6 +332,7 @@ class Sandbox:
 
     def look(self, owes):
         """Measure the worker's time, and end the worker if it has taken too long."""
+        self.charge()
         self.meter.look(owes)
         if self.meter.used >= self.until or time.monotonic() >= self.patience:
             raise self.too_long()

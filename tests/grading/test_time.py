@@ -242,6 +242,35 @@ def test_a_callback_of_the_grader_counts_as_time_of_the_submission():
         assert place.overdue and place.meter.used >= 0.9 * LIMIT            # two clocks of one process, read in turn
 
 
+UNPACKED = """
+import json, struct, sys
+def observed_order(f, errors):
+    main, head = sys.modules["__main__"], json.dumps(["call", "test:0", {arguments}]).encode()
+    frame = struct.pack("<4sIQ", b"WBK1", len(head), {size}) + head + bytes({size})
+    while True:
+        main.outgoing.write(frame)
+        main.outgoing.flush()
+        main.wire.read(main.incoming)
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("arguments", "size"), [([[[]] * 60_000], 0), ([{"a": ["f8", [900_000]]}], 7_200_000)],
+                         ids=["many", "large"])
+def test_what_it_costs_the_grader_to_unpack_calls_counts_as_time_of_the_submission(arguments, size):
+    def quick(*_):
+        return len(calls)
+
+    calls = []
+    with opened(UNPACKED.format(arguments=repr(arguments), size=size)) as place:
+        place.begin(LIMIT)
+        before, began = place.meter.used, time.thread_time()
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (quick, 1.0))
+        ours = time.thread_time() - began
+        assert 0.2 * LIMIT < ours < place.meter.used - before + 0.2
+
+
 @pytest.mark.long
 def test_all_calls_together_have_a_budget():
     with opened(BUSY.format(seconds=0.5)) as place:
