@@ -39,15 +39,26 @@ SEEN = {
         "import os; os.open('notes', os.O_CREAT | os.O_RDWR)",
         "import os; os.mkdir('notes')",
         "import os; os.remove('notes')",
+        "open(b'notes', 'w')",
+        "import os; os.utime('/student/integrators.py')",
     ],
     "read": [
         "open('/etc/passwd')",
         "import os; os.listdir('/')",
         "import pathlib; list(pathlib.Path('/proc').iterdir())",
+        "open(b'/usr/bin/env')",
+        "open(type('Path', (str,), {})('/usr/bin/env'))",
+        "open('/student/../usr/bin/env')",
+        "import os; os.listdir()",
+        "import os; os.chdir('/usr')",
     ],
     "native": ["import ctypes; ctypes.CDLL(None).getpid()"],
     "signal": ["import os; os.kill(os.getppid(), 0)"],
-    "inside": ["import gc; gc.get_objects()", "import sys; sys.settrace(None)"],
+    "inside": [
+        "import gc; gc.get_objects()",
+        "import sys; sys.settrace(None)",
+        "import sys; sys.addaudithook(print)",
+    ],
     "limit": ["import resource; resource.setrlimit(resource.RLIMIT_AS, resource.getrlimit(resource.RLIMIT_AS))"],
     "end": ["import os; os._exit(0)", "import os; os.abort()"],
     "refused": ["import ctypes; ctypes.CDLL(None).setuid(1)"],
@@ -83,6 +94,70 @@ def test_a_program_that_turns_every_descriptor_elsewhere_is_seen_all_the_same(tr
     blind = EVERY_DESCRIPTOR.replace("null =", f"{wire}null =", 1)
     tries = "\ntry:\n    os.fork()\nexcept OSError:\n    pass\ntry:\n    os.listdir('/')\nexcept OSError:\n    pass\n"
     assert watched(attacks.HONEST + blind + tries, settings) >= {"process", "read"}
+
+
+INSIDE_THE_HOOK = {
+    "by an error": """
+for arguments in ((), (None,), ("x", None, None), ("x", None, []), (1.5, 2)):
+    try:
+        sys.audit("open", *arguments)
+    except Exception as e:
+        trace = e.__traceback__
+        while trace.tb_next:
+            trace = trace.tb_next
+        frames.append(trace.tb_frame)
+""",
+    "by a signal": """
+import signal
+signal.signal(signal.SIGVTALRM, lambda number, frame: frames.append(frame))
+signal.setitimer(signal.ITIMER_VIRTUAL, 1e-4, 1e-4)
+for _ in range(3000):
+    sys.audit("open", 3)
+signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+""",
+    "by too deep a call": """
+def deep():
+    try:
+        deep()
+    except RecursionError as e:
+        trace = e.__traceback__
+        while trace.tb_next:
+            trace = trace.tb_next
+        frames.append(trace.tb_frame)
+    sys.audit("open", 3)
+deep()
+""",
+}
+TAKE_BACK = """
+own = {number for number in range(64) if number > 2} - {main.incoming.fileno(), main.outgoing.fileno()}
+for frame in frames:
+    for value in frame.f_locals.values():
+        for take in (lambda: value.clear(), lambda: value.update(dict.fromkeys(value)), lambda: value.seek(0),
+                     lambda: value.__setitem__(slice(None), bytes(len(value)))):
+            try:
+                take()
+            except Exception:
+                pass
+for number in own:
+    try:
+        os.close(number)
+    except OSError:
+        pass
+    try:
+        os.dup2(2, number)
+    except OSError:
+        pass
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("reach", INSIDE_THE_HOOK.values(), ids=lambda text: text.split()[0])
+def test_a_note_is_not_taken_back_by_who_looks_inside_the_watch(reach, trial, settings):
+    """Before the try, and after it: neither keeps the try from being seen."""
+    start = 'from typing import sys\nos, main, frames = sys.modules["os"], sys.modules["__main__"], []\n'
+    tries = "try:\n    os.fork()\nexcept OSError:\n    pass\nimport ctypes\nctypes.CDLL(None).getpid()\n"
+    for body in (reach + TAKE_BACK + tries, tries + reach + TAKE_BACK):
+        assert watched(attacks.HONEST + start + body, settings) >= {"process", "native"}
 
 
 @pytest.mark.long

@@ -20,9 +20,8 @@ HEAD = "student_id,exercise,points,comment,how\n"
 MISSED = found("1.2", "not yet", {"quantity": "height [m]"})           # 3 of 10 points
 BAD = {
     "zoe,1.1,1,,": "student 'zoe' in line 2",
-    "ada,1.3,1,,": "exercise '1.3' in line 2",
-    "ada,3.1,1,,": "exercise '3.1' in line 2",
-    "ada,rotation,1,,": "exercise 'rotation' in line 2",
+    "ada,99.1,1,,": "exercise '99.1' in line 2",
+    "ada,rotations,1,,": "exercise 'rotations' in line 2",
     "ada,1.1,,,": "points '' in line 2",
     "ada,1.1,two,,": "points 'two' in line 2",
     "ada,1.1,nan,,": "points 'nan' in line 2",
@@ -99,6 +98,15 @@ def test_the_file_of_the_documentation_is_right(tmp_path):
     places = {student: given[0].place for student, given in marks.read(tmp_path, rules, STUDENTS).items()}
     assert places == {"ada": ("integrators", "1.2"), "bob": ("integrators", "1.3"), "cem": ("springs", ""),
                       "dia": marks.TOTAL}
+
+
+def test_lines_of_lessons_that_are_not_graded_are_left_out_and_counted(tmp_path):
+    """One file for all lessons, each of which is graded by a command of its own."""
+    said, lines = [], "ada,rotation,1,,\nada,skew,1,,\nada,5.1,7,,\nada,1.2,1,,\n"
+    (tmp_path / "marks.csv").write_text(HEAD + lines)
+    found = marks.read(tmp_path, SETTINGS, STUDENTS, said.append)
+    assert [mark.place[1] for mark in found["ada"]] == ["1.2"]
+    assert said == ["marks.csv: 3 lines of lessons that are not graded in this run, left out"]
 
 
 def test_without_the_file_there_are_no_marks(tmp_path):

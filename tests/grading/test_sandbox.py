@@ -190,6 +190,9 @@ def test_arguments_decide_where_a_call_can_do_more():
     assert of("fcntl", 3, 2) == calls.ALLOW and {of("fcntl", 3, k) for k in commands} == {GONE}
     assert of("ioctl", 3, 0x5401) == calls.ALLOW and of("ioctl", 3, 0x5412) == GONE
     assert of("clone", 0x3D0F00) == calls.ALLOW and {of("clone", flags) for flags in (17, 0x4111, 0x10000000)} == {GONE}
+    for kept, other in (((calls.KEPT,), (3,)), ((3, calls.KEPT), (calls.KEPT, 3))):
+        for name in ("close",) if len(kept) == 1 else ("dup2", "dup3"):
+            assert (of(name, *kept), of(name, *other)) == (GONE, calls.ALLOW)
     again = calls.refused(errno.EAGAIN)
     assert of("futex", 8, 0x81) == calls.ALLOW and {of("futex", 8, k) for k in (0, 1, 3, 9, 265)} == {again}
 

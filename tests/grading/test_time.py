@@ -255,6 +255,35 @@ def test_a_callback_of_the_grader_counts_as_time_of_the_submission():
         assert place.overdue and place.meter.used >= 0.9 * LIMIT            # two clocks of one process, read in turn
 
 
+UNPACKED = """
+import json, struct, sys
+def observed_order(f, errors):
+    main, head = sys.modules["__main__"], json.dumps(["call", "test:0", {arguments}]).encode()
+    frame = struct.pack("<4sIQ", b"WBK1", len(head), {size}) + head + bytes({size})
+    while True:
+        main.outgoing.write(frame)
+        main.outgoing.flush()
+        main.wire.read(main.incoming)
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("arguments", "size"), [([[[]] * 60_000], 0), ([{"a": ["f8", [900_000]]}], 7_200_000)],
+                         ids=["many", "large"])
+def test_what_it_costs_the_grader_to_unpack_calls_counts_as_time_of_the_submission(arguments, size):
+    def quick(*_):
+        return len(calls)
+
+    calls = []
+    with opened(UNPACKED.format(arguments=repr(arguments), size=size)) as place:
+        place.begin(LIMIT)
+        before, began = place.meter.used, time.thread_time()
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (quick, 1.0))
+        ours = time.thread_time() - began
+        assert 0.2 * LIMIT < ours < place.meter.used - before + 0.2
+
+
 @pytest.mark.long
 def test_all_calls_together_have_a_budget():
     with opened(BUSY.format(seconds=0.5)) as place:
@@ -360,9 +389,11 @@ def test_a_worker_that_does_not_listen_is_ended_and_what_waits_is_given_up():
 def test_more_than_a_frame_that_no_one_asked_for_breaks_the_rules():
     read, write = os.pipe()
     silent, kept = os.pipe()
-    pipes = [os.fdopen(number, mode, buffering=0) for number, mode in ((write, "wb"), (silent, "rb"))]
+    noted, note = os.pipe()
+    pipes = [os.fdopen(number, mode, buffering=0) for number, mode in ((write, "wb"), (silent, "rb"), (noted, "rb"))]
     process = types.SimpleNamespace(stdin=pipes[0], stdout=os.fdopen(read, "rb", buffering=0), stderr=pipes[1])
-    place = line.Line(process, lambda chunk: None)
+    notes = []
+    place = line.Line(process, lambda chunk: None, pipes[2], notes.append)
     place.arrived += bytes(line.LONGEST + 1)
     with pytest.raises(wire.WireError, match="more than anyone asked for"):
         place.pump(0.0)
@@ -376,11 +407,14 @@ def test_more_than_a_frame_that_no_one_asked_for_breaks_the_rules():
     assert wire.unpack(*place.frame()) == ("value", 1.5, ()) and place.frame() is None
     process.stdin.close()
     os.close(kept)
+    os.write(note, b"\3")
+    os.close(note)
     assert place.drain(5.0) and not place.open
     with pytest.raises(line.Ended):
         place.frame()
-    process.stdout.close()
-    process.stderr.close()
+    assert b"".join(notes) == b"\3"
+    for pipe in (process.stdout, process.stderr, pipes[2]):
+        pipe.close()
 
 
 @pytest.mark.long

@@ -1,12 +1,11 @@
 """One worker process with one student's file, which exchanges only plain data with the trusted parent.
 
 The worker runs in the sandbox.  There it can read Python, NumPy, the file and the lessons as handed out.  What it notes
-for the instructor lies in a page of memory that it shares with the parent.
+for the instructor comes through a pipe of its own, so that nothing takes a note back.
 """
 
 import contextlib
 import json
-import mmap
 import os
 import re
 import secrets
@@ -23,7 +22,7 @@ import numpy as np
 from solutions.checks import BadInput, Diverged
 from validate.subject.loading import alarm
 
-from . import sandbox, shipping, watch, wire
+from . import calls, sandbox, shipping, watch, wire
 from .line import Ended, Line
 from .meter import LOOK, Meter
 
@@ -110,8 +109,7 @@ class Sandbox:
     Attributes:
     secret: errors keep no text of the student's code, which may know secret inputs · failed: an error of the grader
     itself · late: the time was up or the system ended the worker, perhaps because of other processes · overdue: the
-    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into · board: the memory
-    that is shared with the worker, in which a byte for each of watch.NOTES says that it was seen.
+    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into.
     """
 
     def __init__(self, lesson, text, given, earlier, budget, records=(), limits=LIMITS):
@@ -119,7 +117,7 @@ class Sandbox:
         self.lines = text.count(b"\n") + 1
         self.printed, self.seen = b"", set()
         self.process, self.broken, self.failed = None, None, None
-        self.secret, self.late, self.overdue, self.depth = False, False, False, 0
+        self.secret, self.late, self.overdue, self.depth, self.ours = False, False, False, 0, time.thread_time()
         self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
         self.ends = time.monotonic() + CROWDED * budget                # nothing that the worker does extends it
         self.begin(budget)
@@ -131,10 +129,7 @@ class Sandbox:
         config = {"lesson": lesson, "earlier": names}
         ours = {HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}
         self.binds = {**ours, given: "/given", self.folder: "/student"}
-        self.notes = os.memfd_create("notes")
-        os.ftruncate(self.notes, mmap.PAGESIZE)
-        self.board = mmap.mmap(self.notes, mmap.PAGESIZE)
-        inside = {"wire": "/box", "given": "/given", "student": "/student", "notes": self.notes, "noted": watch.NOTES}
+        inside = {"wire": "/box", "given": "/given", "student": "/student", "noted": watch.NOTES, "kept": calls.KEPT}
         whole = json.dumps({**config, **inside, "limits": limits})
         self.program = [sys.executable, "-I", "-B", "-u", "/box/worker.py", whole]
 
@@ -229,6 +224,8 @@ class Sandbox:
         try:
             if self.process is None:
                 self.start()
+            if self.depth == 1:
+                self.ours = time.thread_time()
             return self.peer.call(name, arguments)
         except wire.WireError as e:
             self.breach()
@@ -237,6 +234,7 @@ class Sandbox:
             raise self.too_long() from None
         finally:
             self.depth -= 1
+            self.charge()
             self.meter.look(False)
 
     def breach(self):
@@ -259,8 +257,14 @@ class Sandbox:
 
     def start(self):
         pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-        self.process = sandbox.started(self.binds, self.program, keep=(self.notes,), **pipes)
-        self.line, self.own, self.names, self.heard = Line(self.process, self.hear), {}, {}, 0
+        notes, inside = os.pipe()
+        self.notes = os.fdopen(notes, "rb", buffering=0)
+        try:
+            program = [*self.program, str(inside)]
+            self.process = sandbox.started(self.binds, program, keep=(inside,), **pipes)
+        finally:
+            os.close(inside)
+        self.line, self.own, self.names, self.heard = Line(self.process, self.hear, self.notes, self.note), {}, {}, 0
         self.peer = wire.Peer(
             self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
             fatal=(KeyboardInterrupt, wire.WireError, Lost, Late),
@@ -294,12 +298,14 @@ class Sandbox:
             raise wire.WireError("a call that no test asks for")
         if self.depth > 1:
             return self.peer.served(name, arguments)
-        began = time.thread_time()
-        try:
-            with alarm(self.until - self.meter.used, Late, own=True):
-                self.peer.served(name, arguments)
-        finally:
-            self.meter.used += time.thread_time() - began
+        self.charge()
+        with alarm(self.until - self.meter.used, Late, own=True):
+            self.peer.served(name, arguments)
+
+    def charge(self):
+        """Count what this process does for a call: it answers, and unpacks what the worker sends."""
+        now = time.thread_time()
+        self.meter.used, self.ours = self.meter.used + now - self.ours, now
 
     def send(self, frame):
         """Send a frame to the worker, or begin to."""
@@ -326,6 +332,7 @@ class Sandbox:
 
     def look(self, owes):
         """Measure the worker's time, and end the worker if it has taken too long."""
+        self.charge()
         self.meter.look(owes)
         if self.meter.used >= self.until or time.monotonic() >= self.patience:
             raise self.too_long()
@@ -366,16 +373,17 @@ class Sandbox:
                 os.killpg(self.process.pid, 9)
             self.process.wait()
             if self.line.drain(ENDED_WITHIN):                          # its pipes end with the last of its processes
-                for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
+                for pipe in (self.process.stdin, self.process.stdout, self.process.stderr, self.notes):
                     pipe.close()
             self.process = None
-            self.seen |= {code for place, code in enumerate(watch.NOTES) if self.board[place]}
 
     def close(self):
         self.stop()
-        self.board.close()
-        os.close(self.notes)
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def note(self, chunk):
+        """Keep the kinds of what the worker notes; other bytes are the student's own."""
+        self.seen |= {watch.NOTES[code] if code < len(watch.NOTES) else "inside" for code in {*chunk}}
 
     def hear(self, chunk):
         """Keep the beginning of the printed text, and drop the rest."""

@@ -4,7 +4,8 @@ Only the calls of Python and NumPy are allowed.  Every other call fails as if th
 libraries can handle.  A program therefore has no second process, no socket, and no shared memory outside the limit on
 the address space.  It makes no files, folders or pipes, which the kernel keeps in memory that no limit covers.  Two
 sandboxes cannot signal each other by a lock, lease, watch or wake-up on a file that both can read, nor by the numbers
-of pipes, which the kernel counts for all.  A call that only an attack makes ends the program.
+of pipes, which the kernel counts for all.  One descriptor stays what it is until the program ends: the worker's notes
+for the instructor go there.  A call that only an attack makes ends the program.
 
 libseccomp compiles for the machine it is on, and its programs end a process that calls through another architecture.
 *Source:* seccomp_rule_add(3), seccomp_export_bpf(3); linux/fcntl.h, linux/futex.h, linux/sched.h.
@@ -17,7 +18,7 @@ from functools import lru_cache
 
 LIBRARY = "libseccomp.so.2"
 ALLOWED = """
-    read readv pread64 preadv write writev lseek close dup dup2 dup3
+    read readv pread64 preadv write writev lseek dup
     open openat stat fstat lstat newfstatat statx access faccessat faccessat2 readlink readlinkat
     getdents getdents64 getcwd chdir fchdir
     select pselect6 poll ppoll
@@ -49,8 +50,10 @@ FLAGS = {                    # {call: (which argument, bit that must be set, wha
     # FUTEX_PRIVATE_FLAG; a thread that waits for another's end then asks repeatedly
     "futex": (1, 0x80, errno.EAGAIN),
 }
+KEPT = 40                    # descriptor that no program closes or turns elsewhere
+ALL_BUT = {"close": 0, "dup2": 1, "dup3": 1}          # {call: which argument may not be KEPT}
 KILL, ALLOW = 0x80000000, 0x7FFF0000                  # SCMP_ACT_…
-EQUAL, MASKED = 4, 7                                  # SCMP_CMP_…
+OTHER, EQUAL, MASKED = 1, 4, 7                        # SCMP_CMP_…
 
 
 class Comparison(ctypes.Structure):
@@ -100,6 +103,8 @@ def rules():
     for name, (argument, values) in ARGUMENTS.items():
         for value in values:
             yield name, ALLOW, Comparison(argument, EQUAL, value, 0)
+    for name, argument in ALL_BUT.items():
+        yield name, ALLOW, Comparison(argument, OTHER, KEPT, 0)
     for name, (argument, bit, otherwise) in FLAGS.items():
         yield name, ALLOW, Comparison(argument, MASKED, bit, bit)
         if otherwise:

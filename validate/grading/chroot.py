@@ -24,7 +24,8 @@ LIBRARIES = "numpy", "scipy"                      # that a student's program may
 NEEDLESS = shutil.ignore_patterns("site-packages", "dist-packages", "test", "tests", "idlelib", "tkinter", "ensurepip",
                                   "lib2to3", "config-*")
 FOUND = re.compile(r"(/\S+) \(0x")                # in the answer of ldd: the place of a library
-FIRST_USER, USERS = 70_000, 500_000               # above those that systems give away themselves
+USERS = range(2_000_000_000, 2_000_500_000)       # above those that systems and their containers give away
+FEW_USERS = range(60_000, 65_000)                 # where a container knows 65,536 users only
 
 
 def command(binds, filter, program):
@@ -39,8 +40,15 @@ def command(binds, filter, program):
         shutil.rmtree(top / first, ignore_errors=True)                 # what the last program was given
     for source, target in binds.items():
         copy(source, inside(top, target))
-    user = str(FIRST_USER + secrets.randbelow(USERS))
-    return [sys.executable, "-I", "-S", "-B", "-c", ENTER, str(top), user, str(filter), *program]
+    user = secrets.choice(users())
+    return [sys.executable, "-I", "-S", "-B", "-c", ENTER, str(top), str(user), str(filter), *program]
+
+
+def users(folder=Path("/proc/self")):
+    """Return the numbers of users and groups to choose from, all of them known to the kernel here."""
+    maps = [(folder / name).read_text().splitlines() for name in ("uid_map", "gid_map")]
+    known = [max(int(first) + int(count) for first, _, count in map(str.split, lines)) for lines in maps]
+    return USERS if min(known) >= USERS.stop else FEW_USERS
 
 
 # runs as root, outside, before any code of a student; the filter comes last, because it forbids the rest
@@ -107,9 +115,12 @@ def copy(source, target):
 
 
 def link(source, target):
-    """Link a file to another name, which takes no room, or copy it where it cannot be linked or not be read by all."""
+    """Link a file to another name, which takes no room.
+
+    Copy it where it cannot be linked, not be read by all, or be changed by all: a program could empty it.
+    """
     try:
-        if not os.stat(source).st_mode & 0o004:
+        if os.stat(source).st_mode & 0o006 != 0o004:
             raise PermissionError
         os.link(source, target)
     except OSError:

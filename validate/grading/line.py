@@ -19,18 +19,17 @@ class Ended(Exception):
 class Line:
     """The pipes of one worker process, read and written by this thread alone.
 
-    heard(chunk) takes what the worker prints.
+    heard(chunk) takes what the worker prints, and noted(chunk) what it writes into the pipe of notes.
     """
 
-    def __init__(self, process, heard):
-        self.heard = heard
-        pipes = process.stdin, process.stdout, process.stderr
-        self.to_it, self.from_it, self.prints = (pipe.fileno() for pipe in pipes)
+    def __init__(self, process, heard, notes, noted):
+        self.to_it, self.from_it = process.stdin.fileno(), process.stdout.fileno()
+        self.others = {process.stderr.fileno(): heard, notes.fileno(): noted}
         self.waiting, self.arrived = deque(), bytearray()        # memoryviews that are not written yet; bytes not taken
         self.poller, self.open = select.poll(), set()
-        for number in (self.to_it, self.from_it, self.prints):
+        for number in (self.to_it, self.from_it, *self.others):
             os.set_blocking(number, False)
-        for number in (self.from_it, self.prints):
+        for number in (self.from_it, *self.others):
             self.poller.register(number, select.POLLIN)
             self.open.add(number)
 
@@ -70,7 +69,7 @@ class Line:
             elif number == self.from_it:
                 self.arrived += self.chunk(number)
             else:
-                self.heard(self.chunk(number))
+                self.others[number](self.chunk(number))
 
     def chunk(self, number):
         """Read what has arrived in a pipe; nothing is left to wait for at its end."""

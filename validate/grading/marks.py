@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from solutions.checks import BadInput
+from validate.subject import modules
 
-from . import submissions
+from . import remote, submissions
 from .classlist import identity
 from .texts import line, many, number
 
@@ -42,16 +43,20 @@ class Hand(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- the file
 
-def read(folder, settings, students):
+def read(folder, settings, students, tell=print):
     """Return {student: his marks, exercises first, then lessons, then the total} from the file in a class folder.
 
-    students: the ids of all submissions and of the class list.  Raises BadInput for the first line that is wrong.
+    students: the ids of all submissions and of the class list.  Lines of lessons that are not graded now are left out,
+    and tell is called with their number.  Raises BadInput for the first line that is wrong.
     """
-    path, found, seen = Path(folder) / submissions.MARKS, {}, set()
+    path, found, seen, others, left = Path(folder) / submissions.MARKS, {}, set(), names_of_others(settings), 0
     if not path.is_file():
         return {}
     maxima = maxima_of(settings)
     for where, row, comma in rows_of(path):
+        if row["exercise"] in others:
+            left += 1
+            continue
         student, place = identity(row["student_id"]), place_of(row["exercise"], settings, where)
         if student not in students:
             raise BadInput(f"student {student!r} in {where}", "not known",
@@ -62,8 +67,18 @@ def read(folder, settings, students):
             raise BadInput(f"{name_of(place)} of {student!r} in {where}", "set a second time", "keep one of the lines")
         seen |= {(student, place)} - ({(student, place)} if adds else set())
         found.setdefault(student, []).append(mark)
+    if left:
+        tell(f"{submissions.MARKS}: {many(left, 'line')} of lessons that are not graded in this run, left out")
     order = [*maxima]
     return {student: tuple(sorted(marks, key=lambda m: order.index(m.place))) for student, marks in found.items()}
+
+
+def names_of_others(settings):
+    """Return the lessons that are not graded, and their exercises by number and by function."""
+    others = [lesson for lesson in modules.lesson_names() if lesson not in settings.lessons]
+    exercises = [text for lesson in others for pair in remote.exercises(lesson).items() for text in pair]
+    graded = {text for row in settings.manifest for text in row[1:3]}
+    return {*others, *exercises} - graded
 
 
 def maxima_of(settings):

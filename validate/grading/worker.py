@@ -1,16 +1,17 @@
 """Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
 
-Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder
-of the lessons as handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the lessons that this
-one builds on; notes, the descriptor of the memory for what the instructor may look into, and noted, the kinds of it.
+Usage: worker.py CONFIG NOTES.  CONFIG is a JSON object: limits; lesson; student, the folder of the student's file;
+given, the folder of the lessons as handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the
+lessons that this one builds on; noted, the kinds of what the instructor may look into.  NOTES is the descriptor of the
+pipe for these notes, and becomes the one that config names as kept.
 Frames go over standard input and output; what the student prints goes to standard error.
 """
 
 import collections
 import contextlib
+import fcntl
 import importlib.util
 import json
-import mmap
 import os
 import resource
 import sys
@@ -156,53 +157,60 @@ def describe(e):
 
 # ------------------------------------------------------------------------------------ what the instructor may look into
 
-NOTED = {event: kind for kind, events in {
+NOTED = {
     "process": "os.fork os.forkpty os.posix_spawn os.system os.exec subprocess.Popen",
     "signal": "os.kill os.killpg signal.pthread_kill",
-    "write": "os.remove os.rename os.mkdir os.rmdir os.truncate os.link os.symlink os.chmod",
-    "read": "open os.listdir os.scandir",
-    "inside": "gc.get_objects gc.get_referrers gc.get_referents sys.settrace sys.setprofile sys._current_frames",
+    "write": "os.remove os.rename os.mkdir os.rmdir os.truncate os.link os.symlink os.chmod os.chown os.utime",
+    "read": "open os.listdir os.scandir os.chdir sqlite3.connect",
+    "inside": "gc.get_objects gc.get_referrers gc.get_referents sys.settrace sys.setprofile sys._current_frames "
+              "sys.addaudithook sys.monitoring.register_callback",
     "limit": "resource.setrlimit resource.prlimit",
-}.items() for event in events.split()}
-FAMILIES = {"socket.": "network", "ctypes.": "native"}
+    "network": "socket.",                                              # all events that begin so
+    "native": "ctypes.",
+}
 
 
-def shared(descriptor):
-    """Map a page of memory, and close its descriptor and the copy of it that mmap keeps."""
-    copy = os.dup(descriptor)
-    os.close(copy)                                                     # the next copy gets the same number
-    page = mmap.mmap(descriptor, mmap.PAGESIZE)
-    assert os.path.sameopenfile(copy, descriptor)
-    os.close(copy)
+def kept(descriptor):
+    """Move a descriptor to the number that the filter of system calls lets no program close or turn elsewhere."""
+    number = fcntl.fcntl(descriptor, fcntl.F_DUPFD_CLOEXEC, config["kept"])
     os.close(descriptor)
-    return page
+    if number != config["kept"]:
+        raise OSError(f"descriptor {config['kept']} is in use")
+    return number
 
 
 def watcher():
-    """An audit hook that notes what a lesson has no need of, in memory that the parent reads.
+    """An audit hook that notes what a lesson has no need of, in a pipe to the parent.
 
-    No descriptor leads to this memory, so that none can be turned to another file.  All that the hook uses is its own:
-    the student's code may change everything else here.
+    A note cannot be taken back.  The student's code may reach the hook's variables by an error or a signal inside it:
+    none of them can be changed, and no method of the student's objects is called.
     """
-    board = shared(config["notes"])
-    place, kinds, families = {kind: k for k, kind in enumerate(config["noted"])}, dict(NOTED), dict(FAMILIES)
-    places = {sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), os.devnull}
-    ours = (*places, config["given"], config["student"], config["wire"])
-    writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-    kind_of, text = type, str
+    notes = kept(int(sys.argv[2]))
+    code = {kind: bytes([k]) for k, kind in enumerate(config["noted"])}
+    events = tuple((event, code[kind]) for kind, names in NOTED.items() for event in names.split())
+    reading, writing = code["read"], code["write"]
+    ours = (sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), os.devnull,
+            config["given"], config["student"], config["wire"])
+    changing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+    kind_of, text, number, write = type, str, int, os.write
 
     def hook(event, arguments):
-        kind = kinds.get(event) or families.get(event[:7])
-        if kind == "read":
-            path = arguments[0]
-            if kind_of(path) is not text:                              # a descriptor, which has been opened before
+        note = None
+        for known, code in events:
+            if event == known or (known[-1] == "." and event.startswith(known)):
+                note = code
+        if note is reading:
+            path, *more = arguments or (None,)
+            if kind_of(path) is number:                                # a descriptor, which has been opened before
                 return
-            if event == "open" and arguments[2] & writing and path != "/dev/null":
-                kind = "write"
-            elif path.startswith(ours):
+            plain = kind_of(path) is text                              # not bytes, nor a class of the student's
+            flags = more[-1] if event == "open" and more and kind_of(more[-1]) is number else 0
+            if flags & changing and not (plain and path == "/dev/null"):
+                note = writing
+            elif plain and path.startswith(ours) and "/.." not in path:
                 return
-        if kind:
-            board[place[kind]] = 1
+        if note:
+            write(notes, note)
     return hook
 
 
