@@ -20,8 +20,6 @@ import numpy as np
 
 from solutions.checks import Diverged, check_positive, check_restitution
 from solutions.friction import tangential
-from solutions.integrators import symplectic_euler_step
-from solutions.rotation import point_velocity, solve3
 from solutions.given.impact_modes import settle_impacts
 from solutions.given.impacts import (
     CONVERGED,
@@ -34,6 +32,8 @@ from solutions.given.impacts import (
     rebound_speeds,
     times,
 )
+from solutions.integrators import symplectic_euler_step
+from solutions.rotation import point_velocity, solve3
 from solutions.vectors import cross
 
 __all__ = [

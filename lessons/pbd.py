@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, Diverged, float_copy
+from solutions.given.ropes import composed_rope_step, rope_step
 from solutions.integrators import solve
 from solutions.rotation import angular_acceleration, quaternion_product, quaternion_update, rotate, unrotate
 from solutions.support.networks import shared_edges
-from solutions.given.ropes import composed_rope_step, rope_step
 from solutions.vectors import cross, distance_between, dot, move_apart
 
 __all__ = [

@@ -18,21 +18,6 @@ import numpy as np
 
 from solutions.checks import check_end, check_load, check_shape, checked_run, float_copy
 from solutions.contact import kept_impulses, velocity_sweep, velocity_sweep_2d
-from solutions.impulses import cross_2d
-from solutions.integrators import rk4_step
-from solutions.rotation import (
-    RollingBall,
-    angular_acceleration,
-    average_rolling_step,
-    body_angular_momentum,
-    exponential,
-    point_velocity,
-    quaternion_product,
-    quaternion_update,
-    rigid_body_step,
-    unrotate,
-)
-from solutions.support.arms import apply_impulses, apply_impulses_2d, arms_2d, arms_3d, turn_quaternions, world_inertia
 from solutions.given.bodies import (
     Bodies,
     CarriedBall,
@@ -47,18 +32,6 @@ from solutions.given.bodies import (
     rocking_acceleration,
     stop_slip,
     time_of_landing,
-)
-from solutions.support.broad_phase import near_pairs
-from solutions.support.contact_points import (
-    ContactSet,
-    ball_bounds,
-    box_bounds,
-    box_bounds_2d,
-    box_contacts,
-    box_contacts_2d,
-    disc_bounds,
-    largest_overlap,
-    round_contacts,
 )
 from solutions.given.forces import contact_force, joint_forces, joint_forces_2d, normal_and_friction, normal_forces
 from solutions.given.invariants import (
@@ -78,6 +51,33 @@ from solutions.given.joints import (
     without_joined,
 )
 from solutions.given.passing import check_passing
+from solutions.impulses import cross_2d
+from solutions.integrators import rk4_step
+from solutions.rotation import (
+    RollingBall,
+    angular_acceleration,
+    average_rolling_step,
+    body_angular_momentum,
+    exponential,
+    point_velocity,
+    quaternion_product,
+    quaternion_update,
+    rigid_body_step,
+    unrotate,
+)
+from solutions.support.arms import apply_impulses, apply_impulses_2d, arms_2d, arms_3d, turn_quaternions, world_inertia
+from solutions.support.broad_phase import near_pairs
+from solutions.support.contact_points import (
+    ContactSet,
+    ball_bounds,
+    box_bounds,
+    box_bounds_2d,
+    box_contacts,
+    box_contacts_2d,
+    disc_bounds,
+    largest_overlap,
+    round_contacts,
+)
 from solutions.support.records import check_record
 from solutions.support.scenes import PileState
 from solutions.vectors import cross, dot, norm

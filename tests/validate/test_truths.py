@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from validate.engines.springs import net_points, start_net
 from validate.reference.springs import modes
 from validate.scenes.friction import stick_slip
 from validate.scenes.inertia_tensors import tensors
 from validate.scenes.springs import samples_per_frame, spring_net
+from validate.scenes.springs._common import net_points, start_net
 from validate.subject import modules
 
 LESSONS = modules.PLAIN.lessons
