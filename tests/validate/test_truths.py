@@ -7,7 +7,7 @@ from validate.reference.springs import modes
 from validate.scenes.friction import stick_slip
 from validate.scenes.inertia_tensors import tensors
 from validate.scenes.springs import samples_per_frame, spring_net
-from validate.scenes.springs._common import net_points, start_net
+from validate.scenes.springs._common import net_points
 from validate.subject import modules
 
 LESSONS = modules.PLAIN.lessons
@@ -56,5 +56,5 @@ def test_a_net_of_the_lesson_has_the_springs_and_the_rest_state_of_the_reference
     offsets = springs.STRUCTURAL + springs.SHEAR * p.shear + springs.BEND * p.bend
     ours = {tuple(sorted(pair)) for pair in springs.grid_pairs(p.n, p.n, offsets).tolist()}
     assert ours == set(map(tuple, net.pairs.tolist()))
-    _, v, network = start_net(p)
+    _, v, network = spring_net.SCENE.start(p)
     assert np.abs(springs.spring_network_acceleration(0.0, spring_net.rest_positions(net), v, network)).max() < 1e-10

@@ -6,7 +6,7 @@ With one step per frame it tears; with four its worst node is off by 3 cm, with 
 
 from validate.reference.springs import SquareNet, net_limits, net_steps, net_truth, square_net
 from validate.scene import Scene
-from validate.scenes.springs._common import SQUARE, net_fields, net_runners, start_of
+from validate.scenes.springs._common import SQUARE, net_fields, net_runners
 
 FRAMES_PER_SECOND = 24
 SAMPLES = (1, 4, 16, 64, 256)              # steps per frame [-]
@@ -24,7 +24,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
-start_net, truth = start_of(square_net, SQUARE), net_truth(T)
+truth = net_truth(T)
 RUNNERS = net_runners(
     square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
     in_quick=False)

@@ -16,7 +16,7 @@ from validate.reference.springs import (
     square_net,
 )
 from validate.scene import Scene
-from validate.scenes.springs._common import SQUARE, net_fields, net_runners, start_of
+from validate.scenes.springs._common import SQUARE, net_fields, net_runners
 
 T = 0.6                      # [s]: two bounces, and half an oscillation of the threads alone
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -29,7 +29,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
-start_net, truth = start_of(square_net, SQUARE), net_truth(T)
+truth = net_truth(T)
 RUNNERS = net_runners(
     square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
     finer_in_full=(10_000, 20_000), slow_cases=tuple(CASES)[1:], most_in_quick=200)
