@@ -1,8 +1,33 @@
-"""What a run finds, as plain data: the words that stored results use for verdicts and roles."""
+"""What a run finds, as plain data: a Finding for each statement of theory, verdicts, and the roles of curves."""
 
 from enum import Enum, StrEnum
+from typing import NamedTuple
 
 import numpy as np
+
+
+class Finding(NamedTuple):
+    """Theory predicts a value, something else gives another: it holds where they differ by no more than a tolerance.
+
+    A stability case measures what it predicts.  A check of a truth compares it with another source.  Numbers may be
+    arrays there, and all of them must agree.
+    """
+    claim: str               # the statement of theory, in one sentence; "" where the quantity says all
+    quantity: str            # the measured quantity [unit]
+    predicted: float         # the value from theory
+    measured: float          # the value from the experiment
+    tolerance: float         # derived before the experiment, in the unit of the quantity
+    observation: str         # the result of the experiment, in one sentence
+
+    @property
+    def holds(self):
+        """Whether experiment and theory agree; False for a failed measurement, which is NaN."""
+        return bool(np.all(np.abs(np.subtract(self.measured, self.predicted)) <= self.tolerance))
+
+
+def states(quantity, found, law, within):
+    """Return the Finding that a truth must meet: `found` is what it gives, `law` what it must be to `within`."""
+    return Finding("", quantity, law, found, within, "")
 
 
 class Verdict(StrEnum):

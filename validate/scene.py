@@ -143,7 +143,7 @@ class Scene:
     refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
     quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers
     published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
-    sanity_checks: Callable | None = None    # () → ((claim, found, expected, tolerance), …) about the truth alone
+    sanity_checks: Callable | None = None    # () → Findings about the truth alone
     links: Callable | None = None            # (p) → pairs of points that the picture joins
     link_look: str = "rod"                   # how they are drawn: rod, spring, or spring and damper
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it

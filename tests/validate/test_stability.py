@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
+from validate.check import states
 from validate.methods import EULER
 from validate.stability import integrators
-from validate.stability.case import EDGE, Worst, bisect, finding
+from validate.stability.case import EDGE, Worst, bisect
 from validate.stability.examine import all_cases, examine, found_by, subject_of
 
 examined = cache(examine)
@@ -175,7 +176,7 @@ def test_an_edge_that_is_a_hundredth_off_is_seen_on_the_map_of_amplification(mon
 
 def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():
     for measured in (np.nan, np.inf):
-        assert not finding(claim="", quantity="", predicted=1.0, measured=measured, tolerance=0.1, observation="").holds
+        assert not states("speed [m/s]", measured, 1.0, 0.1).holds
 
 
 def test_bisection_says_so_when_there_is_no_edge():

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, nnls
 from scipy.spatial import ConvexHull
 
+from ..check import states
 from ..scene import Prediction
 
 # why no theory predicts the error of a method with a closed form
@@ -44,7 +45,7 @@ def impact_times(T):
 
 def impact_claim(x, v, end, T):
     """Return the sanity check that balls (x, v), which end at end (n, 2), y and z, have fallen until impact_times."""
-    return "times of impact [s]", (end[:, 1] - x[:, 2]) / v[:, 2], impact_times(T), 1e-14
+    return states("times of impact [s]", (end[:, 1] - x[:, 2]) / v[:, 2], impact_times(T), 1e-14)
 
 
 def with_balls_that_miss(x, v, target):

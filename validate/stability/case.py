@@ -10,23 +10,10 @@ import numpy as np
 
 from solutions.checks import BadInput, Diverged
 
+from ..check import Finding
+
 EDGE = 1e-6                  # relative width at which bisection stops [-]
 LINE, DOTS = "line", "dots"
-
-
-class Finding(NamedTuple):
-    """One bound and its check: it holds where |measured − predicted| ≤ tolerance."""
-    claim: str               # the statement of theory, in one sentence
-    quantity: str            # the measured quantity [unit]
-    predicted: float         # the value from theory
-    measured: float          # the value from the experiment
-    tolerance: float         # derived before the experiment, in the unit of the quantity
-    observation: str         # the result of the experiment, in one sentence
-
-    @property
-    def holds(self):
-        """Whether experiment and theory agree; False for a failed measurement, which is NaN."""
-        return bool(abs(self.measured - self.predicted) <= self.tolerance)
 
 
 class Checks(list):
@@ -86,7 +73,7 @@ class Case(NamedTuple):
     slug: str                # its part of the address
     title: str
     lesson: str
-    examine: Callable        # (lesson, check: Checks) → Picture; or (lesson) → (findings, Picture)
+    examine: Callable        # (lesson, check: Checks) → Picture or None
     compiled: bool           # False for short runs and for runs with an acceleration of their own
 
 
@@ -105,18 +92,13 @@ CASES = {}                   # {lesson: {slug: Case}} of the files imported so f
 def case(slug, title, compiled=True):
     """Register a function as a case of the lesson that its file is named after.
 
-    It is (lesson, check) → Picture or None, where check is the Checks that it fills; or (lesson) → (findings, Picture).
+    It is (lesson, check) → Picture or None, where check is the Checks that it fills.
     """
     def register(examine):
         lesson = examine.__module__.rpartition(".")[2]
         CASES.setdefault(lesson, {})[slug] = Case(slug, title, lesson, examine, compiled)
         return examine
     return register
-
-
-def finding(*, claim, quantity, predicted, measured, tolerance, observation):
-    """Make a Finding of plain floats."""
-    return Finding(claim, quantity, float(predicted), float(measured), float(tolerance), observation)
 
 
 def series(label, xs, ys, style):
@@ -205,9 +187,3 @@ def flat(numbers):
     """Return all numbers of an array or of a tuple of arrays in one row."""
     parts = numbers if isinstance(numbers, tuple) else (numbers,)
     return np.concatenate([np.ravel(part) for part in parts])
-
-
-def agreement(claim, quantity, error, tolerance):
-    """Make the Finding that a function errs by no more than `tolerance`: error is the largest of many random cases."""
-    return finding(claim=claim, quantity=quantity, predicted=0.0, measured=error, tolerance=tolerance,
-                   observation=f"The largest error is {error:.1e}.")

@@ -1,14 +1,13 @@
 """Run stability cases with the lessons of a subject."""
 
 from importlib import import_module
-from inspect import signature
 from pathlib import Path
 
 import numpy as np
 
 from ..check import jsonable
 from ..subject import modules
-from .case import CASES, Checks, Examined, finding
+from .case import CASES, Checks, Examined
 
 
 def cases_of(lesson):
@@ -35,9 +34,7 @@ def examine(case, of="solutions", compiled=True):
 
 
 def found_by(case, lesson):
-    """(findings, Picture) of a case with a lesson."""
-    if len(signature(case.examine).parameters) == 1:
-        return case.examine(lesson)
+    """Return the findings and the picture of a case with a lesson."""
     check = Checks()
     picture = case.examine(lesson, check)
     return check, picture
@@ -59,9 +56,10 @@ def stability_cases(lesson, plan):
 def broken_off(case, error):
     """A case that ended in an error of the subject's code: a finding that does not hold."""
     words = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
-    lost = finding(claim=f"The case runs without an error; here it ended in {words}.",
-                   quantity="cases without an error [of 1]", predicted=1, measured=0, tolerance=0.0, observation=words)
-    return Examined(case.slug, case.title, case.lesson, [lost], None)
+    check = Checks()
+    check(f"The case runs without an error; here it ended in {words}.", "cases without an error [of 1]",
+          law=1, found=0, within=0.0, saw=words)
+    return Examined(case.slug, case.title, case.lesson, check, None)
 
 
 def stored(examined):

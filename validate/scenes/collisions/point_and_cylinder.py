@@ -7,6 +7,7 @@ solves for the first root and works with any step.
 
 import numpy as np
 
+from validate.check import states
 from validate.engines.collisions import swept_radius
 from validate.reference import collisions as balls
 from validate.scene import EXACT, Scene
@@ -115,10 +116,10 @@ def links(p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the point where a ball in the middle must touch."""
+    """Return Findings: the point where a ball in the middle must touch."""
     p = CASES["10,000 m/s"]
     x = truth(p, T).reshape(-1, 2)
-    return (("distance of all balls from the axis at the end [m]", np.hypot(*x.T), p.R + p.r, 1e-11),
+    return (states("distance of all balls from the axis at the end [m]", np.hypot(*x.T), p.R + p.r, 1e-11),
             balls.impact_claim(*place(p), x, T))
 
 

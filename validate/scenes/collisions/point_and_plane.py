@@ -6,6 +6,7 @@ t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight. 
 
 import numpy as np
 
+from validate.check import states
 from validate.engines.collisions import swept_radius
 from validate.reference import collisions as balls
 from validate.scene import EXACT, Scene
@@ -81,10 +82,10 @@ def points(observed, p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …) about the reference solution."""
+    """Return Findings about the reference solution."""
     p = CASES["10,000 m/s"]
     x = truth(p, T).reshape(-1, 2)
-    return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11), balls.impact_claim(*place(p), x, T))
+    return (states("height of all balls at the end [m]", x[:, 1], p.r, 1e-11), balls.impact_claim(*place(p), x, T))
 
 
 SCENE = Scene(

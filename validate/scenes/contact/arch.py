@@ -12,6 +12,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.contact import make_contacts
+from validate.check import states
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
@@ -194,13 +195,13 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): hinges by hand, published numbers, and that more friction helps."""
+    """Return Findings: hinges by hand, published numbers, and that more friction helps."""
     hinges = [hinged_thickness(n) for n in (4, 10)]
-    return (("least t/R by moments about hinges, 4 and 10 stones [-]", hinges,
-             (least_thickness(4, 1.0), least_thickness(10, 1.0)), 2e-8),
-            ("Milankovitch's least t/R, 4,000 stones [-]", hinged_thickness(4000), 0.1075, 5e-5),
-            ("least friction at t/R = 0.108 and 0.15 [-]", [least_friction(10, t) for t in (0.108, 0.15)],
-             (0.39465, 0.35025), 5e-6))
+    return (states("least t/R by moments about hinges, 4 and 10 stones [-]", hinges,
+                   (least_thickness(4, 1.0), least_thickness(10, 1.0)), 2e-8),
+            states("Milankovitch's least t/R, 4,000 stones [-]", hinged_thickness(4000), 0.1075, 5e-5),
+            states("least friction at t/R = 0.108 and 0.15 [-]", [least_friction(10, t) for t in (0.108, 0.15)],
+                   (0.39465, 0.35025), 5e-6))
 
 
 # ---------------------------------------------------------------------------------------------- picture

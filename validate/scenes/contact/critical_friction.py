@@ -12,6 +12,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.contact import make_contacts
+from validate.check import states
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
@@ -353,11 +354,11 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the same by other means."""
+    """Return Findings: the same by other means."""
     numbers = {name: truth(p, T)[0] for name, p in CASES.items()}
-    return (("friction between discs [-]", numbers[DISCS], np.tan(np.radians(15.0)), 1e-15),
-            ("ladder at 60° [-]", numbers[LADDER], np.sqrt(3.0) / 6.0, 1e-15),
-            ("overhang of five [-]", numbers["overhang of five blocks"], 137.0 / 120.0, 1e-15))
+    return (states("friction between discs [-]", numbers[DISCS], np.tan(np.radians(15.0)), 1e-15),
+            states("ladder at 60° [-]", numbers[LADDER], np.sqrt(3.0) / 6.0, 1e-15),
+            states("overhang of five [-]", numbers["overhang of five blocks"], 137.0 / 120.0, 1e-15))
 
 
 # ---------------------------------------------------------------------------------------------- picture

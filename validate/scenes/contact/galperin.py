@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_not_negative, check_positive
+from validate.check import states
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space
 from validate.methods import ONE_BY_ONE, REFLECTION
@@ -179,13 +180,13 @@ def exact_count(N):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the count in fractions, Galperin's angle, and the energy in the end."""
+    """Return Findings: the count in fractions, Galperin's angle, and the energy in the end."""
     cases = list(CASES.values())
     angles = [np.ceil(np.pi / np.arctan(10.0**-p.N)) - 1.0 for p in cases]
     ends = np.array([truth(p, T) for p in cases])
-    return (("impacts in exact fractions [-]", [exact_count(N) for N in (0, 1, 2)], (3, 31, 314), 0.0),
-            ("⌈π/θ⌉ − 1 [-]", angles, ends[:, 0], 0.0),
-            ("energy in the end over that before [-]", ends[:, 1] ** 2 + ends[:, 2] ** 2, 1.0, 1e-14))
+    return (states("impacts in exact fractions [-]", [exact_count(N) for N in (0, 1, 2)], (3, 31, 314), 0.0),
+            states("⌈π/θ⌉ − 1 [-]", angles, ends[:, 0], 0.0),
+            states("energy in the end over that before [-]", ends[:, 1] ** 2 + ends[:, 2] ** 2, 1.0, 1e-14))
 
 
 # ---------------------------------------------------------------------------------------------- picture

@@ -15,6 +15,7 @@ from solutions.contact import (
     make_contacts,
     make_pile_2d,
 )
+from validate.check import states
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
@@ -363,14 +364,14 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the truths by other means."""
+    """Return Findings: the truths by other means."""
     light = 1.0 - 1.0 / 11.0
     by_hand = next(k for k in range(1, 1000) if light**k <= SMALL)
     omegas = np.linspace(1.5, 1.6, 1001)
     sizes = [max(np.abs(np.roots([1.0, 2.0 * (w - 1.0) - w**2 * light, (w - 1.0) ** 2]))) for w in omegas]
-    return (("sweeps at 10 : 1, by powers of ρ [-]", sweeps_needed(10.0, 1.0, SMALL), by_hand, 0.0),
-            ("best relaxation at 10 : 1, by search [-]", omegas[np.argmin(sizes)], best(10.0), 1e-4),
-            ("the weight of both over that of the light one [-]", weights(Params())[0] / 9.81, 11.0, 1e-13))
+    return (states("sweeps at 10 : 1, by powers of ρ [-]", sweeps_needed(10.0, 1.0, SMALL), by_hand, 0.0),
+            states("best relaxation at 10 : 1, by search [-]", omegas[np.argmin(sizes)], best(10.0), 1e-4),
+            states("the weight of both over that of the light one [-]", weights(Params())[0] / 9.81, 11.0, 1e-13))
 
 
 # ---------------------------------------------------------------------------------------------- picture

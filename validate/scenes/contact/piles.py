@@ -14,6 +14,7 @@ import solutions.contact
 from solutions.checks import BadInput
 from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
+from validate.check import states
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
@@ -226,12 +227,12 @@ def judge_of_one_ball(J, mu):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the judge finds what is wrong, and nothing else."""
+    """Return Findings: the judge finds what is wrong, and nothing else."""
     right = [judge_of_one_ball(J, mu) for J, mu in (((0, 0, 1), 0.5), ((0.3, 0.4, 1), 0.5), ((9, 0, 1), np.inf))]
     # k_n = 1/m; k_t = 2/m + r²/I · 2 = 2 + 5 of a ball
     wrong = [judge_of_one_ball(J, mu) for J, mu in (((0, 0, -1), 0.5), ((0.6, 0.0, 1), 0.5))]
-    return (("residual of impulses that keep the laws [-]", right, 0.0, 1e-12),
-            ("of one that pulls, and of friction that is 0.1 too large [-]", wrong, (1.0, 0.7), 1e-12))
+    return (states("residual of impulses that keep the laws [-]", right, 0.0, 1e-12),
+            states("of one that pulls, and of friction that is 0.1 too large [-]", wrong, (1.0, 0.7), 1e-12))
 
 
 # ---------------------------------------------------------------------------------------------- picture

@@ -13,6 +13,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.contact import make_contacts, make_pile, make_pile_2d
+from validate.check import states
 from validate.engines.bullet import CONTACT_ERP, WARM
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import SOFT
@@ -275,11 +276,11 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the ground carries all, and each joint one body more than the next."""
+    """Return Findings: the ground carries all, and each joint one body more than the next."""
     all_of_them = [truth(p, T)[0] / (p.n * p.m * p.g) for p in CASES.values()]
-    return (("what the ground carries, over the weight [-]", all_of_them, 1.0, 1e-15),
-            ("what a joint carries more than the next, over a body's weight [-]",
-             -np.diff(truth(Params(), T)) / 9.81, 1.0, 1e-14))
+    return (states("what the ground carries, over the weight [-]", all_of_them, 1.0, 1e-15),
+            states("what a joint carries more than the next, over a body's weight [-]",
+                   -np.diff(truth(Params(), T)) / 9.81, 1.0, 1e-14))
 
 
 # ---------------------------------------------------------------------------------------------- picture

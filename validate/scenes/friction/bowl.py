@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from solutions.friction import ParticleInBowl, check_friction
+from validate.check import states
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
@@ -227,7 +228,7 @@ def rest_angle(theta, mu):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the reference solution compared with closed forms."""
+    """Return Findings: the reference solution compared with closed forms."""
     p, smooth = CASES["rough trough"], CASES["smooth bowl"]
     x = truth(p, T)
     rest = rest_angle(np.radians(p.degrees), p.mu)
@@ -237,10 +238,10 @@ def sanity_checks():
     spin = [y[0] * y[4] - y[1] * y[3] for y in (begin, end)]
     far = [np.arctan(np.hypot(x[0], 0.0 if q.trough else x[1]) / -x[2])
            for q in (CASES["rough bowl"], p) for x in [truth(q, T)]]
-    return (("rest angle in the rough trough [rad]", np.arctan2(x[0], -x[2]), rest, 1e-9),
-            ("slope at the rest positions, over μ [-]: at most 1", np.tan(far) / p.mu, 0.5, 0.5),
-            ("energy without friction after 2 s [J/kg]", energy[1], energy[0], 1e-9),
-            ("angular momentum about z without friction [m²/s]", spin[1], spin[0], 1e-9))
+    return (states("rest angle in the rough trough [rad]", np.arctan2(x[0], -x[2]), rest, 1e-9),
+            states("slope at the rest positions, over μ [-]: at most 1", np.tan(far) / p.mu, 0.5, 0.5),
+            states("energy without friction after 2 s [J/kg]", energy[1], energy[0], 1e-9),
+            states("angular momentum about z without friction [m²/s]", spin[1], spin[0], 1e-9))
 
 
 def points(observed, p):

@@ -7,6 +7,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
+from validate.check import states
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
@@ -157,13 +158,13 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the numbers of the lecture's slope, moving and from rest."""
+    """Return Findings: the numbers of the lecture's slope, moving and from rest."""
     found = [2.0 * truth(CASES[name], T)[0] / T**2 for name in ("slides, μ = 0.5", "slides, μ = 0.3")]
     held = truth(Params(mu=float(np.tan(np.radians(30.0))) * 1.000001), T)[0]
     return (
-        ("acceleration at μ = 0.5 [m/s²]", found[0], 0.657145, 5e-7),
-        ("acceleration at μ = 0.3 [m/s²]", found[1], 2.356287, 5e-7),
-        ("distance of a block that is held, from rest [m]", held, 0.0, 0.0),
+        states("acceleration at μ = 0.5 [m/s²]", found[0], 0.657145, 5e-7),
+        states("acceleration at μ = 0.3 [m/s²]", found[1], 2.356287, 5e-7),
+        states("distance of a block that is held, from rest [m]", held, 0.0, 0.0),
     )
 
 

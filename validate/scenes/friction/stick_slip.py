@@ -3,6 +3,7 @@
 import numpy as np
 
 from solutions.given.friction import make_block
+from validate.check import states
 from validate.engines.friction import MASS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import (
@@ -64,14 +65,14 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): times of the slips, and places after them."""
+    """Return Findings: times of the slips, and places after them."""
     p = CASES["F = 8 cos t"]
     times = np.array([[begin, end] for begin, end, _, _ in slips(p)])
     known = np.array([[0.0, 0.338608], [2.946347, 3.532835]])
     return (
-        ("times of the slips [s]", times, known, 5e-7),
-        ("x after the first slip [m]", slip_position(p, 1.0)[0], 0.00434857, 5e-9),
-        ("x after the second [m]", slip_position(p, T)[0], -0.00869717, 5e-9),
+        states("times of the slips [s]", times, known, 5e-7),
+        states("x after the first slip [m]", slip_position(p, 1.0)[0], 0.00434857, 5e-9),
+        states("x after the second [m]", slip_position(p, T)[0], -0.00869717, 5e-9),
     )
 
 

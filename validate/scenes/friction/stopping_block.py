@@ -7,6 +7,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
+from validate.check import states
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
@@ -127,17 +128,17 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …) about the reference solution."""
+    """Return Findings about the reference solution."""
     p = Params()
     corner = pyramid(Params(degrees=45.0), T)
     aside = pyramid(p, T)
     shorter = np.linalg.norm(corner) / np.linalg.norm(truth(p, T))
     direction, expected = np.arctan2(aside[1], aside[0]), np.arctan(np.tan(np.radians(22.5)) ** 2)
     return (
-        ("distance to the stop [m]", np.linalg.norm(truth(p, T)), 1.529052, 5e-7),
-        ("time to the stop [s]", p.v0 / (p.mu * p.g), 1.019368, 5e-7),
-        ("distance with a pyramid at 45° over the exact one [-]", shorter, np.sqrt(0.5), 1e-14),
-        ("final direction with a pyramid from 22.5° [°]", np.degrees(direction), np.degrees(expected), 1e-12),
+        states("distance to the stop [m]", np.linalg.norm(truth(p, T)), 1.529052, 5e-7),
+        states("time to the stop [s]", p.v0 / (p.mu * p.g), 1.019368, 5e-7),
+        states("distance with a pyramid at 45° over the exact one [-]", shorter, np.sqrt(0.5), 1e-14),
+        states("final direction with a pyramid from 22.5° [°]", np.degrees(direction), np.degrees(expected), 1e-12),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.impulses import BouncingBall, check_restitution
+from validate.check import states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
@@ -215,10 +216,10 @@ def sanity_checks():
     apexes = [flight(p, 0.5 * (a + b))[0] for (a, _), (b, _) in pairwise(flights)]
     stiff = soft(p._replace(omega=1e5), T)
     return (
-        ("the first three apexes [m]", apexes, (0.64, 0.4096, 0.262144), 1e-14),
-        ("it lies from [s]", list(impacts(p))[-1][0], 4.063712769, 5e-10),
-        ("at rest from, by the geometric series [s]", np.sqrt(2.0 / p.g) * 1.8 / 0.2, 4.063712769, 5e-10),
-        (
+        states("the first three apexes [m]", apexes, (0.64, 0.4096, 0.262144), 1e-14),
+        states("it lies from [s]", list(impacts(p))[-1][0], 4.063712769, 5e-10),
+        states("at rest from, by the geometric series [s]", np.sqrt(2.0 / p.g) * 1.8 / 0.2, 4.063712769, 5e-10),
+        states(
             "a stiff spring is a hard floor, except for the π/ω of an impact: relative error [-]",
             np.linalg.norm(stiff - truth(p, T)) / np.linalg.norm(truth(p, T)),
             0.0,

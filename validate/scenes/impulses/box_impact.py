@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.impulses import BodyState3D, check_restitution
+from validate.check import states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
@@ -192,9 +193,9 @@ def sanity_checks():
         if p.e == 0.0 and p.rough:
             left += [np.abs(v + np.cross(omega, arm)).max() for arm in r]
     return (
-        ("energy after elastic impacts over energy before [-]", energies, 1.0, 1e-12),
-        ("speed of points that stick, e = 0 [m/s]", left, 0.0, 1e-12),
-        (
+        states("energy after elastic impacts over energy before [-]", energies, 1.0, 1e-12),
+        states("speed of points that stick, e = 0 [m/s]", left, 0.0, 1e-12),
+        states(
             "velocity of a box that lands flat: e times the initial one [m/s]",
             truth(Params("face", 0.5, 1.0), T),
             (0.0, 0.0, 3.0, 0.0, 0.0, 0.0),

@@ -6,6 +6,7 @@ import numpy as np
 
 from solutions.given.impulses import Discs
 from solutions.impulses import check_restitution
+from validate.check import states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
@@ -149,9 +150,9 @@ def sanity_checks():
     p = Params()
     v1, v2 = after(p)
     return (
-        ("velocity of the first [m/s]", v1, (0.757333, -2.432), 5e-7),
-        ("of the second [m/s]", v2, (1.621333, 1.216), 5e-7),
-        ("momentum [kg m/s]", p.m1 * v1 + p.m2 * v2, (4.0, 0.0), 1e-14),
+        states("velocity of the first [m/s]", v1, (0.757333, -2.432), 5e-7),
+        states("of the second [m/s]", v2, (1.621333, 1.216), 5e-7),
+        states("momentum [kg m/s]", p.m1 * v1 + p.m2 * v2, (4.0, 0.0), 1e-14),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from solutions.friction import check_friction
 from solutions.given.impulses import SpinningBall
 from solutions.impulses import check_restitution
+from validate.check import states
 from validate.engines.bullet import IMPACT_ITERATIONS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
@@ -166,7 +167,7 @@ RUNNERS = impact_runners(
 def sanity_checks():
     found = [after(p) for p in CASES.values()]
     expected = ((2.36, 0.4), (11.0 / 7.0, -11.0 / 7.0), (2.36, 0.72), (4.0 / 3.0, -4.0 / 3.0))
-    return (("v and Rω afterwards [m/s]", found, expected, 1e-14),)
+    return (states("v and Rω afterwards [m/s]", found, expected, 1e-14),)
 
 
 def points(observed, p):

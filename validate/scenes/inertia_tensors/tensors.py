@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import states
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
@@ -241,22 +242,22 @@ def round_bar(p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the numbers of the docstring, and pybullet's centre of mass."""
+    """Return Findings: the numbers of the docstring, and pybullet's centre of mass."""
     capsule, dumbbell, uneven = CASES["capsule"], CASES["dumbbell"], CASES["uneven dumbbell"]
     too_much = lambda p, k: by_bounding_box(p, T)[k] / truth(p, T)[k] - 1.0
-    claims = (("relative excess of a capsule's moment across its axis in pybullet [-]", too_much(capsule, 0), 0.28,
-               0.005),
-              ("and along [-]", too_much(capsule, 2), 0.41, 0.005),
-              ("the same of a dumbbell [-]", too_much(dumbbell, 0), -0.34, 0.005),
-              ("and along [-]", too_much(dumbbell, 2), 0.67, 0.005))
+    claims = (states("relative excess of a capsule's moment across its axis in pybullet [-]", too_much(capsule, 0),
+                     0.28, 0.005),
+              states("and along [-]", too_much(capsule, 2), 0.41, 0.005),
+              states("the same of a dumbbell [-]", too_much(dumbbell, 0), -0.34, 0.005),
+              states("and along [-]", too_much(dumbbell, 2), 0.67, 0.005))
     if not PYBULLET.installed():
         return claims
     bullet = Bullet(1.0)
     body = bullet.pb.createMultiBody(uneven.m, shape_of(bullet.pb, uneven))
     believed = bullet.pb.getDynamicsInfo(body, -1)[3]
     bullet.close()
-    return (*claims, ("centre of an uneven dumbbell in pybullet: the origin of the shape [m]", believed, np.zeros(3),
-                      0.0))
+    return (*claims, states("centre of an uneven dumbbell in pybullet: the origin of the shape [m]", believed,
+                            np.zeros(3), 0.0))
 
 
 def round_off(p, dt):

@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
+from validate.check import states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
@@ -173,14 +174,14 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): σ as half axes of the ellipse of velocities, by looking around it."""
+    """Return Findings: σ as half axes of the ellipse of velocities, by looking around it."""
     around = np.linspace(0.0, np.pi, 20001)
     found, expected = [], []
     for p in CASES.values():
         J = jacobian_of(ANGLES, lengths_of(p))
         widths = np.linalg.norm(np.stack((np.cos(around), np.sin(around)), axis=1) @ J, axis=1)
         found, expected = [*found, widths.max(), widths.min()], [*expected, *directions(p)[1]]
-    return (("largest and smallest width of the ellipse, half [m]", found, np.array(expected), 1e-7),)
+    return (states("largest and smallest width of the ellipse, half [m]", found, np.array(expected), 1e-7),)
 
 
 # ---------------------------------------------------------------------------------------------- picture

@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
+from validate.check import states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
@@ -172,14 +173,14 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): both answers end at the target; the small arm's shortfall."""
+    """Return Findings: both answers end at the target; the small arm's shortfall."""
     ends = [joints_of(angles, lengths_of(p))[-1] - target_of(p)
             for p in CASES.values() for angles in truth(p, T).reshape(2, 2)]
     small = CASES["10 cm each"]
     short = [np.linalg.norm(joints_of(angles, lengths_of(small))[-1] - target_of(small)) / 0.2
              for angles in default_law(small, T).reshape(2, 2)]
-    return (("way from the end to the target [m]", ends, 0.0, 1e-14),
-            ("what a 20 cm arm is short of in pybullet, over its reach [-]", short, 0.1645, 5e-5))
+    return (states("way from the end to the target [m]", ends, 0.0, 1e-14),
+            states("what a 20 cm arm is short of in pybullet, over its reach [-]", short, 0.1645, 5e-5))
 
 
 # ---------------------------------------------------------------------------------------------- picture

@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
+from validate.check import states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -188,12 +189,12 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): both answers end at the target with its direction."""
+    """Return Findings: both answers end at the target with its direction."""
     both = [(angles, p) for p in CASES.values() for angles in truth(p, T).reshape(2, 3)]
     off = [joints_of(angles, lengths_of(p))[-1] - target_of(p)[:2] for angles, p in both]
     turned = [np.angle(np.exp(1j * (np.sum(angles) - np.radians(p.degrees)))) for angles, p in both]
-    return (("way from the end to the target [m]", off, 0.0, 1e-14),
-            ("direction that is missing [rad]", turned, 0.0, 1e-14))
+    return (states("way from the end to the target [m]", off, 0.0, 1e-14),
+            states("direction that is missing [rad]", turned, 0.0, 1e-14))
 
 
 # ---------------------------------------------------------------------------------------------- picture

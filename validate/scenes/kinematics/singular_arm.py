@@ -11,6 +11,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
+from validate.check import states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import end_of
@@ -109,11 +110,11 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the gradient of ½|e|² on the straight arm, by complex numbers."""
+    """Return Findings: the gradient of ½|e|² on the straight arm, by complex numbers."""
     levers = 1j * np.cumsum(LENGTHS[::-1])[::-1]
     slopes = [np.real(np.conj(p.x - REACH) * levers) for p in CASES.values()]
-    return (("Jᵀe of the straight arm [m²]", slopes, 0.0, 0.0),
-            ("end of the straight arm [m]", end_of(np.zeros(3), LENGTHS)[0], REACH, 1e-15))
+    return (states("Jᵀe of the straight arm [m²]", slopes, 0.0, 0.0),
+            states("end of the straight arm [m]", end_of(np.zeros(3), LENGTHS)[0], REACH, 1e-15))
 
 
 # ---------------------------------------------------------------------------------------------- picture

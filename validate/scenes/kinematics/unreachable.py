@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
+from validate.check import states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
@@ -139,7 +140,7 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): no angles on a fine grid come nearer to the target than the ring."""
+    """Return Findings: no angles on a fine grid come nearer to the target than the ring."""
     near = []
     for p in CASES.values():
         grid = np.linspace(0.0, 2.0 * np.pi, 121)
@@ -147,7 +148,7 @@ def sanity_checks():
         bend, wrist = np.meshgrid(grid, grid)
         r = np.abs(p.l_1 + np.exp(1j * bend) * (p.l_2 + p.l_3 * np.exp(1j * wrist)))
         near += [abs(r.min() - inner) / outer, abs(r.max() - outer) / outer]
-    return (("edges of the ring on a grid of angles, over the reach [-]", near, 0.0, 2e-3),)
+    return (states("edges of the ring on a grid of angles, over the reach [-]", near, 0.0, 2e-3),)
 
 
 # ---------------------------------------------------------------------------------------------- picture

@@ -7,6 +7,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
+from validate.check import states
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest
 from validate.scene import Scene, by_order, ours
@@ -113,7 +114,7 @@ RUNNERS = (ours(XPBD, limit=limit, predicted=SWEPT, compiled_in_quick=True),)
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): conditions that a cloth at rest must meet."""
+    """Return Findings: conditions that a cloth at rest must meet."""
     p = CASES["at rest"]
     flat, x = cloth(p), rest(p)
     B, free = flat.matrix(), flat.free()
@@ -127,15 +128,15 @@ def sanity_checks():
     drawn = np.random.default_rng(8).normal(size=(20, *x.shape))
     bumps = [energy(x + 1e-4 * free[:, None] * bump) - energy(x) for bump in drawn]
     return (
-        ("force on a point at rest over its weight [-]", np.abs(force[free]).max() / (p.m * p.g), 0.0, 1e-10),
-        (
+        states("force on a point at rest over its weight [-]", np.abs(force[free]).max() / (p.m * p.g), 0.0, 1e-10),
+        states(
             "forces of the two corners, sideways and upwards, over the total weight [-]",
             carried,
             (0.0, 0.0, 1.0),
             1e-10,
         ),
-        ("displacements of 0.1 mm that lower the energy [of 20]", sum(b < 0.0 for b in bumps), 0, 0),
-        ("longest link over its natural length [-]", (length / flat.rest).max(), 1.055, 0.001),
+        states("displacements of 0.1 mm that lower the energy [of 20]", sum(b < 0.0 for b in bumps), 0, 0),
+        states("longest link over its natural length [-]", (length / flat.rest).max(), 1.055, 0.001),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
+from validate.check import states
 from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_sweeps, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import (
@@ -180,17 +181,17 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): conditions that the reference solution must meet."""
+    """Return Findings: conditions that the reference solution must meet."""
     claims = []
     for name, p in CASES.items():
         motion = rope_motion(p.links, p.l, p.m, p.g, T)
         energies = [rope_energy(motion.sol(t), p.l, p.m, p.g) for t in np.linspace(0.0, T, 21)]
         gained = np.ptp(energies) / (p.m * p.g * p.l * p.links**2)
-        claims.append((f"{name}: energy gained over the weight times the length", gained, 0.0, 1e-9))
+        claims.append(states(f"{name}: energy gained over the weight times the length", gained, 0.0, 1e-9))
     p = CASES["10 links"]
     angles = [rope_motion(p.links, p.l, p.m, p.g, T, inertia).y[:p.links, -1] for inertia in (0.0, 1e-9 * p.m * p.l**2)]
     apart = np.abs(angles[0] - angles[1]).max()
-    claims.append(("10 links: from tensions and from Lagrange's equations [rad]", apart, 0.0, 1e-6))
+    claims.append(states("10 links: from tensions and from Lagrange's equations [rad]", apart, 0.0, 1e-6))
     return tuple(claims)
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import states
 from validate.methods import (
     AXIS_ANGLE,
     COMPOSED_SPLITTING,
@@ -85,10 +86,10 @@ def sanity_checks():
     flip = top.flips()[0]
     R, L = freely(np.eye(3), p.omega(), p.moments(), T)
     return (
-        ("the flip [s]", flip, 6.06, 5e-3),
-        ("ω₂ at the flip [rad/s]", top.omega(flip)[1], 0.0, 1e-10),
-        ("R at T, by DOP853", truth(p, T), R.ravel(), 1e-10),
-        ("ω in body coordinates at T, by DOP853", top.omega(T), R.T @ L / p.moments(), 1e-10),
+        states("the flip [s]", flip, 6.06, 5e-3),
+        states("ω₂ at the flip [rad/s]", top.omega(flip)[1], 0.0, 1e-10),
+        states("R at T, by DOP853", truth(p, T), R.ravel(), 1e-10),
+        states("ω in body coordinates at T, by DOP853", top.omega(T), R.T @ L / p.moments(), 1e-10),
     )
 
 

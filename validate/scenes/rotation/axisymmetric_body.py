@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
+from validate.check import states
 from validate.engines.bullet import Rigid
 from validate.methods import COMPOSED_SPLITTING, MATRIX, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
 from validate.reference.orientation import quaternion_matrix
@@ -80,10 +81,10 @@ def sanity_checks():
     by_dop853 = freely(np.eye(3), p.omega(), p.moments(), T)[0]
     known = quaternion_matrix(-0.185871917, 0.195938190, -0.785967065, -0.556161513)
     return (
-        ("precession [rad/s]", np.linalg.norm(L) / p.I1, np.sqrt(29.0), 1e-14),
-        ("spin [rad/s]", (1.0 - p.I3 / p.I1) * p.w3, 3.0, 1e-15),
-        ("R at T, its quaternion known to nine digits", truth(p, T), known.ravel(), 4e-9),
-        ("R at T, by DOP853", truth(p, T), by_dop853.ravel(), 1e-10),
+        states("precession [rad/s]", np.linalg.norm(L) / p.I1, np.sqrt(29.0), 1e-14),
+        states("spin [rad/s]", (1.0 - p.I3 / p.I1) * p.w3, 3.0, 1e-15),
+        states("R at T, its quaternion known to nine digits", truth(p, T), known.ravel(), 4e-9),
+        states("R at T, by DOP853", truth(p, T), by_dop853.ravel(), 1e-10),
         *engines_energy(p),
     )
 
@@ -106,8 +107,8 @@ def engines_energy(p, dt=1e-3, steps=10000):
         grown = (1.0 + ((p.I3 / p.I1 - 1.0) * p.w3 * dt) ** 2) ** (sign * steps)
         law = (p.I1 * (p.w1**2 + p.w2**2) * grown + p.I3 * p.w3**2) / (I @ w**2)
         # a step rounds the energy by a few 1e-16
-        yield (f"energy of pybullet, {kind} coordinates, after 10 s at 1 ms, over the initial one",
-               I @ after**2 / (I @ w**2), law, steps * 2e-15)
+        yield states(f"energy of pybullet, {kind} coordinates, after 10 s at 1 ms, over the initial one [-]",
+                     I @ after**2 / (I @ w**2), law, steps * 2e-15)
 
 
 SCENE = Scene(

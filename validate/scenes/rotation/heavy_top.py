@@ -8,6 +8,7 @@ import numpy as np
 from solutions.checks import BadInput, check_positive
 from solutions.given.rotation import check_moments
 from solutions.rotation import Top, exponential
+from validate.check import states
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import top as mujoco_top
 from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
@@ -174,9 +175,11 @@ def sanity_checks():
     top, R = HeavyTop(*p), about(np.array([1.0, 0.0, 0.0]), p.tilt)
     torque = lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl])
     tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, torque)[0][:2, 2]
-    return (("energy [J]", 0.5 * p.I3 * p.spin**2 + p.mgl * np.cos(p.tilt), 1269.975, 5e-4),
-            ("smallest and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582), 5e-7),
-            ("nutation [s]", top.nutation(), 0.685458497, 5e-10), ("the tip at T, by DOP853", truth(p, T), tip, 1e-12))
+    return (states("energy [J]", 0.5 * p.I3 * p.spin**2 + p.mgl * np.cos(p.tilt), 1269.975, 5e-4),
+            states("smallest and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582),
+                   5e-7),
+            states("nutation [s]", top.nutation(), 0.685458497, 5e-10),
+            states("the tip at T, by DOP853", truth(p, T), tip, 1e-12))
 
 
 SCENE = Scene(

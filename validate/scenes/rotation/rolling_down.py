@@ -7,6 +7,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.rotation import RollingBall
+from validate.check import states
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
@@ -145,7 +146,7 @@ def arrows(observed, p):
 
 def sanity_checks():
     s, v, _ = truth(Params(), T)
-    return (("speed after 1 s [m/s]", v, 1.813582, 5e-7), ("distance after 1 s [m]", s, 0.906791, 5e-7))
+    return (states("speed after 1 s [m/s]", v, 1.813582, 5e-7), states("distance after 1 s [m]", s, 0.906791, 5e-7))
 
 
 SCENE = Scene(

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import states
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
@@ -158,10 +159,10 @@ def arrows(observed, p):
 def sanity_checks():
     sphere, disc = CASES["sphere"], CASES["disc"]
     return (
-        ("a sphere rolls from [s]", balls.rolls_from(sphere), 0.728120, 5e-7),
-        ("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
-        ("a disc rolls from [s]", balls.rolls_from(disc), 0.849473, 5e-7),
-        ("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14),
+        states("a sphere rolls from [s]", balls.rolls_from(sphere), 0.728120, 5e-7),
+        states("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
+        states("a disc rolls from [s]", balls.rolls_from(disc), 0.849473, 5e-7),
+        states("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14),
     )
 
 

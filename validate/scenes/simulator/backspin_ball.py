@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
+from validate.check import states
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.rotation import rolling_ball
 from validate.engines.simulator import OVERLAP, pymunk_body, pymunk_floor_space
@@ -183,14 +184,14 @@ def arrows(observed, p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): where it goes, and its momentum about the floor."""
+    """Return Findings: where it goes, and its momentum about the floor."""
     ends = [truth(p, T) for p in CASES.values()]
     kept = [p.v0 + p.shape * p.rim0 - end[1] - p.shape * end[2] for p, end in zip(CASES.values(), ends)]
-    return (("speeds in the end of the three spheres [m/s]", [end[1] for end in ends[:3]], (-2.0 / 7.0, 0.0, 4.0 / 7.0),
-             1e-14),
-            ("speed in the end over that of the rim [m/s]", [end[1] - end[2] for end in ends], 0.0, 1e-14),
-            ("change of the angular momentum about the floor over m R [m/s]", kept, 0.0, 1e-14),
-            ("it rolls from [s]", balls.rolls_from(Params(), Params().rim0), 1.164992, 5e-7))
+    return (states("speeds in the end of the three spheres [m/s]", [end[1] for end in ends[:3]],
+                   (-2.0 / 7.0, 0.0, 4.0 / 7.0), 1e-14),
+            states("speed in the end over that of the rim [m/s]", [end[1] - end[2] for end in ends], 0.0, 1e-14),
+            states("change of the angular momentum about the floor over m R [m/s]", kept, 0.0, 1e-14),
+            states("it rolls from [s]", balls.rolls_from(Params(), Params().rim0), 1.164992, 5e-7))
 
 
 SCENE = Scene(

@@ -11,6 +11,7 @@ import numpy as np
 
 from solutions.checks import BadInput, check_friction
 from solutions.simulator import make_bodies_2d
+from validate.check import states
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
@@ -173,17 +174,17 @@ def at_rest(p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the least friction by a linear program, and pymunk's house."""
+    """Return Findings: the least friction by a linear program, and pymunk's house."""
     claims = []
     for degrees in (10.0, 20.0, 30.0):
         p = Params(degrees=degrees)
         found = least_friction(*at_rest(p), house(p)[0], masses() * p.g)
-        claims.append((f"least friction by a linear program, {degrees:g}° [-]", found, least(p), 1e-6))
+        claims.append(states(f"least friction by a linear program, {degrees:g}° [-]", found, least(p), 1e-6))
     for rough, moves in ((0.98, 1.0), (1.02, 0.0)):
         p = Params(rough=rough)
         end = PymunkBoxes(parts(p), T / 1000, 100, 1e-5).film(1000, 1000, corners)[-1]
-        claims.append((f"whether a corner moves by a millimetre in pymunk, with {rough:g} of that [-]",
-                       float(np.max(np.abs(end - corners(*house(p)))) > 1e-3), moves, 0.0))
+        claims.append(states(f"whether a corner moves by a millimetre in pymunk, with {rough:g} of that [-]",
+                             float(np.max(np.abs(end - corners(*house(p)))) > 1e-3), moves, 0.0))
     return tuple(claims)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from solutions.checks import BadInput, check_friction, check_positive
 from solutions.contact import make_pile_2d
 from solutions.given.bodies import Bodies
+from validate.check import states
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import PILE, SETTLED_LOOP
@@ -234,20 +235,20 @@ def energies(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): what must hold whatever the motion is."""
+    """Return Findings: what must hold whatever the motion is."""
     p = CASES["six"]
     first, found = 0.5 * p.omega**2 * (inertia(p) + 0.25 * MASS * (p.width**2 + p.height**2)), energies(p)
     begins, film = MASS * p.g * p.n * 0.5 * p.height + first, reference(p).reshape(-1, p.n, 4, 2)
     order, (x, angle, _, _) = np.diff(film.mean(axis=2)[:, :, 0], axis=1), begin(p, WINDOW)
-    return (("corners of the reference when the last row begins [m]", film[round(KEPT * WINDOW)].ravel(),
-             corners(x, angle, p), 2e-5),
-            ("energy of the reference when it has just begun [J]", found[0], begins, 1e-3 * begins),
-            ("its largest rise from one kept state to the next, over the first [-]",
-             max(0.0, np.max(np.diff(found))) / begins, 0.0, 1e-3),
-            ("lowest corner, below the floor by one step at 5 m/s [m]", min(0.0, film[..., 1].min()), 0.0, 1e-4),
-            ("dominoes that overtake their neighbours [-]", np.sum(order <= 0.0), 0, 0),
-            ("angle of the first at 1 s, which leans on the second [rad]",
-             np.arctan2(*(film[KEPT, 0, 1] - film[KEPT, 0, 0])[::-1]), -1.12, 0.05))
+    return (states("corners of the reference when the last row begins [m]", film[round(KEPT * WINDOW)].ravel(),
+                   corners(x, angle, p), 2e-5),
+            states("energy of the reference when it has just begun [J]", found[0], begins, 1e-3 * begins),
+            states("its largest rise from one kept state to the next, over the first [-]",
+                   max(0.0, np.max(np.diff(found))) / begins, 0.0, 1e-3),
+            states("lowest corner, below the floor by one step at 5 m/s [m]", min(0.0, film[..., 1].min()), 0.0, 1e-4),
+            states("dominoes that overtake their neighbours [-]", np.sum(order <= 0.0), 0, 0),
+            states("angle of the first at 1 s, which leans on the second [rad]",
+                   np.arctan2(*(film[KEPT, 0, 1] - film[KEPT, 0, 0])[::-1]), -1.12, 0.05))
 
 
 # ---------------------------------------------------------------------------------------------- picture

@@ -14,6 +14,7 @@ from solutions.simulator import (
     make_bodies_2d,
     mechanical_energy_2d,
 )
+from validate.check import states
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
@@ -214,13 +215,13 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …) about the reference."""
+    """Return Findings about the reference."""
     film = reference(Params()).reshape(-1, len(HALF), 4, 2)
     fallen = np.abs(film[-1, FIRST:FIRST + DOMINOES, 1, 1] - film[-1, FIRST:FIRST + DOMINOES, 0, 1]) > 0.02
     turned = film[-1, CRANK, 1] - film[-1, CRANK, 0]
-    return (("lowest corner [m]", film[:, FIRST:, :, 1].min(), 0.0, 0.01),
-            ("angle of the crank after 10 s [rad]", np.arctan2(turned[1], turned[0]), 10.0 - 4.0 * np.pi, 1e-6),
-            ("dominoes that do not lie [-]", DOMINOES - np.sum(fallen), 0, 2))
+    return (states("lowest corner [m]", film[:, FIRST:, :, 1].min(), 0.0, 0.01),
+            states("angle of the crank after 10 s [rad]", np.arctan2(turned[1], turned[0]), 10.0 - 4.0 * np.pi, 1e-6),
+            states("dominoes that do not lie [-]", DOMINOES - np.sum(fallen), 0, 2))
 
 
 def points(observed, p):

@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.simulator import make_bodies_2d
+from validate.check import states
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
@@ -239,16 +240,16 @@ def links(p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the published number, momentum, energy, and the slope."""
+    """Return Findings: the published number, momentum, energy, and the slope."""
     p = Params()
     end, begin = truth(p, T), truth(p, 0.0)
     fall = p.m * p.g * (begin[2] - end[2])
     motion = 0.5 * p.M * end[3] ** 2 + 0.5 * p.m * (end[4] ** 2 + end[5] ** 2)
     way = end[1] - begin[1] - (end[0] - begin[0])
-    return (("acceleration of the wedge [m/s²]", -accelerations(p)[0], 1.8879353802500762, 1e-14),
-            ("momentum along the floor [kg m/s]", p.M * end[3] + p.m * end[4], 0.0, 1e-14),
-            ("energy of motion over that of the fall [-]", motion / fall, 1.0, 1e-14),
-            ("fall over the way along the slope [-]", (begin[2] - end[2]) / way, np.tan(slope(p)), 1e-14))
+    return (states("acceleration of the wedge [m/s²]", -accelerations(p)[0], 1.8879353802500762, 1e-14),
+            states("momentum along the floor [kg m/s]", p.M * end[3] + p.m * end[4], 0.0, 1e-14),
+            states("energy of motion over that of the fall [-]", motion / fall, 1.0, 1e-14),
+            states("fall over the way along the slope [-]", (begin[2] - end[2]) / way, np.tan(slope(p)), 1e-14))
 
 
 SCENE = Scene(

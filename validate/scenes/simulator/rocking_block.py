@@ -15,6 +15,7 @@ from solutions.simulator import (
     RockingBlock,
     make_bodies_2d,
 )
+from validate.check import states
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import ITERATIONS, OVERLAP, pybullet_box, pybullet_slab, pymunk_body, pymunk_floor_space
@@ -172,16 +173,16 @@ def links(p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the first impact, Housner's ratio and the energy it leaves."""
+    """Return Findings: the first impact, Housner's ratio and the energy it leaves."""
     p = Params()
     (first, before, after), *_ = rocking(p.b, p.h, p.g, 0.5 * alpha(p), T)[2]
     R = np.hypot(p.b, p.h)
     fall = p.g * R * (np.cos(0.5 * alpha(p)) - np.cos(alpha(p)))
-    return (("time of the first impact [s]", first, 0.347093587, 5e-10),
-            ("size of the rate before it [rad/s]", abs(before), 0.648049012, 5e-10),
-            ("rate after over before [-]", after / before, 1.0 - 1.5 * np.sin(alpha(p)) ** 2, 1e-12),
-            ("energy of the rotation about the corner over that of the fall [-]", 2.0 / 3.0 * R * R * before**2 / fall,
-             1.0, 1e-9))
+    return (states("time of the first impact [s]", first, 0.347093587, 5e-10),
+            states("size of the rate before it [rad/s]", abs(before), 0.648049012, 5e-10),
+            states("rate after over before [-]", after / before, 1.0 - 1.5 * np.sin(alpha(p)) ** 2, 1e-12),
+            states("energy of the rotation about the corner over that of the fall [-]",
+                   2.0 / 3.0 * R * R * before**2 / fall, 1.0, 1e-9))
 
 
 SCENE = Scene(

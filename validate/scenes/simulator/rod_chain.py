@@ -12,6 +12,7 @@ from solutions.checks import BadInput
 from solutions.given.simulator import RodsInAngles
 from solutions.rotation import SUZUKI
 from solutions.simulator import make_bodies, make_bodies_2d, make_joints
+from validate.check import states
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.simulator import pybullet_chain, pymunk_chain
 from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
@@ -217,20 +218,20 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): conditions that the reference solution must meet."""
+    """Return Findings: conditions that the reference solution must meet."""
     claims = []
     for name, p in CASES.items():
         motion = rods_motion(*of(p))
         energies = [rods_energy(motion.sol(t), *of(p)[1:5]) for t in np.linspace(0.0, T, 21)]
         gained = np.ptp(energies) / (p.m * p.g * p.l * p.rods**2)
-        claims.append((f"{name}: energy gained over the weight times the length", gained, 0.0, 1e-9))
+        claims.append(states(f"{name}: energy gained over the weight times the length", gained, 0.0, 1e-9))
     alone = Params(rods=1, l=0.8)
     swings = rods_motion(*of(alone)).sol(T)[0]
     from scipy.special import ellipj
     w, k = np.sqrt(1.5 * alone.g / alone.l), np.sqrt(0.5)
     _, cn, dn, _ = ellipj(w * T, k * k)
-    claims.append(("one rod: angle of a pendulum from horizontal, by an elliptic function [rad]", swings,
-                   2.0 * np.arcsin(k * cn / dn), 1e-9))
+    claims.append(states("one rod: angle of a pendulum from horizontal, by an elliptic function [rad]", swings,
+                         2.0 * np.arcsin(k * cn / dn), 1e-9))
     return tuple(claims)
 
 

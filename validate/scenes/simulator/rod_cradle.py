@@ -9,6 +9,7 @@ import numpy as np
 
 from solutions.checks import BadInput, check_not_negative
 from solutions.simulator import make_bodies_2d, make_joints
+from validate.check import states
 from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
 from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
@@ -163,22 +164,23 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): who leaves, and what each impact keeps."""
+    """Return Findings: who leaves, and what each impact keeps."""
     claims = []
     for lifted, leave in ((1, (0.0, 0.0, 0.0, 0.0, 1.0)), (2, (0.0, 0.0, 0.0, 1.0, 1.0))):
         p = Params(lifted=lifted)
         theta, omega, impacts = cradle_motion(*of(p), T)
         least = 2.0 * p.gap**2 / p.L**2
-        claims.append((f"{lifted} lifted: momentum kept by each impact, over that of the first [-]",
-                       max(abs(after.sum() / before.sum() - 1.0) for _, _, before, after in impacts), 0.0, 2.0 * least))
+        lost = max(abs(after.sum() / before.sum() - 1.0) for _, _, before, after in impacts)
+        claims.append(states(f"{lifted} lifted: momentum kept by each impact, over that of the first [-]",
+                             lost, 0.0, 2.0 * least))
         fastest = 2.0 * np.sqrt(p.g / of(p)[-1] * p.L) * np.sin(0.5 * p.angle)
         # the others have been struck and swing back by g/L · gap/L per second since
         back = p.g / p.L * lifted * p.gap / p.L * 4.0 * p.gap / p.L / fastest
-        claims.append((f"{lifted} lifted: rates after the last impact over that of the first ball [-]",
-                       impacts[-1][3] / fastest, leave, 2.0 * back / fastest + 4.0 * least))
+        claims.append(states(f"{lifted} lifted: rates after the last impact over that of the first ball [-]",
+                             impacts[-1][3] / fastest, leave, 2.0 * back / fastest + 4.0 * least))
         energy = np.sum(omega**2) * of(p)[-1] + 2.0 * p.g * p.L * np.sum(np.cos(angles(p)) - np.cos(theta))
-        claims.append((f"{lifted} lifted: energy that was gained, over the first [-]",
-                       energy / (2.0 * p.g * p.L * lifted * (1.0 - np.cos(p.angle))), 0.0, 1e-10))
+        claims.append(states(f"{lifted} lifted: energy that was gained, over the first [-]",
+                             energy / (2.0 * p.g * p.L * lifted * (1.0 - np.cos(p.angle))), 0.0, 1e-10))
     return tuple(claims)
 
 

@@ -8,6 +8,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.simulator import CarriedBall, make_bodies
+from validate.check import states
 from validate.engines.simulator import pybullet_turntable
 from validate.methods import CARRIED, LOOP
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
@@ -185,7 +186,7 @@ def poses(observed, p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the circle by an independent integrator, and 2/7."""
+    """Return Findings: the circle by an independent integrator, and 2/7."""
     from scipy.integrate import solve_ivp
     p, r = Params(), np.array([0.0, 0.0, -Params().R])
     x, _, v, omega, *_ = start(p)
@@ -198,9 +199,9 @@ def sanity_checks():
     begin = np.concatenate((x[:2], v, omega))
     end = solve_ivp(slope, (0.0, T), begin, rtol=1e-12, atol=1e-13, method="DOP853").y[:, -1]
     slip = end[2:5] + np.cross(end[5:], r) - np.cross(table(p), np.append(end[:2], p.R))
-    return (("place and velocity by DOP853 [m, m/s]", end[:4], truth(p, T), 1e-10),
-            ("slip of the lowest point then [m/s]", slip, 0.0, 1e-10),
-            ("angular velocity on the circle over that of the table [-]", rate(p) / p.spin, 2.0 / 7.0, 1e-15))
+    return (states("place and velocity by DOP853 [m, m/s]", end[:4], truth(p, T), 1e-10),
+            states("slip of the lowest point then [m/s]", slip, 0.0, 1e-10),
+            states("angular velocity on the circle over that of the table [-]", rate(p) / p.spin, 2.0 / 7.0, 1e-15))
 
 
 SCENE = Scene(

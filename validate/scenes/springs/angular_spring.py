@@ -7,6 +7,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
+from validate.check import states
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.reference.schemes import Model, Motion
 from validate.scene import PYMUNK, Scene, by_order, engine
@@ -163,16 +164,16 @@ def points(observed, p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): special values for a test to assert.
+    """Return Findings: special values for a test to assert.
 
     The period of a pendulum released at one radian is 1.0663 times that of small oscillations: 2K(sin ½)/π.
     """
     p = CASES["gravity"]
     small = 2.0 * np.pi * np.sqrt(2.0 * inertia(p) / (p.m * p.g * p.length))
     period = small * 2.0 / np.pi * ellipk(np.sin(0.5 * p.theta0) ** 2)
-    return (("period over that of small oscillations [-]", period / small, 1.0663, 5e-5),
-            ("angle after a period [rad]", truth(p, period)[0], p.theta0, 1e-12),
-            ("angle after a quarter [rad]", truth(p, 0.25 * period)[0], 0.0, 1e-12))
+    return (states("period over that of small oscillations [-]", period / small, 1.0663, 5e-5),
+            states("angle after a period [rad]", truth(p, period)[0], p.theta0, 1e-12),
+            states("angle after a quarter [rad]", truth(p, 0.25 * period)[0], 0.0, 1e-12))
 
 
 SCENE = Scene(

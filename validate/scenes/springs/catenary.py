@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from validate.check import states
 from validate.engines.bullet import Bullet
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
 from validate.reference.springs import ReferenceNetwork, forces, motion, net_limits, net_steps, rest_positions
@@ -116,7 +117,7 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
+    """Return Findings: the numbers of the lecture, for a test to assert."""
     p = CASES["at rest"]
     x, H = hung(p, 0.0)
     middle, weight = p.links // 2, p.m * p.g
@@ -126,11 +127,11 @@ def sanity_checks():
     settled = motion(net(p), later)(later)
     by_newton = np.abs(rest_positions(net(p)) - elastic).max()
     return (
-        ("sag of rigid links [m]", -x[middle, 1], 0.5895021, 5e-8),
-        ("horizontal pull of rigid links [weights]", H / weight, 5.54718, 5e-6),
-        ("sag as k → ∞, extrapolated from two stiffnesses [m]", 2.0 * stiff[1] - stiff[0], 0.5895021, 1e-7),
-        ("elastic rest by Newton's method, from that by H [m]", by_newton, 0.0, 1e-12),
-        ("rest position of the damped chain, from the same [m]", np.abs(settled - elastic).max(), 0.0, 1e-11),
+        states("sag of rigid links [m]", -x[middle, 1], 0.5895021, 5e-8),
+        states("horizontal pull of rigid links [weights]", H / weight, 5.54718, 5e-6),
+        states("sag as k → ∞, extrapolated from two stiffnesses [m]", 2.0 * stiff[1] - stiff[0], 0.5895021, 1e-7),
+        states("elastic rest by Newton's method, from that by H [m]", by_newton, 0.0, 1e-12),
+        states("rest position of the damped chain, from the same [m]", np.abs(settled - elastic).max(), 0.0, 1e-11),
     )
 
 

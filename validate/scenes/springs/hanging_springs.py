@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import states
 from validate.engines.springs import pymunk_net
 from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
@@ -132,13 +133,13 @@ def points(observed, p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
+    """Return Findings: the numbers of the lecture, for a test to assert."""
     p = CASES["at rest"]
     slowest = modes(p)[0][0]
     left = (1.0 + slowest * T) * np.exp(-slowest * T)            # share of the motion left after T, critically damped
     tip = 0.10791                                                # m g N(N+1)/2k [m]
-    return (("the tip's static extension [m]", static_extension(p)[-1], tip, 1e-15),
-            ("the tip at T, nearly at rest [m]", truth(p, T)[-1], tip, 2.0 * left * tip))
+    return (states("the tip's static extension [m]", static_extension(p)[-1], tip, 1e-15),
+            states("the tip at T, nearly at rest [m]", truth(p, T)[-1], tip, 2.0 * left * tip))
 
 
 SCENE = Scene(

@@ -5,6 +5,7 @@ The second case adds springs along the diagonals, the third also springs over ev
 
 import numpy as np
 
+from validate.check import states
 from validate.reference.springs import (
     SquareNet,
     modes,
@@ -36,7 +37,7 @@ RUNNERS = net_runners(
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): a condition on the rest state.
+    """Return Findings: a condition on the rest state.
 
     With viscosity 2 m ω, critical for the slowest mode, every mode decays like (1 + ωt) e^(−ωt): at ωt = 35 that is
     2e-14.
@@ -48,7 +49,7 @@ def sanity_checks():
         later = 35.0 / slowest
         settled = motion(square_net(p._replace(k_v=2.0 * p.m * slowest)), later)(later)
         apart = np.abs(settled - rest).max()
-        claims.append((f"{name}: distance from there to the rest state of the damped net [m]", apart, 0.0, 1e-11))
+        claims.append(states(f"{name}: distance from there to the rest state of the damped net [m]", apart, 0.0, 1e-11))
     return tuple(claims)
 
 

@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import states
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS
@@ -138,14 +139,14 @@ def in_space(p):
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): the centre of mass, and Kepler's third law for two bodies."""
+    """Return Findings: the centre of mass, and Kepler's third law for two bodies."""
     p = CASES["3 : 1"]
     period = 2.0 * np.pi * np.sqrt(p.a**3 / (p.G * (p.m_a + p.m_b)))
     x_a, x_b = truth(p, 0.3).reshape(2, 2)
     moved = np.linalg.norm(p.m_a * x_a + p.m_b * x_b) / (p.m_a + p.m_b)
-    return (("distance of the centre of mass from the origin [m]", moved, 0.0, 1e-15),
-            ("place of both after a revolution: largest difference [m]",
-             np.max(np.abs(truth(p, period) - truth(p, 0.0))), 0.0, 1e-14))
+    return (states("distance of the centre of mass from the origin [m]", moved, 0.0, 1e-15),
+            states("place of both after a revolution: largest difference [m]",
+                   np.max(np.abs(truth(p, period) - truth(p, 0.0))), 0.0, 1e-14))
 
 
 SCENE = Scene(

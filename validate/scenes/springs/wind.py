@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import states
 from validate.reference.schemes import Motion
 from validate.scene import Scene, by_order
 from validate.scenes._common import coordinates, floor_of
@@ -89,12 +90,12 @@ RUNNERS = (*integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits),
 
 
 def sanity_checks():
-    """Return ((claim, found, expected, tolerance), …): where the truth begins, and how it ends."""
+    """Return Findings: where the truth begins, and how it ends."""
     p, h = CASES["thrown"], 1e-3
     early, late = (truth(p, h) - truth(p, -h)) / (2.0 * h), truth(p, 30.0) - truth(p, 29.0)
-    return (("initial velocity of the truth: error [m/s]", np.linalg.norm(early - (p.vx, p.vy)), 0.0, 1e-5),
-            ("velocity after half a minute less that of the balance [m/s]", np.linalg.norm(late - drift(p)), 0.0,
-             1e-12))
+    return (states("initial velocity of the truth: error [m/s]", np.linalg.norm(early - (p.vx, p.vy)), 0.0, 1e-5),
+            states("velocity after half a minute less that of the balance [m/s]", np.linalg.norm(late - drift(p)), 0.0,
+                   1e-12))
 
 
 SCENE = Scene(
