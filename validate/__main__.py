@@ -31,7 +31,7 @@ app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup
 console = Console()
 
 
-EngineName = StrEnum("EngineName", [(product.name, product.name) for product in PRODUCTS])
+EngineName = StrEnum("EngineName", {product.name: product.name for product in PRODUCTS})  # type: ignore[misc]
 
 
 RESULTS = "<!-- results -->"    # begins and ends the table of results in the README

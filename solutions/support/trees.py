@@ -15,7 +15,7 @@ class Tree(NamedTuple):
     high: np.ndarray         # (m, d) [m]
     child: np.ndarray        # (m,) number of the first child, the second follows it; 0 marks a leaf
     first: np.ndarray        # (m,) the items of a node are order[first], …
-    count: np.ndarray        # (m,) … this many
+    held: np.ndarray         # (m,) … this many
     order: np.ndarray        # (n,) numbers of the items
     item_low: np.ndarray     # (n, d) boxes of the items [m], sorted like `order`: those of one leaf are adjacent
     item_high: np.ndarray    # (n, d) [m]
@@ -56,7 +56,7 @@ def fit_node_box(tree, node):
     widest, axis = -1.0, 0
     for c in range(tree.item_low.shape[1]):
         low, high, first, last = np.inf, -np.inf, np.inf, -np.inf
-        for k in range(tree.first[node], tree.first[node] + tree.count[node]):
+        for k in range(tree.first[node], tree.first[node] + tree.held[node]):
             a, b = tree.item_low[tree.order[k], c], tree.item_high[tree.order[k], c]
             low, high = min(low, a), max(high, b)
             first, last = min(first, a + b), max(last, a + b)
@@ -104,19 +104,19 @@ def build_tree(low, high):
     numbers = np.zeros((3, 2 * n), np.int64)
     corners = np.zeros((2, 2 * n, d))
     tree = Tree(corners[0], corners[1], numbers[0], numbers[1], numbers[2], np.arange(n), low, high)
-    tree.count[0] = n
+    tree.held[0] = n
     node, nodes = 0, 1
     while node < nodes:
-        axis, first, count = fit_node_box(tree, node), tree.first[node], tree.count[node]
+        axis, first, count = fit_node_box(tree, node), tree.first[node], tree.held[node]
         if count > LEAF_SIZE:
             half = count // 2
             partition_at_median(tree, first, count, axis)
             tree.child[node] = nodes
-            tree.first[nodes], tree.count[nodes] = first, half
-            tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half
+            tree.first[nodes], tree.held[nodes] = first, half
+            tree.first[nodes + 1], tree.held[nodes + 1] = first + half, count - half
             nodes += 2
         node += 1
-    return Tree(tree.low, tree.high, tree.child, tree.first, tree.count, tree.order, low[tree.order], high[tree.order])
+    return Tree(tree.low, tree.high, tree.child, tree.first, tree.held, tree.order, low[tree.order], high[tree.order])
 
 
 def half_perimeter(tree, node):
@@ -129,7 +129,7 @@ def half_perimeter(tree, node):
 
 def touching_items(a, i, b, j, found):
     """Given.  Append to `found` all pairs of an item of leaf i of a and one of leaf j of b whose boxes touch."""
-    for k in range(a.first[i], a.first[i] + a.count[i]):
-        for m in range(b.first[j], b.first[j] + b.count[j]):
+    for k in range(a.first[i], a.first[i] + a.held[i]):
+        for m in range(b.first[j], b.first[j] + b.held[j]):
             if boxes_touch(a.item_low, a.item_high, k, b.item_low, b.item_high, m):
                 found.append((a.order[k], b.order[m]))

@@ -731,8 +731,8 @@ def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
         low, high = true.low.copy(), true.high.copy()
         low[half] += 1e3
         high[half] += 1e3
-        lying = lesson.Tree(low, high, true.child, true.first, true.count, true.order, true.item_low, true.item_high)
-        hidden = true.order[true.first[half]:true.first[half] + true.count[half]]
+        lying = lesson.Tree(low, high, true.child, true.first, true.held, true.order, true.item_low, true.item_high)
+        hidden = true.order[true.first[half]:true.first[half] + true.held[half]]
         expected = touching(*a, *b)
         seen = expected[~np.isin(expected[:, 0], hidden)]
         same_pairs("pairs, where the box of one half of tree a is far away", lesson.find_intersections(lying, other),

@@ -474,8 +474,8 @@ def traversal(prune=True, second=True, turned=False, both=True,
 
 
 def every_item(a, i, b, j, found):
-    for k in range(a.first[i], a.first[i] + a.count[i]):
-        for m in range(b.first[j], b.first[j] + b.count[j]):
+    for k in range(a.first[i], a.first[i] + a.held[i]):
+        for m in range(b.first[j], b.first[j] + b.held[j]):
             found.append((a.order[k], b.order[m]))
 
 

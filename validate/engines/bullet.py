@@ -9,7 +9,7 @@ from ..scene import Departure, EngineRun
 from . import quiet_import
 from .switches import Switch, made
 
-_idle = []                   # connected clients that are free for another run
+_idle: list = []             # connected clients that are free for another run
 ITERATIONS = 50              # of the contact solver, by default
 IMPACT_ITERATIONS = 50
 CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from typing import NamedTuple
 
-_listening = []              # a list for each block of `worlds_made`, innermost last
+_listening: list[list] = []  # a list for each block of `worlds_made`, innermost last
 
 
 class Switch(NamedTuple):

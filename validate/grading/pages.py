@@ -9,6 +9,7 @@ import hashlib
 import io
 import json
 import re
+from collections.abc import Mapping
 from datetime import datetime, timedelta
 from functools import lru_cache, partial
 from pathlib import Path
@@ -41,13 +42,13 @@ CALL = "the call itself"     # the quantity where a call of the student's functi
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
 
 
-NOTHING = MappingProxyType({})
+NOTHING: Mapping = MappingProxyType({})
 
 
 class Run(NamedTuple):
     """Facts about one run; only the class page has them, so that grading again changes no other file."""
     overlooked: tuple = ()   # sentences about files that belong to no student
-    alike: dict = NOTHING    # {student: [(lesson, another student, share of lines in common), …]}
+    alike: Mapping = NOTHING    # {student: [(lesson, another student, share of lines in common), …]}
     when: str = ""           # ISO 8601
     versions: str = ""       # of workbook, Python and NumPy
     seed: str = ""           # its fingerprint

@@ -129,7 +129,7 @@ def box_of(subject):
     return None if isinstance(subject, types.ModuleType) else getattr(subject, "box", None)
 
 
-TOO_LONG = pytest.StashKey()                                         # {(subject, exercise)} of tests that were stopped
+TOO_LONG = pytest.StashKey[set]()                                    # {(subject, exercise)} of tests that were stopped
 
 
 def note_too_long(item):
@@ -312,7 +312,7 @@ def compiled_callback(argument):
     return _jitted(argument) if isinstance(argument, types.FunctionType) else argument
 
 
-_callbacks = {}
+_callbacks: dict = {}
 
 
 def _jitted(function):

@@ -30,7 +30,7 @@ SHAPES = (AttributeError, TypeError, ValueError, IndexError, KeyError)   # what 
 LINES, PRINTED = 20, 2000    # of what a subject prints, so much is shown [lines, characters]
 
 
-TRACE = pytest.StashKey()    # of a test: what the exercise's function returned in it
+TRACE = pytest.StashKey[dict]()    # of a test: what the exercise's function returned in it
 
 
 class Outcome(NamedTuple):

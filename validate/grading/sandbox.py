@@ -65,7 +65,7 @@ ISOLATED = (
     "--new-session",
     "--clearenv",
 )
-private = {}                 # {folder or file of grading: description}
+private: dict = {}           # {folder or file of grading: description}
 
 
 def keep_out(paths):

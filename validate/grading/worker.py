@@ -74,7 +74,8 @@ sys.meta_path.insert(0, Finder)
 
 # ---------------------------------------------------------------------------------------------- functions and records
 
-own, names = {}, {}  # functions of ours that the parent knows by name, and back
+own: dict = {}       # functions of ours that the parent knows by name
+names: dict = {}     # and back
 
 
 def remote(name):
@@ -117,7 +118,7 @@ def name_of(function):
     return names[function]
 
 
-records = {}
+records: dict = {}
 
 
 def record(name, fields, values):

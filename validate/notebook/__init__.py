@@ -67,7 +67,7 @@ class Unreadable:
         return waiting(self.why)
 
 
-latest = {}                  # {lesson: what `mine` gave last}
+latest: dict = {}                  # {lesson: what `mine` gave last}
 
 
 def mine(lesson):
@@ -136,7 +136,9 @@ def answers(lesson):
     return StandIn(lesson, withheld)
 
 
-waiting_for, drawn = {}, []  # in one cell: {what is not attempted yet: None}, and whether each attempt gave something
+# in one cell: {what is not attempted yet: None}, and whether each attempt gave something
+waiting_for: dict = {}
+drawn: list[bool] = []
 
 
 def attempt(function, *arguments):

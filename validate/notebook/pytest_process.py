@@ -18,7 +18,9 @@ try:
     import multiprocessing
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
 except ImportError:                                                  # WebAssembly has no _multiprocessing
-    ProcessPoolExecutor = None
+    BROWSER = True
+else:
+    BROWSER = False
 
 
 class Ended(Exception):
@@ -27,7 +29,7 @@ class Ended(Exception):
 
 def run(*arguments):
     """What pytest prints.  Raises Ended when the code under test ends its process; this one survives."""
-    return (in_a_process if ProcessPoolExecutor else in_this_one)(*arguments)
+    return (in_this_one if BROWSER else in_a_process)(*arguments)
 
 
 def in_a_process(*arguments):

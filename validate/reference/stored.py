@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 RECORDED = Path(__file__).resolve().parent.parent / "recorded"
-_computing = []              # [{key: number}] of the block `computed_anew`
+_computing: list[dict] = []  # [{key: number}] of the block `computed_anew`
 
 
 @cache

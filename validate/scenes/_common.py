@@ -1,10 +1,12 @@
 """What scenes of all lessons share: fields, checks of parameters, and what is observed and drawn most often."""
 
+from typing import Any
+
 from solutions.checks import check_positive
 from validate.scene import EXACT, EngineRun, by_order
 
 # fields of a scene in which nothing moves and nothing can be refined
-ANSWER = {"moves": False, "duration": 1.0, "steps": (1,), "refinement": ""}
+ANSWER: dict[str, Any] = {"moves": False, "duration": 1.0, "steps": (1,), "refinement": ""}
 
 
 def check_positives(p, *names):

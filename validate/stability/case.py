@@ -86,7 +86,7 @@ class Examined(NamedTuple):
     picture: Picture | None
 
 
-CASES = {}                   # {lesson: {slug: Case}} of the files imported so far
+CASES: dict[str, dict[str, Case]] = {}                   # {lesson: {slug: Case}} of the files imported so far
 
 
 def case(slug, title, compiled=True):

@@ -877,7 +877,8 @@ def levers(record, k):
 
 def own_push(record, k):
     """Return k_n J_n [m/s] of a contact in the plane."""
-    inv_mass, inv_inertia, n = *record.bodies[3:], record.contacts[2][k]
+    inv_mass, inv_inertia = record.bodies[3:]
+    n = record.contacts[2][k]
     k_n = sum(inv_mass[i] + inv_inertia[i] * cross_2d(r, n) ** 2 for i, _, r in levers(record, k))
     return k_n * (record.J[k] @ n)
 

@@ -464,7 +464,7 @@ class Pair(NamedTuple):
 
 
 # of (v_a, ω_a, v_b, ω_b) what cannot change: nothing, an axle, the floor, a body that does not turn, and likewise for a
-HELD = ([], [3, 4], [3, 4, 5], [5], [0, 1], [2, 3, 4, 5])
+HELD: tuple[list[int], ...] = ([], [3, 4], [3, 4, 5], [5], [0, 1], [2, 3, 4, 5])
 
 
 def inverse_masses(rng, held):

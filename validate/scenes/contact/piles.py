@@ -28,7 +28,7 @@ QUIET = 1e-2                 # of the weight: what may be out of balance in a pi
 CREEPING = 2.0 * QUIET       # four numbers of 1 % each [-]
 CHAINS = 4.0                 # times the mean force in a column: the largest one in a pile [-]
 PYRAMID = np.sqrt(2.0)       # by which pybullet's friction exceeds μ along the diagonals of its pyramid [-]
-FALL = {}                    # {p: [(x, q), …]} of our last run of a case, block by block, for the film
+FALL: dict = {}              # {p: [(x, q), …]} of our last run of a case, block by block, for the film
 
 
 class Params(NamedTuple):

@@ -1,6 +1,7 @@
 """Free bodies and rolling balls: how they start and are drawn, and the runners that turn them."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def start_free(p):
 
 
 # the fields that the scenes of a body without a torque share
-FREE_BODY = {
+FREE_BODY: dict[str, Any] = {
     "lesson": "rotation",
     "observe": observe_rotation,
     "points": axes_seen,
