@@ -171,3 +171,15 @@ def test_every_package_that_is_imported_is_declared():
         tops = {other.partition(".")[0] for other in imports_of(name, path, known)} - {""}
         for top in tops - own - BESIDE_THE_WORKER - sys.stdlib_module_names:
             assert OTHER_NAMES.get(top, top).lower() in declared, f"{name} imports {top}"
+
+
+LONGEST_BODY = 40            # lines of a function, without its docstring: about a screen
+
+
+def test_no_function_is_longer_than_a_screen():
+    for name, path in modules_of("solutions", "validate", "tests").items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef):
+                body = node.body[ast.get_docstring(node) is not None:]
+                long = body and body[-1].end_lineno - body[0].lineno + 1 > LONGEST_BODY
+                assert not long, f"{name}.{node.name} has more than {LONGEST_BODY} lines"
