@@ -75,3 +75,14 @@ def test_what_calls_a_loop_without_end_has_less_time_from_its_first_test_on(shor
     found = limits_of(["1.7", "1.8"], implicit_euler_step=endless, implicit_midpoint_step=endless)
     assert sorted(found["1.7"]) == ["0.25 s"] * 4 + ["1 s"]
     assert set(found["1.8"]) == {"0.25 s"}
+
+
+# ---------------------------------------------------------------------------------------------- what no answer can know
+
+def test_a_graded_run_has_a_law_that_students_do_not_receive():
+    """The public seed keeps the law of the handed-out file, on which the tables of mistakes rest."""
+    def coupled_pendula():
+        """Stand for the law of that name."""
+
+    assert plugin.Draw(points.PUBLIC, "a test").law(coupled_pendula) is coupled_pendula
+    assert plugin.Draw("a secret", "a test").law(coupled_pendula).__module__ == "validate.grading.unseen"

@@ -85,8 +85,8 @@ NEEDED = {
     "validate/grading/expect.py",
     "notebooks/00_start_here.ipynb",
 }
-OF_AUTHORS = re.compile(r"mutants|attacks|test_(notebooks|generate|repository|release)|grading/box|generate|^\.|notes|"
-                        r"docs/(grading|instructors|plan|slides)")
+OF_AUTHORS = re.compile(r"mutants|attacks|test_(notebooks|generate|repository|release)|grading/(box|unseen)|generate|"
+                        r"^\.|notes|docs/(grading|instructors|plan|slides)")
 
 
 def test_students_get_the_files_they_need_and_none_of_the_authors(released, repository):

@@ -693,6 +693,10 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
             arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
             got = lesson.limited_step(task, theta, target, arm)
             close("θ after a step [rad]", got, theta + free, SOLVED, given=f"θ = {theta}, limits {low} to {high}")
+    lengths, theta, target, e, J = posed(draw, 4)
+    got = lesson.limited_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7))
+    close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), SOLVED,
+          given=f"θ = {theta}, target {target}, λ = 0.7 m")
     size, far = 2.0 ** draw.whole(-1, 1), draw(0.5, 3.0)                      # θ = 0 and whole numbers: (Jᵀ e)_1 is 0
     lengths, theta, e = np.full(3, size), np.zeros(3), size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
     free = damped(slopes_of(theta, lengths, 3), e, size)

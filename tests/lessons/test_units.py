@@ -297,6 +297,9 @@ NOT_SCALED = {
     "joint_impulses_2d": "it needs a step of joint_contact_step_2d, which is in the table",
 }
 
+# Tasks of tests that have a place and a direction.  Least squares adds metres and radians there, so the unit counts.
+IN_METRES_AND_RADIANS = {"pose"}
+
 # What a law that a test or a caller wrote takes and returns.  It gets its own parameters as they are.
 LAWS = {
     "acceleration": (("s", "m", "m/s"), "m/s²"),
@@ -458,6 +461,7 @@ def test_the_same_scene_in_other_units_gives_the_same_digits(home):
     for (lesson, name), (function, calls) in calls_of_all().items():
         if lesson == home and name not in NOT_SCALED:
             faults += [f"{name}, call {k}: {fault}" for k, call in enumerate(calls)
+                       if not IN_METRES_AND_RADIANS & {getattr(value, "__name__", "") for value in call}
                        for fault in faults_of(lesson, name, function, call)]
     assert not faults, f"{len(faults)}:\n" + "\n".join(faults)
 

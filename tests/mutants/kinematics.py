@@ -1446,8 +1446,7 @@ def scaled_down(theta, change, arm):
 
 
 for story, part in SEEN.items():
-    if part is not only_the_place:                                        # no test of 11.15 has such a task
-        wrong("11.15", story)(between_limits(of=part))
+    wrong("11.15", story)(between_limits(of=part))
 for story, part in DONE.items():
     if "limits of the arm" not in story and "at their limits" not in story:
         wrong("11.15", f"{story}, and then keeps the limits")(

@@ -69,7 +69,7 @@ print(sum(lesson.{function}.stats.cache_misses.values()))
 @pytest.mark.parametrize("name", ["kepler", "linear_drag", "wind"])  # a given law, its own, one with an exercise
 def test_a_second_process_compiles_no_law_of_a_scene(name):
     ask = f"""
-from validate import modules
+from validate.subject import modules
 scene = modules.bind_scene({name!r}, compiled=True)
 integrators, p = scene.lessons.integrators, scene.parameters
 scene.run(scene.lessons, integrators.rk4_step, scene.law, scene.start(p), p, 0.01, 5)

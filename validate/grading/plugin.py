@@ -6,6 +6,7 @@ With --of only the grading tests run.  Long tests run only with --long.
 """
 
 import hashlib
+import importlib.util
 import json
 import signal
 import threading
@@ -240,6 +241,7 @@ class Draw:
 
     def __init__(self, seed, test):
         self.rng = np.random.default_rng(list(hashlib.sha256(f"{seed}/{test}".encode()).digest()))
+        self.secret = seed != PUBLIC
 
     def __call__(self, low, high, shape=None):
         """Return a float, or an array of them, between low and high."""
@@ -248,6 +250,11 @@ class Draw:
     def whole(self, low, high):
         """Return an integer from low to high, both included."""
         return int(self.rng.integers(low, high + 1))
+
+    def law(self, public):
+        """Return a law of public tests; with a secret seed, one that students do not receive in its place."""
+        unseen = importlib.util.find_spec(f"{__package__}.unseen") if self.secret else None
+        return importlib.import_module(unseen.name).UNSEEN[public.__name__] if unseen else public
 
 
 @pytest.fixture
