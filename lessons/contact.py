@@ -232,7 +232,7 @@ def soft_contact(gap, hertz, zeta, dt):
         J_n = −dt (k (gap + dt u_n) + c u_n),      k = (2π hertz)²/k_n,      c = 2ζ (2π hertz)/k_n
     where u_n is the velocity after the step.  k_n cancels: aim and give depend on gap, hertz, zeta and dt only.
 
-    Under a force F the gap comes to rest at −k_n F/(2π hertz)², whatever dt is.  gap [m], hertz [1/s], zeta [-],
+    Under a force F the gap comes to rest at −k_n F/(2π hertz)² for every dt.  gap [m], hertz [1/s], zeta [-],
     dt [s]; hertz and dt are above 0.
     *Source:* Catto 2011, "Soft constraints"; lesson 8's compliance, for a contact.
     """

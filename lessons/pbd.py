@@ -251,7 +251,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
 # ---------------------------------------------------------------------------------------------- XPBD: compliant links
 
 def compliant_multiplier(C, Lam, weight, alpha_scaled):
-    """Return ΔΛ [N s²] for one visit to a compliant constraint: a spring of stiffness 1/α, whatever the step is.
+    """Return ΔΛ [N s²] for one visit to a compliant constraint: a spring of stiffness 1/α for every step.
 
     Λ = λ dt² is the sum of the ΔΛ of earlier visits in this step.  A visit with ΔΛ changes C by weight ΔΛ, to first
     order; weight = Σ w |∇C|².  *Find* the ΔΛ after which C and Λ, both with their new values, obey Hooke's law:

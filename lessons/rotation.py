@@ -375,7 +375,7 @@ def compose(step, torque, t, q, L, dt, body):
 
     γ dt, γ dt, (1 − 4γ) dt, γ dt, γ dt          γ = SUZUKI = 1/(4 − ∛4)
 
-    Each begins at the time where the previous one ended.  The composition conserves whatever the step conserves.
+    Each begins at the time where the previous one ended.  The composition conserves all that the step conserves.
     *Source:* Suzuki 1990; Hairer, Lubich, Wanner 2006, II.4.
     """
     # YOUR CODE HERE

@@ -84,7 +84,7 @@ def kinematic_response(v, n, e):
     v⁺ = v − (1 + e)(v · n) n
 
     The normal velocity is reversed and scaled by e; e = 0.8 looks like a ball.  The tangential velocity is unchanged.
-    This is the result of impulse_size against an immovable body without friction, whatever the mass of the point.
+    This is the result of impulse_size against an immovable body without friction, for every mass of the point.
     *Source:* first lecture deck, “Kinematic response”, which calls it not physically based.
     """
     ### BEGIN SOLUTION 7.1

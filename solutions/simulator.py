@@ -362,7 +362,7 @@ def momenta(x, q, v, omega, p):
     P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
 
     Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.  No field of p is NaN.
-    Without loads and supports both are constant, whatever the bodies do to each other.
+    Without loads and supports both are constant, also through impacts between the bodies.
     """
     ### BEGIN SOLUTION 10.14
     P, L = np.zeros(3), np.zeros(3)

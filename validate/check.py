@@ -34,7 +34,7 @@ class Verdict(StrEnum):
     """What became of a method or an engine in one case."""
     AGREES = "agrees"                        # within the error that theory allows
     FOLLOWS_OWN_LAW = "as predicted"         # departs from the truth exactly as its own law says
-    DEPARTS = "departs"                      # nobody predicted this
+    DEPARTS = "departs"                      # no theory predicted this
     UNDECIDED = "undecided"                  # too coarse to judge, or not recorded
     NOT_ATTEMPTED = "not attempted"          # the exercise has no answer yet
 

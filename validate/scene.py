@@ -147,7 +147,7 @@ class Scene:
     links: Callable | None = None            # (p) → pairs of points that the picture joins
     link_look: str = "rod"                   # how they are drawn: rod, spring, or spring and damper
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
-    film_of_truth: str = "truth"  # its label in the film, where nobody knows the truth
+    film_of_truth: str = "truth"  # its label in the film, where the truth is not known
     our_film: Callable | None = None         # (p) → (seconds, frames) of our last run, where only its end is judged
     bodies: Callable | None = None           # (p) → shapes of validate/scenes/drawing.py: the film is then shown in 3D
     poses: Callable | None = None            # (observed, p) → (bodies, 7) position and quaternion (w, x, y, z) of each

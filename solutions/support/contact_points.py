@@ -83,7 +83,7 @@ def check_round(half):
 
 
 def disc_bounds(x, q, half):
-    """(low, high, turn) of discs; nobody sees how a disc is turned.  Raises BadInput for two different half sizes."""
+    """(low, high, turn) of discs, whose rotation cannot be seen.  Raises BadInput for two different half sizes."""
     n = half.shape[0]
     check_round(half)
     return x[:n] - half, x[:n] + half, np.zeros((n, 2))

@@ -174,8 +174,8 @@ def inverse(thing, values, count, planes):
 
 def no_contacts(n, d):
     """The ContactSet of n bodies before their first step."""
-    nobody = np.zeros(0, np.int64)
-    return ContactSet(np.zeros(n + 1, np.int64), nobody, nobody, np.zeros((0, d)), np.zeros((0, d)), np.zeros(0))
+    none = np.zeros(0, np.int64)
+    return ContactSet(np.zeros(n + 1, np.int64), none, none, np.zeros((0, d)), np.zeros((0, d)), np.zeros(0))
 
 
 def settings(mu, substeps, hertz, zeta, margin):

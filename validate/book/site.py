@@ -6,7 +6,7 @@ from urllib.parse import unquote, urlsplit
 
 STYLE = re.compile(r"(?:url\(|@import) *['\"]?([^)'\";]+)")
 SCRIPT = re.compile(r"""["'`]((?:https?:)?//[\w.-]+\.[^"'`\s]*)["'`]""")   # an address of a host as a string
-NAMESPACE = "http://www.w3.org/"                                     # names of languages, which nobody loads
+NAMESPACE = "http://www.w3.org/"                                     # names of languages; no page loads them
 
 
 class Page(HTMLParser):

@@ -118,7 +118,7 @@ def secret(folder, seed):
 # ---------------------------------------------------------------------------------------------- the run
 
 def run(intake, settings, people, terms, jobs, executor, out, given):
-    """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when somebody is not graded."""
+    """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when a submission is not graded."""
     try:
         results, failed = collected(intake, settings, jobs, executor, out)
     except Ended as e:

@@ -83,7 +83,7 @@ def _begun(end, folder, begin, arguments):
     """In the child, before its first task."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)                       # Ctrl-C reaches everybody; the parent decides
     tempfile.tempdir = tempfile.mkdtemp(dir=folder)
-    os.chmod(tempfile.tempdir, 0o755)                                  # the sandbox's user is nobody
+    os.chmod(tempfile.tempdir, 0o755)                                  # the sandbox has another user
     threading.Thread(target=_wait, args=(end, folder), daemon=True).start()
     begin(*arguments)
 

@@ -16,7 +16,7 @@ MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumP
 BETWEEN = re.compile(r"(?:(?<=[\d.\]])|(?<=nan|inf)) (?=-?(?:[\d\[]|nan|inf))")
 FLOAT = re.compile(r"(?<![\w.])-?\d+\.\d*(?:e[-+]?\d+)?")
 NOTHING = "None: does every path through your function end with a return?"
-ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: nobody means the one, and a test means the other
+ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: round-off, and an error that a test looks for
 
 
 class NotYet(AssertionError):

@@ -164,7 +164,7 @@ def outcome(mark, name, excinfo, trace=None):
     if isinstance(error, (BadInput, Diverged)) and _raised_by(exercise, error):
         said = said.partition(": ")[0]                               # a student's own remedy is no advice here
     shapes = isinstance(error, SHAPES) and _misshapen(exercise, trace)
-    if shapes:                                                       # whoever called could not use what was returned
+    if shapes:                                                       # the caller could not use what was returned
         return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
                        "return as many values as the docstring says, in its order", kind)
     expected, advice = "an answer, and no error" if place else "an answer", _advice(error, said)

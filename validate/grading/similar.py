@@ -1,4 +1,4 @@
-"""Submissions that are alike: the same answers, or nearly, whatever their names, blanks and comments.
+"""Submissions that are alike: the same answers, or nearly, apart from names, blanks and comments.
 
 Only lines are compared that the lesson as handed out does not have, each with its variables' names taken away.  Two
 lines that follow each other in one file are looked for in the other, where up to BETWEEN lines may have been put

@@ -1,6 +1,6 @@
 """What students handed in: a folder, a zip or bare lesson files each.
 
-Nothing is unpacked, followed or executed; only the lesson files' bytes are read.  Whatever lies in the class folder
+Nothing is unpacked, followed or executed; only the lesson files' bytes are read.  What lies in the class folder
 becomes a submission or a sentence: nothing is overlooked in silence.  A zip is read in a child of little memory and
 time, and only what is stored or deflated: other ways of packing take gigabytes for a kilobyte.
 """
@@ -53,7 +53,7 @@ class Intake(NamedTuple):
     """What lies in the folder of a class."""
     submissions: list        # sorted by student
     unclear: dict            # {student: why it is open which files are meant}: neither points nor a zero until then
-    overlooked: tuple        # sentences about what is nobody's
+    overlooked: tuple        # sentences about files without an owner
     sharing: dict            # {student of a submission: all whose it is}, where it is several
     dated_by_files: bool     # and not by the system that the files come from
 
@@ -67,7 +67,7 @@ class Intake(NamedTuple):
 
 
 class Thing(NamedTuple):
-    """One entry of a class folder that belongs to somebody."""
+    """One entry of a class folder that has an owner."""
     path: Path
     ending: str              # of its name; "" for a folder
     name: owners.Name
@@ -108,7 +108,7 @@ def read_all(folder, lessons, people=MappingProxyType({}), class_list=None):
 # ---------------------------------------------------------------------------------------------- whose it is
 
 def owned(folder, people, class_list):
-    """(Things, sentences about what is nobody's) of everything in a class folder that is not hidden."""
+    """Return (Things, sentences about files without an owner) of a class folder, hidden files left out."""
     things, overlooked, ours = [], [], class_list and Path(class_list).resolve()
     known, metadata = owners.People(people), owners.from_gradescope(folder)
     for path in sorted(folder.iterdir()):
@@ -236,7 +236,7 @@ def from_bare(thing, student, lessons):
 
 
 def read(path, student, lessons, child):
-    """One folder or zip; whatever is wrong with it becomes a sentence, not an error.  child: one of `children.reader`.
+    """Read one folder or zip; a fault in it becomes a sentence, not an error.  child: one of `children.reader`.
 
     Raises Ungraded where there is too much of it.
     """

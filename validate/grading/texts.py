@@ -1,4 +1,4 @@
-"""Texts and numbers in pages, CSV and JSON, fit to be shown whatever students wrote."""
+"""Texts and numbers in pages, CSV and JSON, safe to show for every input of students."""
 
 import re
 

@@ -2,7 +2,7 @@
 
 The worker notes what a program tries, by Python's audit events, and the parent notes how it ended.  A program that
 goes past Python (native code) is noted when it begins to.  What a file imports is read in its text.  None of this
-locks anybody in; the sandbox does.
+keeps a program in; the sandbox does.
 """
 
 import re

@@ -69,10 +69,10 @@ def case_errors(selection, case, p, with_engines):
 # ---------------------------------------------------------------------------------------------- runs
 
 def run_to_end(scene, step, p, steps, asked=False):
-    """The Outcome of one of our methods at T.
+    """Return the Outcome of one of our methods at T.
 
-    BadInput is raised only where somebody has `asked` for the parameters: those of the scene itself are good, and who
-    refuses them is wrong.
+    asked: whether a user changed the parameters.  Only then BadInput is raised again.  For the scene's own parameters
+    a refusal is a failure of the method.
     """
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):

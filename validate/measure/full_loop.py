@@ -1,9 +1,9 @@
-"""What scenes gain by what they leave out: the whole loop of lesson 10 against the scene's own method.
+"""The gain of leaving parts out: the whole loop of lesson 10 against the scene's own method.
 
-The whole loop turns bodies that nobody sees turn, looks for contacts where nothing can touch, and sweeps over what it
-finds.  Put in place of a step that it contains, it must give the same motion to round-off.  Both run as plain Python.
-What hangs on strings is a chain of rods for the loop: each has a joint at its upper end, and all of its mass at its
-lower end, so that it does what a string does while it is taut.
+The whole loop rotates bodies whose rotation is not observed, searches for contacts that cannot occur, and sweeps over
+what it finds.  Put in place of a step that it contains, it must give the same motion to round-off.
+Both run as plain Python.  A mass on a string is a chain of rods for the loop: each has a joint at its upper end, and
+all of its mass at its lower end, so that it does what a string does while it is taut.
 """
 
 from functools import partial

@@ -141,7 +141,7 @@ def cpu_seconds():
 
 
 def used_by_others(before, after):
-    """How many cores other programs used in between; None where nobody knows, or in too short a time to tell."""
+    """Return how many cores other programs used in between; None if unknown, or if the time is too short to tell."""
     if before is None or after is None or after[0] - before[0] < SHORTEST_LOOK:
         return None
     clock, all_cores, own = (b - a for a, b in zip(before, after))

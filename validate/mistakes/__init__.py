@@ -151,7 +151,7 @@ def is_plain(result):
 
 
 def is_telling(traces):
-    """Whether these traces are more than one and the same plain result: anybody's first try returns zeros."""
+    """Whether these traces are more than one and the same plain result: many first tries return zeros."""
     traces = [*traces]
     return any(trace.numbers for trace in traces) or len(set().union(*(trace.plain for trace in traces))) > 1
 

@@ -58,7 +58,7 @@ def folder():
 # ---------------------------------------------------------------------------------------------- the learner's code
 
 class Unreadable:
-    """Stands in for a lesson that cannot be loaded: whatever is taken from it says why."""
+    """Stands in for a lesson that cannot be loaded: everything that is taken from it says why."""
 
     def __init__(self, why):
         self.why = why

@@ -120,7 +120,7 @@ def hinged_thickness(n):
     return brentq(spare, 0.02, 0.5, xtol=1e-14)
 
 
-# ---------------------------------------------------------------------- a judge of impulses, whoever found them
+# ---------------------------------------------------------------------- a judge of impulses from any solver
 
 def in_space(vectors):
     """Return vectors (m, 2) with a third coordinate 0, and vectors (m, 3) as they are."""

@@ -3,7 +3,7 @@
 pybullet's calculateInverseKinematics repeats, at most 20 times by default,
     Δθ = (JᵀJ + d 1)⁻¹ Jᵀ e,     scaled so that no joint turns by more than π/4,     d = ½ without jointDamping
 and ends after the iteration that began with a position error up to residualThreshold, 1e-4 by default.  The ½ is in m²
-whatever the size of the arm is, and the error of the orientation has no part in when it ends.
+for an arm of any size, and the error of the orientation does not decide when it ends.
 *Source:* Bullet, b3PhysicsServerCommandProcessor (processCalculateInverseKinematicsCommand) and IKTrajectoryHelper.
 """
 

@@ -13,7 +13,7 @@ FEW = 3                      # runs with up to so many points leave a trail
 
 
 def script(result):
-    """The text of a file that hands the film of a scene to the players; a page loads it when somebody plays it."""
+    """Return the text of a file with the film of a scene; a page loads it when the film is played."""
     picture = result["picture"]
     films = [{"label": f["label"], "role": f["role"], "colour": f["colour"], "points": len(f["frames"][0]),
               "frames": packed(f["frames"])} for f in picture["films"]]

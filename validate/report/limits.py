@@ -1,8 +1,8 @@
 """How sharp the limits of a report are: `validate limits [REPORT]`.
 
 A limit is the largest error that theory allows a run.  Limit over error says how much larger the error could have been
-before anybody had noticed.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left out: it
-says how exact a computer is.  A row with a prediction is judged from below as well.
+without a change of the verdict.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left
+out: it says how exact a computer is.  A row with a prediction is judged from below as well.
 """
 
 import math

@@ -17,7 +17,7 @@ LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   �
 
 
 def show(console, results, stability):
-    """Print the table and what fails; return the number of departures that nobody predicted."""
+    """Print the table and what fails; return the number of unpredicted departures."""
     table = Table(header_style="bold", box=None, pad_edge=False)
     products = words.products(results)
     for column in ("scene", "ours", *products, "order", "faster"):

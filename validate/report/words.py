@@ -481,7 +481,7 @@ def leading(result):
 
 
 def _departures(result):
-    """Whatever departs, ours and the engines', unpredicted departures first."""
+    """Return all departures, ours and the engines', the unpredicted ones first."""
     every = [(n, c) for n, one in result["cases"].items() for c in one["ours"] + one["engines"]]
     for n, c in every:
         if is_right(c) is False:

@@ -19,7 +19,7 @@ from .store import code_digest, lessons_of, store_for
 
 
 def run(names, plan, pool, out, console, measuring=None):
-    """Measure, report, and return the exit code: 0, or 1 when something departs that nobody predicted.
+    """Measure, report, and return the exit code: 0, or 1 at an unpredicted departure.
 
     pool: processes of this machine, which draw the report;    measuring: what measures, where that is not the pool
     """

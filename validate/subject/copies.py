@@ -1,7 +1,7 @@
 """Which copy of the workbook is used, where there are several and one environment.
 
 An environment is installed from one copy.  A notebook belongs to the copy in whose folder `notebooks` it lies, and uses
-that one.  A copy that somebody has put on Python's path is used as it is.
+that one.  A copy that stands on Python's path is used as it is.
 """
 
 import importlib
@@ -30,7 +30,7 @@ def meant_here(of):
 
 def doubtful(folder):
     """The folder of some lessons, if one might take another for it: they are not those of the copy around the working
-    folder, and nobody has named them.
+    folder, and no option or variable names them.
     """
     around = copy_around(Path.cwd())
     own = around and around == ROOT and Path(folder).resolve() == ROOT / "lessons"

@@ -70,7 +70,7 @@ def differing(folder=None):
 
 
 def worked_in(folder=None):
-    """Files in which somebody has answered something: an exercise's function is there, but no longer raises."""
+    """Return the files that hold an answer: an exercise's function is there, but no longer raises."""
     def answered(path):
         text, solution = path.read_text(), SOLUTIONS / path.name
         numbered = exercises(solution.read_text()).items() if solution.is_file() else ()

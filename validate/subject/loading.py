@@ -1,6 +1,6 @@
 """A subject's file that does not load, or that lacks a function: what is said about it, and what stands in for it.
 
-A student's file may hold anything.  Whatever is wrong ends in an Unloadable that names file, line, reason and remedy.
+A student's file may hold anything.  Every fault ends in an Unloadable that names file, line, reason and remedy.
 """
 
 import contextlib
@@ -40,7 +40,7 @@ def alarm(seconds, error=TooLong, own=False):
     Only in a main thread, and where the system has an alarm clock; an alarm around
     this one goes on.
 
-    own: count only the time that this process spends on the processor, whatever else the machine does.
+    own: count only the time that this process spends on the processor, and not that of other programs.
     """
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield

@@ -14,7 +14,7 @@ it, which calls the subject's exercises.  All others are shared.  By a lesson, g
 subject's own files do: the file beside them, or the worked lesson if that is what they import.
 
 A lesson may have a *companion*, the given module of the same name.  It imports from its lesson, and never the other way
-round.  Whoever asks for the lesson gets the functions of both in one module.
+round.  A caller that asks for the lesson gets the functions of both in one module.
 """
 
 import ast
@@ -533,9 +533,9 @@ class ModuleSet(Binding):
 class CompiledModules(ModuleSet):
     """The same, compiled: every function of a lesson, and the law of a scene.
 
-    A scene's run is plain and calls compiled lessons.  Whoever asks for a lesson gets the plain functions that make
-    records, and compiled loops that check their record in plain Python first: a check that is compiled takes seconds
-    for every kind of record, and in plain Python microseconds.
+    A scene's run is plain and calls compiled lessons.  A caller that asks for a lesson gets the plain functions that
+    make records, and compiled loops that check their record in plain Python first: a check that is compiled takes
+    seconds for every kind of record, and in plain Python microseconds.
     """
 
     def __init__(self, folder, digest):
@@ -554,7 +554,7 @@ class CompiledModules(ModuleSet):
         return self.outside[name]
 
     def _from_outside(self, key, value, plain):
-        """What a name of a compiled lesson means to whoever calls it from outside of compiled code."""
+        """Return what a name of a compiled lesson means outside of compiled code."""
         if not hasattr(value, "py_func"):
             return value
         if key.startswith(MAKE) and plain is not None:

@@ -128,7 +128,7 @@ def _kind(argument):
 @cache
 def _make_dispatcher_constants_cacheable():
     """Let numba cache functions that pass a function on: it refuses to,
-    because it would store an address that nobody reads.
+    because it would store an address, which is never read.
     """
     import numba.experimental.function_type  # noqa: F401
     from numba import types
@@ -185,7 +185,7 @@ def _save_one_at_a_time():
 
 
 def use_cache(digest):
-    """Return the cache folder of this digest, as text, and delete those that nobody has asked for for long."""
+    """Return the cache folder of this digest, as text, and delete those that were not used for long."""
     import numba
     from numba.core.config import _OptLevel
     _make_dispatcher_constants_cacheable()

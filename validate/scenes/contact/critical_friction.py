@@ -383,7 +383,7 @@ def shapes():
 
 
 def points(observed, p):
-    """All four scenes side by side, whatever the case."""
+    """Draw all four scenes side by side in every case."""
     return np.round(np.concatenate([corners for corners, _ in shapes()]), 5)
 
 

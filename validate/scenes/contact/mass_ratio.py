@@ -304,7 +304,7 @@ def softly(p, t):
 
 
 def too_few(sweeps):
-    """Why so many sweeps per step do not carry the heavy box, and that nobody says so."""
+    """Say why so many sweeps per step do not carry the heavy box, and that no error reports it."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
     return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
                      "box is inside the light one. It reports no residual, so that nothing warns of it",

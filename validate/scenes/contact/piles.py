@@ -1,6 +1,6 @@
 """Bodies fall between walls and come to rest: discs, boxes, spheres and bricks, up to a thousand of them.
 
-Nobody can say where each of them ends.  What a pile at rest must obey, however, is known: the floor carries the
+Where each of them ends cannot be predicted.  The laws of a pile at rest are known: the floor carries the
 weight, the walls push with as much from all sides, nothing overlaps, no energy was made, and every contact keeps the
 laws of Signorini and Coulomb.
 """

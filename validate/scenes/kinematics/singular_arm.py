@@ -1,4 +1,4 @@
-"""A straight arm and a target on its axis: who finds out how to bend?  Nobody.
+"""A straight arm and a target on its axis: no method finds out how to bend.
 
 The end cannot move along a straight arm: Jᵀe = 0, although e is not zero.  Every method that uses the Jacobian stays
 where it is, for ever.  Every joint points at the target already, so that CCD has nothing to do, and projections along

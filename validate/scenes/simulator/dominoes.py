@@ -1,10 +1,10 @@
 """A row of dominoes, the first of them pushed: impacts, tilting, sliding and leaning all at once.
 
-No formula gives this motion, and nobody published it.  Two codes that share nothing, the lesson's pile and pymunk, must
-come to the same motion as their steps shrink; that is the test.  The loop of lesson 10 and pymunk do: with steps of
-1/20,000 s they differ by 0.008 %.  The loop sweeps until an impact is finished.  The pile of lesson 9 visits each
-contact twice per step.  That does not finish the last impact, which runs from the floor back through all six dominoes:
-with steps of 1/1000 s the pile is still 1.3 % away.
+No formula gives this motion, and no published value is known.  Two codes that share nothing, the lesson's pile and
+pymunk, must come to the same motion as their steps shrink; that is the test.  The loop of lesson 10 and pymunk do: with
+steps of 1/20,000 s they differ by 0.008 %.  The loop sweeps until an impact is finished.  The pile of lesson 9 visits
+each contact twice per step.  That does not finish the last impact, which runs from the floor back through all six
+dominoes: with steps of 1/1000 s the pile is still 1.3 % away.
 """
 
 from functools import cache, partial
@@ -141,7 +141,7 @@ def truth(p, t):
 
 def limit(p, dt):
     """Each impact of two dominoes is seen up to one step late.  Until then a corner goes v dt too far, with v = ω
-    (height + width) of the first domino at most.  Whatever it meets later, it meets as late.  After n impacts each
+    (height + width) of the first domino at most.  It meets everything later by the same time.  After n impacts each
     corner is off by n v dt: first order.  It is chance where in its step an impact falls.  So errors of single runs
     scatter by a factor of three about a line.  Therefore several rows begin at different moments, and the error is that
     of all of them.  From 0.95 s on, the last impact pushes the whole row back.  So the errors at 1 s fall unevenly, and
@@ -235,7 +235,7 @@ def energies(p):
 
 
 def sanity_checks():
-    """Return Findings: what must hold whatever the motion is."""
+    """Return Findings that hold for every motion."""
     p = CASES["six"]
     first, found = 0.5 * p.omega**2 * (inertia(p) + 0.25 * MASS * (p.width**2 + p.height**2)), energies(p)
     begins, film = MASS * p.g * p.n * 0.5 * p.height + first, reference(p).reshape(-1, p.n, 4, 2)
