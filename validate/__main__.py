@@ -233,7 +233,7 @@ def targets(
 # ---------------------------------------------------------------------------------------------- what was asked for
 
 def loadable_scenes():
-    """({name: Scene}, {name: BadInput}): the scenes that load, and what is wrong with the others."""
+    """Return ({name: Scene}, {name: BadInput}): the scenes that load, and what is wrong with the others."""
     scenes, broken = {}, {}
     for name in modules.scene_names():
         try:
@@ -294,7 +294,7 @@ def plan_of(of, names, plain, quick, wanted, changes):
 
 
 def overrides(pairs, names):
-    """((name, value), …) from NAME=VALUE.
+    """Return ((name, value), …) from NAME=VALUE.
 
     Raises BadInput for what is no number or no parameter, or for more than one scene.
     """

@@ -60,7 +60,7 @@ def book(
 
 
 def checked(out, numbers):
-    """The numbers of the notebooks.  Raises BadInput if the book cannot be built like this."""
+    """Return the numbers of the notebooks.  Raises BadInput if the book cannot be built like this."""
     if not importlib.util.find_spec("sphinx") or not importlib.util.find_spec("furo"):
         raise BadInput("the package sphinx", "not installed", "install the extra: .venv/bin/pip install -e '.[book]'")
     waiting = [name for name in modules.lesson_names() if modules.withheld(name)]

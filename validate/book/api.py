@@ -23,7 +23,7 @@ NAME = re.compile(r"(?<![\w.])([a-z]\w*_\w+)(?!\w)")           # a bare word wit
 
 @cache
 def functions():
-    """{function: "lessons.<lesson>.<function>"} of all functions whose name stands in one lesson only."""
+    """Return {function: "lessons.<lesson>.<function>"} of all functions whose name stands in one lesson only."""
     found = {}
     for name in modules.lesson_names():
         for node in tree_of(name).body:
@@ -34,7 +34,7 @@ def functions():
 
 @cache
 def text_of(name):
-    """The text of a lesson without answers."""
+    """Return the text of a lesson without answers."""
     return generate.stub((SOLUTIONS / f"{name}.py").read_text(encoding="utf-8"))
 
 
@@ -61,7 +61,7 @@ def prose(text):
 
 
 def link(name):
-    """A link to the entry of a function."""
+    """Return a link to the entry of a function."""
     return f":py:func:`~{functions()[name]}`\\ "
 
 
@@ -80,7 +80,7 @@ def blocks(docstring):
 
 
 def as_rst(docstring):
-    """A docstring as reStructuredText."""
+    """Return a docstring as reStructuredText."""
     parts = []
     for exact, lines in blocks(docstring):
         if exact:
@@ -97,7 +97,7 @@ def heading(text, line):
 
 
 def page(name):
-    """The page of one lesson."""
+    """Return the page of one lesson."""
     lesson = course.lessons()[name]
     first, _, rest = ast.get_docstring(tree_of(name)).partition("\n")
     said = re.sub(r"^Lesson \d+\. *", "", first).rstrip(".")
@@ -120,7 +120,7 @@ def page(name):
 
 
 def function(node, exercise):
-    """The entry of a function."""
+    """Return the entry of a function."""
     said = (ast.get_docstring(node) or "").replace("Given.  ", "")
     about = []
     if exercise:
@@ -138,12 +138,12 @@ def targets():
 
 
 def target(number):
-    """The full name of the function of an exercise."""
+    """Return the full name of the function of an exercise."""
     return targets()[number]
 
 
 def record(node, name):
-    """The entry of a record: its fields with their units, as they stand in the lesson."""
+    """Return the entry of a record: its fields with their units, as they stand in the lesson."""
     lines = text_of(name).splitlines()[node.lineno:node.end_lineno]              # whole lines: with their comments
     fields = [line for line in lines if re.match(r" +\w+: ", line)]
     body = as_rst(ast.get_docstring(node) or "")
@@ -153,7 +153,7 @@ def record(node, name):
 
 
 def imported(name):
-    """The given functions and records that the lesson imports and exports: names and first sentences."""
+    """Return the given functions and records that the lesson imports and exports: names and first sentences."""
     rows = []
     for node in tree_of(name).body:
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(GIVEN):

@@ -94,7 +94,7 @@ class Lesson(NamedTuple):
 
 @cache
 def lessons():
-    """{name: Lesson}, in the order of the course."""
+    """Return {name: Lesson}, in the order of the course."""
     cases = defaultdict(int)
     for case in all_cases():
         cases[case.lesson] += 1
@@ -106,7 +106,7 @@ def lessons():
 
 
 def notebook_of(name):
-    """The path of a lesson's notebook."""
+    """Return the path of a lesson's notebook."""
     return next((ROOT / "notebooks").glob(f"[0-9][0-9]_{name}.ipynb"))
 
 
@@ -116,7 +116,7 @@ def title(name):
 
 
 def head(name):
-    """The Head of a lesson's notebook."""
+    """Return the Head of a lesson's notebook."""
     text = nbformat.read(notebook_of(name), as_version=4).cells[2].source
     rows = dict(re.findall(r"^\| \*\*([\w ]+)\*\* \| (.+) \|$", text, re.M))
     told = re.fullmatch(r"about ([\d.]+) hours: ([\d.]+) to read and run, ([\d.]+) to write", rows["Time"])
@@ -127,28 +127,28 @@ def head(name):
 
 
 def size_of_notebook(name):
-    """(words of its texts, code cells that are no check)."""
+    """Return (words of its texts, code cells that are no check)."""
     cells = nbformat.read(notebook_of(name), as_version=4).cells
     words = sum(len(cell.source.split()) for cell in cells if cell.cell_type == "markdown")
     return words, sum(cell.cell_type == "code" and not cell.source.startswith("check(") for cell in cells)
 
 
 def imports(name):
-    """Names of the lessons that a lesson imports itself, or by what it is given."""
+    """Return names of the lessons that a lesson imports itself, or by what it is given."""
     text = (SOLUTIONS / f"{name}.py").read_text(encoding="utf-8")
     return set(re.findall(r"^from \.(\w+) import", text, re.M)) & set(modules.lesson_names())
 
 
 @cache
 def needs(name):
-    """Names of all lessons that must be written, or handed out as worked, before this one runs."""
+    """Return names of all lessons that must be written, or handed out as worked, before this one runs."""
     direct = imports(name)
     return frozenset(direct.union(*map(needs, direct)))
 
 
 @cache
 def grading_tests():
-    """{number of an exercise: its grading tests}, as pytest collects them."""
+    """Return {number of an exercise: its grading tests}, as pytest collects them."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "outcomes.json")
         command = [sys.executable, "-m", "pytest", "tests/lessons", "--collect-only", "--of=solutions",
@@ -165,7 +165,7 @@ def grading_tests():
 
 @cache
 def numbers():
-    """{(lesson, function): number of the exercise}."""
+    """Return {(lesson, function): number of the exercise}."""
     return {(name, function): number for name in modules.lesson_names()
             for number, function in generate.exercises(source(name)).items()}
 
@@ -191,7 +191,7 @@ def exercises_of(name):
 
 
 def uses(name, function):
-    """Numbers of the exercises that an answer calls itself, or by a given function."""
+    """Return numbers of the exercises that an answer calls itself, or by a given function."""
     found, seen, waiting = set(), set(), list(coverage.calls()[name, function])
     while waiting:
         place = coverage.defined(waiting.pop())
@@ -206,13 +206,13 @@ def uses(name, function):
 
 
 def in_order(number):
-    """A key by which "5.2" comes before "5.10"."""
+    """Return a key by which "5.2" comes before "5.10"."""
     return tuple(map(int, number.split(".")))
 
 
 @cache
 def used_by():
-    """{number of an exercise: numbers of the exercises that call it}."""
+    """Return {number of an exercise: numbers of the exercises that call it}."""
     found = defaultdict(list)
     for lesson in lessons().values():
         for exercise in lesson.exercises:

@@ -110,12 +110,12 @@ def outputs_of(client, source, name):
 
 
 def prints_source(book):
-    """Whether a notebook prints the text of the lessons."""
+    """Return whether a notebook prints the text of the lessons."""
     return any("source_of(" in cell.source for cell in book.cells if cell.cell_type == "code")
 
 
 def fingerprint(path):
-    """A hash of everything that a notebook's outputs depend on."""
+    """Return a hash of everything that a notebook's outputs depend on."""
     sources = [path, *sorted(SOLUTIONS.rglob("*.py")), *sorted((ROOT / "tests" / "lessons").glob("test_*.py"))]
     sources += [file for file in sorted((ROOT / "validate").rglob("*.py"))
                 if file.parent.name != "book" or file.stem == "execute"]

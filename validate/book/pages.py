@@ -105,7 +105,7 @@ def prepared(book, stem, folder, alts, report=False):
 
 
 def about(lesson, stem, report):
-    """What the book adds to a lesson's first screen: where to work, and its scenes in the report."""
+    """Return what the book adds to a lesson's first screen: where to work, and its scenes in the report."""
     facts = course.lessons()[lesson]
     scenes = ", ".join(f'<a href="../report/{name}.html">{name}</a>' for name in facts.scenes)
     runs = f" All runs of its scenes are in the report: {scenes}." if report else ""
@@ -130,7 +130,7 @@ def script(text, folder, players):
 
 
 def with_links(text):
-    """A notebook's text with links to other notebooks, and from each exercise to its function."""
+    """Return a notebook's text with links to other notebooks, and from each exercise to its function."""
     text = NOTEBOOK.sub(lambda match: f"[`{match[1]}.ipynb`]({match[1]})", text)
 
     def to_function(match):
@@ -142,7 +142,7 @@ def with_links(text):
 # ---------------------------------------------------------------------------------------------- other pages
 
 def linked(text):
-    """A page of docs/: links to other pages of the book stay, links to other files become plain text."""
+    """Return a page of docs/: links to other pages of the book stay, links to other files become plain text."""
     def to(match):
         page = PAGES.match(match[2])
         return f"[{match[1]}]({page[1]})" if page else match[1]
@@ -150,7 +150,7 @@ def linked(text):
 
 
 def glossary():
-    """The table of words in CONTRIBUTING.md as a page to which others can link."""
+    """Return the table of words in CONTRIBUTING.md as a page to which others can link."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Glossary")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| (.+?) \| (.+?) \|$", text, re.M)
     entries = ["\n".join([*re.split(r", (?![^(]*\))", term), f"    {meaning}"])
@@ -160,7 +160,7 @@ def glossary():
 
 
 def front(paths):
-    """The first page."""
+    """Return the first page."""
     contents = "\n".join(f"notebooks/{path.stem}" for path in paths)
     functions = "\n".join(f"{lesson.number} · {name} <lessons/{name}>" for name, lesson in course.lessons().items())
     text = (HERE / "front.md").read_text(encoding="utf-8")
@@ -171,6 +171,6 @@ def front(paths):
 
 
 def commit():
-    """The commit that the book shows, or where it comes from if git does not know."""
+    """Return the commit that the book shows, or where it comes from if git does not know."""
     said = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
     return said.stdout.strip() or "an unpacked folder"

@@ -19,7 +19,7 @@ class Week(NamedTuple):
     note: str = ""
 
     def exercises(self):
-        """The exercises that are set."""
+        """Return the exercises that are set."""
         if not self.lesson:
             return ()
         of_lesson = course.lessons()[self.lesson].exercises
@@ -39,11 +39,11 @@ class Course(NamedTuple):
     worked: tuple = ()
 
     def lessons(self):
-        """The lessons of the course, each once."""
+        """Return the lessons of the course, each once."""
         return tuple(dict.fromkeys(week.lesson for week in self.weeks if week.lesson))
 
     def zips(self):
-        """{week in which a lesson begins: lessons that the students' zip of that week holds as worked answers}.
+        """Return {week in which a lesson begins: lessons that the students' zip of that week holds as worked answers}.
 
         Those are the lessons before it, and what it needs of the lessons that the course leaves out.
         """
@@ -84,7 +84,7 @@ COURSES = (
 # ---------------------------------------------------------------------------------------------- tables
 
 def table(head, rows):
-    """A table in Markdown."""
+    """Return a table in Markdown."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
 
@@ -100,12 +100,12 @@ def lesson_link(name):
 
 
 def numbers_of(names):
-    """Names of lessons as their numbers, in order."""
+    """Return names of lessons as their numbers, in order."""
     return ", ".join(str(number) for number in sorted(course.lessons()[name].number for name in names)) or "–"
 
 
 def lesson_table():
-    """Every lesson with its size, its hours and what it needs."""
+    """Return every lesson with its size, its hours and what it needs."""
     rows = [(lesson_link(name), stars(lesson.exercises), f"{lesson.points:g}",
              f"{lesson.head.whole:g}: {lesson.head.reading:g} + {lesson.head.writing:g}",
              ", ".join(map(str, sorted(lesson.head.numbers))) or "–", numbers_of(lesson.needs), len(lesson.scenes),
@@ -116,13 +116,13 @@ def lesson_table():
 
 
 def stars(chosen):
-    """How many exercises there are of each kind: "13 ★, 4 ★★"."""
+    """Return how many exercises there are of each kind: "13 ★, 4 ★★"."""
     counts = [(kind, sum(one.stars == kind for one in chosen)) for kind in ("★", "★★")]
     return ", ".join(f"{count}\N{NO-BREAK SPACE}{kind}" for kind, count in counts if count)
 
 
 def span(chosen):
-    """Numbers of exercises, neighbours joined: "5.1–5.7, 5.9"."""
+    """Return numbers of exercises, neighbours joined: "5.1–5.7, 5.9"."""
     runs = []
     for one in chosen:
         number = course.in_order(one.number)[1]
@@ -135,7 +135,7 @@ def span(chosen):
 
 
 def course_table(plan):
-    """The weeks of a course."""
+    """Return the weeks of a course."""
     rows = []
     for number, week in enumerate(plan.weeks, 1):
         chosen = week.exercises()
@@ -149,24 +149,24 @@ def course_table(plan):
 
 
 def release(name, worked):
-    """The command that makes a students' zip with these lessons as worked answers."""
+    """Return the command that makes a students' zip with these lessons as worked answers."""
     return in_sight(f".venv/bin/release --out {name}.zip", f"--with-solutions={','.join(worked)}" if worked else "")
 
 
 def grade(name):
-    """The command that grades a lesson."""
+    """Return the command that grades a lesson."""
     return in_sight(f".venv/bin/grade class --out grades-{name} --lesson {name}",
                     "--roster class/list.csv --due 2026-11-30T23:59 --late 10")
 
 
 def in_sight(command, options):
-    """A command with its options, on a second line if they would run out of the page."""
+    """Return a command with its options, on a second line if they would run out of the page."""
     line = f"{command} {options}".strip()
     return line if len(line) <= WIDTH else f"{command} \\\n    {options}"
 
 
 def course_section(plan):
-    """A course as the page shows it."""
+    """Return a course as the page shows it."""
     total = sum(half(week.hours()) for week in plan.weeks)
     zips = "\n".join(release(plan.weeks[number - 1].lesson, worked) for number, worked in plan.zips().items())
     why = (f" Students get lessons {numbers_of(plan.worked).replace(', ', ' and ')} as worked answers, because lessons "
@@ -186,7 +186,7 @@ def free_exercises():
 
 
 def repository():
-    """The address of the repository, from CITATION.cff or else from git; "" if neither has one."""
+    """Return the address of the repository, from CITATION.cff or else from git; "" if neither has one."""
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     if named := re.search(r"^repository-code: *[\"']?(\S+?)[\"']?$", citation, re.M):
         return named[1]
@@ -196,7 +196,7 @@ def repository():
 
 
 def with_address(text):
-    """A page in which REPOSITORY is the address of the repository, if it is known."""
+    """Return a page in which REPOSITORY is the address of the repository, if it is known."""
     address = repository()
     if not address:
         return text
@@ -205,7 +205,7 @@ def with_address(text):
 
 
 def filled(text):
-    """The page with its tables in place of the marks."""
+    """Return the page with its tables in place of the marks."""
     tables = {"lessons": lesson_table, "free": free_exercises,
               "courses": lambda: "\n\n".join(map(course_section, COURSES))}
     for mark, make in tables.items():

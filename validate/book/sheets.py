@@ -9,7 +9,7 @@ from . import course, plan, weeks
 
 
 def page(name, report):
-    """The sheet of one lesson, in Markdown."""
+    """Return the sheet of one lesson, in Markdown."""
     lesson = course.lessons()[name]
     head, later = lesson.head, [one.number for one in course.lessons().values() if lesson.number in one.head.numbers]
     facts = plan.table(("fact", "value"), [
@@ -46,7 +46,7 @@ def page(name, report):
 
 
 def foreign(lesson):
-    """Numbers of the exercises of other lessons that exercises of this lesson call themselves."""
+    """Return numbers of the exercises of other lessons that exercises of this lesson call themselves."""
     found = {number for one in lesson.exercises for number in one.uses}
     return sorted(found - {one.number for one in lesson.exercises}, key=course.in_order)
 
@@ -61,14 +61,14 @@ def exercise_table(lesson):
 
 
 def hints(lesson):
-    """The hints of all grading tests, folded, because some of them are half an answer."""
+    """Return the hints of all grading tests, folded, because some of them are half an answer."""
     rows = "\n".join(f"<li><b>{one.number}</b> {html.escape(hint)}</li>"
                      for one in lesson.exercises for hint in one.hints)
     return f"```{{raw}} html\n<details><summary>Show the hints</summary>\n<ul>\n{rows}\n</ul></details>\n```"
 
 
 def plain(text):
-    """Text without markup, for Markdown."""
+    """Return text without markup, for Markdown."""
     return re.sub(r"([\\*_`|\[\]<>$#])", r"\\\1", text)
 
 
@@ -89,13 +89,13 @@ def cases(name, report):
 
 
 def path(file):
-    """A file of the repository, with a link if the repository's address is known."""
+    """Return a file of the repository, with a link if the repository's address is known."""
     address = plan.repository()
     return f"[`{file}`]({address}/blob/HEAD/{file})" if address else f"`{file}`"
 
 
 def questions(name):
-    """The questions at the end of a notebook, with their folded answers."""
+    """Return the questions at the end of a notebook, with their folded answers."""
     from . import execute
     book = execute.nbformat.read(course.notebook_of(name), as_version=4)
     text = next((cell.source for cell in book.cells if cell.source.startswith("## Three questions")), "")

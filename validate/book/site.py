@@ -45,7 +45,7 @@ def outside_in_script(text):
 
 
 def outside_requests(site):
-    """Sentences about files of a site that make a browser ask another host."""
+    """Return sentences about files of a site that make a browser ask another host."""
     found = []
     for path in sorted(site.rglob("*")):
         if path.suffix == ".html":
@@ -62,7 +62,7 @@ def outside_requests(site):
 
 
 def wrong_links(site):
-    """Sentences about links and files of a site that lead nowhere."""
+    """Return sentences about links and files of a site that lead nowhere."""
     site = site.resolve()
     pages = {path: Page(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
     found = []

@@ -143,7 +143,7 @@ def hours(name, first, last):
 
 
 def work(name, first, last):
-    """The exercises of a range, by section, with the hours to write them."""
+    """Return the exercises of a range, by section, with the hours to write them."""
     lesson = course.lessons()[name]
     told = "; ".join(f"{plan.span(lesson.exercises[low - 1:high])} *{title}*" for low, high, title in sections(name)
                      if first <= low and high <= last)
@@ -152,7 +152,7 @@ def work(name, first, last):
 
 
 def table(name, report):
-    """The weeks of a lesson."""
+    """Return the weeks of a lesson."""
     notebook = f"[notebook](../notebooks/{course.notebook_of(name).stem})"
     weeks, parts = WEEKS[name], []
     for number, week in enumerate(weeks, 1):

@@ -159,7 +159,7 @@ def collected(intake, settings, jobs, executor, out):
 
 
 def shared(result, intake):
-    """The results of all whose submission it is."""
+    """Return the results of all whose submission it is."""
     students = intake.owners_of(result["student"])
     told = [f"this is one submission of {', '.join(students)}"] * (len(students) > 1) + result["problems"]
     return [{**result, "student": student, "problems": told} for student in students]
@@ -171,7 +171,7 @@ def say(sentences):
 
 
 def about(intake, settings):
-    """What the page says of this run."""
+    """Return what the page says of this run."""
     versions = f"workbook {settings.code}, Python {sys.version.split()[0]}, NumPy {version('numpy')}"
     alike, now = similar.alike(intake.submissions, settings.lessons), datetime.now().isoformat(timespec="seconds")
     alike = {who: pairs for one, pairs in alike.items() for who in intake.owners_of(one)}
@@ -179,7 +179,7 @@ def about(intake, settings):
 
 
 def before(path, digest):
-    """The result of an earlier run, if nothing has changed since."""
+    """Return the result of an earlier run, if nothing has changed since."""
     try:
         result = json.loads(path.read_text())
     except (OSError, ValueError):

@@ -201,7 +201,7 @@ class Sandbox:
         self.patience = min(time.monotonic() + CROWDED * limit, self.ends)
 
     def quiet(self):
-        """Whether the worker has sent nothing unasked.
+        """Return whether the worker has sent nothing unasked.
 
         Anything sent earlier arrives before the echo, so that the result does not depend on timing.
         """
@@ -394,7 +394,7 @@ class Sandbox:
 
 
 def arriving(stream):
-    """Whether a pipe, of which this is one end, holds data that has not been read yet."""
+    """Return whether a pipe, of which this is one end, holds data that has not been read yet."""
     import fcntl  # there is none on Windows, where this file is read, too
     import termios
 

@@ -68,7 +68,7 @@ def refused(error):
 
 @lru_cache(maxsize=1)
 def program():
-    """The filter, as bytes that bwrap --seccomp reads.  Raises OSError where it cannot be had."""
+    """Return the filter, as bytes that bwrap --seccomp reads.  Raises OSError where it cannot be had."""
     try:
         library = ctypes.CDLL(LIBRARY)
     except OSError:
@@ -95,7 +95,7 @@ def program():
 
 
 def rules():
-    """(name, action, comparison or None) of every call that is not simply refused."""
+    """Yield (name, action, comparison or None) of every call that is not simply refused."""
     for name in ALLOWED:
         yield name, ALLOW, None
     for name in NEVER:
@@ -112,7 +112,7 @@ def rules():
 
 
 def exported(library, context):
-    """The program of a context."""
+    """Return the program of a context."""
     reader, writer = os.pipe()
     try:
         code = library.seccomp_export_bpf(context, writer)             # some kB: a pipe holds 64

@@ -188,7 +188,7 @@ def reader():
 
 
 def timed(function, *arguments):
-    """The function's result, or TimeoutError after so long on the processor."""
+    """Return the function's result, or TimeoutError after so long on the processor."""
     def ring(*_):
         raise TimeoutError("it takes too long")
     if hasattr(signal, "setitimer"):

@@ -98,7 +98,7 @@ def root():
 
 
 def inside(top, path):
-    """A path of this machine as it lies in the empty root."""
+    """Return a path of this machine as it lies in the empty root."""
     return top / Path(path).relative_to("/")
 
 

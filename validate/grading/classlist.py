@@ -28,7 +28,7 @@ class Person(NamedTuple):
 
 
 def roster(path, tell=print):
-    """{student id: Person} from a CSV file with those columns; tell is called with a remark about its encoding.
+    """Return {student id: Person} from a CSV file with those columns; tell is called with a remark about its encoding.
 
     Raises BadInput for a file without student_id, and for one that is no CSV.
     """
@@ -77,7 +77,7 @@ def decoded(path, tell):
 
 
 def as_ansi(data):
-    """The text in Windows-1252, of which Latin-1 is a part; "" for bytes that are no characters of it."""
+    """Return the text in Windows-1252, of which Latin-1 is a part; "" for bytes that are no characters of it."""
     try:
         return data.decode("cp1252")
     except UnicodeDecodeError:
@@ -85,13 +85,13 @@ def as_ansi(data):
 
 
 def dated(person, path):
-    """The person with dates as everywhere else."""
+    """Return the person with dates as everywhere else."""
     when = date(person.timestamp, f"timestamp of {person.student_id} in {str(path)!r}")
     return person._replace(timestamp=when, due=deadline(person.due, f"due of {person.student_id} in {str(path)!r}"))
 
 
 def date(text, name):
-    """A date in ISO 8601 as it is compared and shown; "" for none.  Raises BadInput for what is none."""
+    """Return a date in ISO 8601 as it is compared and shown; "" for none.  Raises BadInput for what is none."""
     try:
         return datetime.fromisoformat(text).isoformat(timespec="seconds") if text else ""
     except ValueError:
@@ -99,18 +99,18 @@ def date(text, name):
 
 
 def deadline(text, name):
-    """A due date, which ends with its day where it has no time."""
+    """Return a due date, which ends with its day where it has no time."""
     when = date(text, name)
     return when.replace("T00:00:00", "T23:59:59") if len(text) in (8, 10) else when
 
 
 def identity(text):
-    """A student's id as it is compared and shown: one for all Unicode forms of its letters,
+    """Return a student's id as it is compared and shown: one for all Unicode forms of its letters,
     without blanks around it.
     """
     return spelt_out(unicodedata.normalize("NFC", text).strip() or text)
 
 
 def spelt_out(text):
-    """Text with its control, format and broken characters written as their numbers: names may hold any."""
+    """Return text with its control, format and broken characters written as their numbers: names may hold any."""
     return text if text.isprintable() else "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)

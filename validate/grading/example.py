@@ -23,13 +23,13 @@ DATE = (2026, 11, 20, 12, 0, 0)
 
 
 def worked(lesson):
-    """The text of a lesson with every exercise answered, as a student would hand it in."""
+    """Return the text of a lesson with every exercise answered, as a student would hand it in."""
     source = (modules.SOLUTIONS / f"{lesson}.py").read_text()
     return generate.stub(source, solved=generate.exercises(source))
 
 
 def files():
-    """{student: {lesson: text}}."""
+    """Return {student: {lesson: text}}."""
     first, second, *_ = modules.lesson_names()
     stubs = {name: (modules.ROOT / "lessons" / f"{name}.py").read_text() for name in (first, second)}
     right = {name: worked(name) for name in (first, second)}

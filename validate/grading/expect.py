@@ -90,7 +90,7 @@ def instance(quantity, got, wanted, given=""):
 
 
 def kind(value):
-    """What kind of thing a value is, in words."""
+    """Return what kind of thing a value is, in words."""
     if isinstance(value, np.ndarray):
         return of_shape(value.shape)
     return "a number" if isinstance(value, (int, float)) else f"a {type(value).__name__}"
@@ -137,7 +137,7 @@ def how_far(off, size):
 # ---------------------------------------------------------------------------------------------- what is read
 
 def number(x, digits=DIGITS):
-    """A number in so many digits, or in as many as it has before its point; a whole one as it is."""
+    """Return a number in so many digits, or in as many as it has before its point; a whole one as it is."""
     x = float(x)
     if not np.isfinite(x) or x == 0.0:
         return f"{abs(x) if x == 0.0 else x:g}"
@@ -158,7 +158,7 @@ def apart(a, b):
 
 
 def compared(expected, got, differs):
-    """(expected, got) in words: a few numbers whole, of more the first that differs, and how many do."""
+    """Return (expected, got) in words: a few numbers whole, of more the first that differs, and how many do."""
     first = first_of(differs)
     if expected.size > FEW:
         a, b = apart(expected[first], got[first])
@@ -202,14 +202,14 @@ def tidy(text, digits=DIGITS):
 
 
 def _shortened(x, digits):
-    """A number in so many digits; one that is almost as short as 0.5 was made so, and says so: 0.5 - 1e-11."""
+    """Return a number in so many digits; one that is almost as short as 0.5 was made so, and says so: 0.5 - 1e-11."""
     text = number(x, digits)
     rest, short = x - float(text), len(text.partition("e")[0].replace(".", "").strip("-0")) <= 2
     return plus(text, rest) if short and ROUNDING * abs(x) < abs(rest) < NEARLY * abs(x) else text
 
 
 def _in_brackets(text, change):
-    """The text with every outermost [array] changed."""
+    """Return the text with every outermost [array] changed."""
     parts, depth, begin = [], 0, 0
     for k, character in enumerate(text):
         depth += (character == "[") - (character == "]" and depth > 0)

@@ -9,7 +9,7 @@ DIED = "the grading process ended unexpectedly, or hung"
 
 
 def results(jobs, todo, settings):
-    """(student, result, "") or (student, None, why the grader failed), as they come.
+    """Yield (student, result, "") or (student, None, why the grader failed), as they come.
 
     If the time was up or the grader failed, other processes may be the cause: it is tried once more at the end, alone.
     """

@@ -29,18 +29,18 @@ class Meter:
         self.used += busy + (max(0.0, passed - busy) if owes and self.sleeps() else 0.0)
 
     def due(self):
-        """Whether it is time for another look."""
+        """Return whether it is time for another look."""
         return time.monotonic() - self.looked >= LOOK
 
     def processor(self):
-        """Seconds that all threads of the worker have had the processor."""
+        """Return seconds that all threads of the worker have had the processor."""
         try:
             return time.clock_gettime(~self.process << 3 | 2)          # clock_getcpuclockid(3) of another process
         except (AttributeError, OSError, TypeError):                   # no such clock, or it has ended
             return self.worked
 
     def sleeps(self):
-        """Whether it neither runs nor waits for the processor."""
+        """Return whether it neither runs nor waits for the processor."""
         try:
             return Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()[0] != "R"
         except OSError:
@@ -48,7 +48,7 @@ class Meter:
 
 
 def worker_of(process):
-    """Its number: the last in a chain of only children, since bwrap's own processes come before it."""
+    """Return its number: the last in a chain of only children, since bwrap's own processes come before it."""
     number = process.pid
     try:
         while children := Path(f"/proc/{number}/task/{number}/children").read_text().split():

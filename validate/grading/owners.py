@@ -41,7 +41,7 @@ class Owners(NamedTuple):
 
 
 def of_lesson(stem):
-    """(student or "", lesson or None) of the name of a bare file: ada_springs is Ada's second lesson."""
+    """Return (student or "", lesson or None) of the name of a bare file: ada_springs is Ada's second lesson."""
     match = lesson_at_the_end().fullmatch(stem)
     return (match[1] or "", match[2].lower()) if match else ("", None)
 
@@ -86,7 +86,7 @@ class People:
                 self.names.setdefault(key, [student])
 
     def owners(self, name):
-        """The Owners of something with that Name.  Who is not on the list is known by his name."""
+        """Return the Owners of something with that Name.  Who is not on the list is known by his name."""
         numbered = self.numbers.get(name.number, ())
         if len(numbered) == 1:
             return Owners((*numbered,), True)
@@ -99,7 +99,7 @@ class People:
         return Owners((*found,), name.recorded or (own in self.ids and own in found), (*perhaps,))
 
     def fitting(self, text):
-        """The ids that a name fits."""
+        """Return the ids that a name fits."""
         student = identity(text)
         return (student,) if student in self.ids else self.names.get(letters(text), ())
 
@@ -112,7 +112,7 @@ def letters(text):
 # ---------------------------------------------------------------------------------------------- Gradescope
 
 def from_gradescope(folder):
-    """{folder: Name} from Gradescope's file in a class folder, if there is one.
+    """Return {folder: Name} from Gradescope's file in a class folder, if there is one.
 
     Only its own lines are read: what a program has printed stands deeper in it.
     """
@@ -135,12 +135,12 @@ def from_gradescope(folder):
 
 
 def known_as(student):
-    """The names of one who handed something in at Gradescope: his address, his number, his name."""
+    """Return the names of one who handed something in at Gradescope: his address, his number, his name."""
     return tuple(filter(None, (student.get(key, "") for key in ("email", "sid", "name")))) or ("",)
 
 
 def scalar(text):
-    """The text that a line of YAML means, which may be in quotes."""
+    """Return the text that a line of YAML means, which may be in quotes."""
     text = text.strip()
     if text[:1] == text[-1:] == "'" and len(text) > 1:
         return text[1:-1].replace("''", "'")

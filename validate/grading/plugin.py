@@ -139,7 +139,7 @@ def note_too_long(item):
 
 
 def limit_of(item, limit):
-    """How long a test may take [s].
+    """Return how long a test may take [s].
 
     An endless loop is waited for once: after it, the other tests of its exercise, and those of exercises that call it,
     have less time.  That is still twice what the slowest test of the worked answers takes, so a test that ends passes.
@@ -175,7 +175,7 @@ def is_wanted(item, config):
 
 
 def is_left_out(item, config):
-    """Whether this test is long and was not asked for."""
+    """Return whether this test is long and was not asked for."""
     return bool(item.get_closest_marker("long")) and not config.getoption("--long")
 
 
@@ -226,7 +226,7 @@ def lesson(request):
 
 
 def trace_for(request):
-    """The Trace of the function that a test is about; None where nothing is traced, as with secret inputs."""
+    """Return the Trace of the function that a test is about; None where nothing is traced, as with secret inputs."""
     traces, mark = getattr(request.config, "traces", None), request.node.get_closest_marker("exercise")
     if traces is None or mark is None:
         return None

@@ -130,7 +130,7 @@ def reasons(exercise, states, traces, folder):
 
 
 def beginning(text):
-    """The first lines of what was printed, what is no text in it written as numbers."""
+    """Return the first lines of what was printed, what is no text in it written as numbers."""
     lines = text.expandtabs(4)[:PRINTED + 1].splitlines()
     kept = "\n".join(lines[:LINES])[:PRINTED]
     shown = "".join(c if c.isprintable() or c == "\n" else f"\\x{ord(c):02x}" for c in kept)
@@ -138,7 +138,7 @@ def beginning(text):
 
 
 def name_of(item):
-    """A test's name, without the speed that a given subject does not have."""
+    """Return a test's name, without the speed that a given subject does not have."""
     return item.name.replace("[given-", "[").replace("[given]", "")
 
 
@@ -178,7 +178,7 @@ def _misshapen(exercise, trace):
 
 
 def unreadable(o, error, place):
-    """The Outcome of a test whose subject could not even be loaded."""
+    """Return the Outcome of a test whose subject could not even be loaded."""
     told = f"{type(error).__name__}: {error}{'' if place in str(error) else place}"
     reason, remedy = (error.reason, error.remedy) if isinstance(error, Unloadable) else (told, remedy_for(told, place))
     hint = f"{remedy}; until then nothing in the file can be tested"
@@ -186,7 +186,7 @@ def unreadable(o, error, place):
 
 
 def _raised_by(exercise, error):
-    """Whether the exercise's function itself raised the error, and no given function that it calls."""
+    """Return whether the exercise's function itself raised the error, and no given function that it calls."""
     return _frames(error)[-1].name == needs.table().get(exercise, {"function": ""})["function"]
 
 
@@ -195,7 +195,7 @@ def _frames(error):
 
 
 def _place(error):
-    """Where in the subject's own file it happened."""
+    """Return where in the subject's own file it happened."""
     if hasattr(error, "where"):                                      # the sandbox says
         return f" ({error.where})" if error.where else ""
     files = [(Path(entry.filename), entry.lineno) for entry in _frames(error) if not entry.filename.startswith("<")]
@@ -205,7 +205,7 @@ def _place(error):
 
 
 def _advice(error, said):
-    """A hint for what Python says, where that is more to the point than the hint for the physics; or nothing."""
+    """Return a hint for what Python says, where that is more to the point than the hint for the physics; or nothing."""
     if "NoneType" in said:
         return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
@@ -247,7 +247,7 @@ def grade_each(lesson, subjects, seed=PUBLIC, collect=False, traces=None, cases=
 
 
 def score(outcomes):
-    """{exercise: (points earned, points possible)}, in the order in which the exercises came."""
+    """Return {exercise: (points earned, points possible)}, in the order in which the exercises came."""
     total = {}
     for o in outcomes:
         earned, possible = total.get(o.exercise, (0, 0))

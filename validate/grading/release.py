@@ -206,7 +206,7 @@ def made_by(cells):
 
 
 def wanted(path, lessons, others, scenes):
-    """Whether a tracked file goes into the zip unchanged."""
+    """Return whether a tracked file goes into the zip unchanged."""
     folder = path.parts[0]
     if path.as_posix() in ALWAYS | {PLUGIN}:
         return True
@@ -403,7 +403,7 @@ def share(sizes, found, telling):
 
 
 def holds(where, answer):
-    """Whether a searched text holds that answer."""
+    """Return whether a searched text holds that answer."""
     if max(answer.pieces.values(), default=0) < TELLING:
         return (answer.function, answer.body) in where.bodies
     as_code = share(answer.pieces, where.statements, TELLING)
@@ -433,7 +433,7 @@ def names_of(hidden):
 
 
 def may_hold(text, sets):
-    """Whether a text has all names of a sign.  That is quick to see, and a text without them needs no search."""
+    """Return whether a text has all names of a sign.  That is quick to see, and a text without them needs no search."""
     names = {"", *WORD.findall(text)}
     return any(some <= names for name in names & sets.keys() for some in sets[name])
 

@@ -32,7 +32,7 @@ KEPT = frozenset(b"""
 
 
 def alike(handed_in, lessons):
-    """{student: [(lesson, another student or WORKED, share of lines in common), …]}, the most alike first."""
+    """Return {student: [(lesson, another student or WORKED, share of lines in common), …]}, the most alike first."""
     found = defaultdict(list)
     for lesson in lessons:
         texts = {one.student: own_lines(one.files[lesson], lesson) for one in handed_in if lesson in one.files}
@@ -50,7 +50,7 @@ def _order(pair):
 
 @lru_cache
 def handed_out(lesson):
-    """The lines of a lesson as handed out, without blanks."""
+    """Return the lines of a lesson as handed out, without blanks."""
     text = (modules.ROOT / "lessons" / f"{lesson}.py").read_bytes()
     return frozenset(b"".join(line.split()) for line in text.splitlines())
 
@@ -71,7 +71,7 @@ def own_lines(text, lesson):
 
 
 def never_read(lines):
-    """The names that are assigned to and occur nowhere else."""
+    """Return the names that are assigned to and occur nowhere else."""
     words = Counter(word for line in lines for word in WORD.findall(line.partition(b"#")[0]))
     targets = Counter(target[1] for line in lines if (target := TARGET.match(line)))
     return {name for name, count in targets.items() if words[name] == count}
@@ -82,7 +82,7 @@ def _plain(word):
 
 
 def pairs_of(texts):
-    """(student, another one, share) of files that are alike, each two once."""
+    """Yield (student, another one, share) of files that are alike, each two once."""
     same = defaultdict(list)
     for student, lines in texts.items():
         if len(lines) > FEWEST:
@@ -95,7 +95,7 @@ def pairs_of(texts):
 
 
 def nearly_the_same(texts):
-    """(student, another one, share) where one file has most of the pairs of lines of the other."""
+    """Yield (student, another one, share) where one file has most of the pairs of lines of the other."""
     near, following = defaultdict(set), defaultdict(set)              # {pair of lines: who has it}
     for student, lines in texts.items():
         for gap in range(1, BETWEEN + 2):

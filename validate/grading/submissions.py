@@ -79,7 +79,7 @@ class Ungraded(Exception):
 
 
 def read_all(folder, lessons, people=MappingProxyType({}), class_list=None):
-    """The Intake of a folder.  people: the class list, class_list: its file.
+    """Return the Intake of a folder.  people: the class list, class_list: its file.
 
     Raises BadInput without any.
     """
@@ -132,7 +132,7 @@ def owned(folder, people, class_list):
 
 
 def split(path):
-    """(name without its ending, ending in small letters); a folder has none, unless it is called a zip."""
+    """Return (name without its ending, ending in small letters); a folder has none, unless it is called a zip."""
     name = path.name.lower()
     ending = next((e for e in (".zip", ".py.txt", *ARCHIVES) if name.endswith(e)), path.suffix.lower())
     if ending != ".zip" and path.is_dir():                             # or a link to one
@@ -141,7 +141,7 @@ def split(path):
 
 
 def undecided(things):
-    """{student: why it is open what is his} of those on the class list whose name others have, too."""
+    """Return {student: why it is open what is his} of those on the class list whose name others have, too."""
     why = {}
     for thing in things:
         for student in thing.owners.perhaps:
@@ -168,7 +168,7 @@ def teams(things, people):
 # ---------------------------------------------------------------------------------------------- what counts
 
 def submission_of(student, things, lessons, child):
-    """A student's Submission from all that is there.
+    """Return a student's Submission from all that is there.
 
     What has the student's id for its name, or a number that the system gave, counts before what only resembles it:
     students may choose such names.  Raises Ungraded where what counts contradicts itself.
@@ -201,7 +201,7 @@ def submission_of(student, things, lessons, child):
 
 
 def delivered(thing, student, lessons, child):
-    """The Submission of one thing."""
+    """Return the Submission of one thing."""
     if thing.ending == ".py":
         one = from_bare(thing, student, lessons)
     elif thing.ending in ("", ".zip") and (thing.ending or thing.path.is_symlink() or thing.path.is_dir()):
@@ -222,7 +222,7 @@ def why_unread(thing):
 
 
 def from_bare(thing, student, lessons):
-    """The Submission of a bare file, whose name says the lesson unless there is only one."""
+    """Return the Submission of a bare file, whose name says the lesson unless there is only one."""
     files, problems, path, when = {}, [], thing.path, 0.0
     lesson = owners.of_lesson(thing.name.own)[1] or (lessons[0] if len(lessons) == 1 else None)
     if lesson in lessons:
@@ -270,18 +270,18 @@ def contents(find, path, lessons):
 
 
 def told(problems):
-    """The first problems, fit to be shown."""
+    """Return the first problems, fit to be shown."""
     more = [f"and {len(problems) - MOST_PROBLEMS} more of the kind"] * (len(problems) > MOST_PROBLEMS)
     return (*map(shortened, problems[:MOST_PROBLEMS]), *more)
 
 
 def shortened(text):
-    """A name or a sentence with one in it, fit to be shown."""
+    """Return a name or a sentence with one in it, fit to be shown."""
     return spelt_out(text[:LONGEST]) + " …" * (len(text) > LONGEST)
 
 
 def moment(when):
-    """A file's date as text; "" where there is none, or one that no calendar has."""
+    """Return a file's date as text; "" where there is none, or one that no calendar has."""
     try:
         return datetime.fromtimestamp(when).isoformat(timespec="seconds") if when else ""
     except (OSError, ValueError, OverflowError):
@@ -311,7 +311,7 @@ def nearest(candidates, problems):
 
 
 def wanted(name, lessons):
-    """The lesson whose file this path may be, or None."""
+    """Return the lesson whose file this path may be, or None."""
     parts = name.split("/")
     plain = not any(part in ("", ".", "..") or skipped(part) for part in parts) and len(parts) <= DEEPEST + 1
     lesson = owners.of_lesson(parts[-1][:-len(".py")]) if plain and parts[-1].lower().endswith(".py") else ("", None)
@@ -319,7 +319,7 @@ def wanted(name, lessons):
 
 
 def skipped(part):
-    """Whether a part of a path hides what is below: nothing there was written by a student."""
+    """Return whether a part of a path hides what is below: nothing there was written by a student."""
     return part.startswith(".") or part in NOT_THEIRS
 
 
@@ -437,7 +437,7 @@ def keep(files, lesson, place, text, problems):
 # ---------------------------------------------------------------------------------------------- answers in notebooks
 
 def unanswered(lesson, text):
-    """The functions of a lesson that its file leaves out, or as they were handed out."""
+    """Return the functions of a lesson that its file leaves out, or as they were handed out."""
     functions = generate.exercises((modules.SOLUTIONS / f"{lesson}.py").read_text()).values()
     left = {name.decode() for name in re.findall(rb'NotImplementedError\("Exercise [\d.]+: (\w+)"\)', text)}
     return [name for name in functions if name in left or not re.search(rb"(?m)^def %s\b" % name.encode(), text)]

@@ -47,7 +47,7 @@ def in_text(text):
 
 
 def modules_in(lines):
-    """The top of every module that a text imports."""
+    """Yield the top of every module that a text imports."""
     for one, several in IMPORT.findall(lines):
         for name in [one] if one else [part.split()[0] for part in several.split(b",") if part.split()]:
             yield name.partition(b".")[0].decode("ascii", "replace")

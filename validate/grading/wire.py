@@ -27,7 +27,7 @@ class WireError(Exception):
 
 
 def pack(value, name_of=None):
-    """The frame of a value.  name_of(function) gives the name under which a function goes over the wire."""
+    """Return the frame of a value.  name_of(function) gives the name under which a function goes over the wire."""
     arrays = []
 
     def tree(value, depth=0):
@@ -70,7 +70,7 @@ def usual(array):
 
 
 def sizes(header):
-    """The lengths of a frame's tree and of its arrays [bytes]."""
+    """Return the lengths of a frame's tree and of its arrays [bytes]."""
     magic, tree, arrays = HEADER.unpack(header)
     if magic != MAGIC or tree > MAX_TREE or arrays > MAX_ARRAYS:
         raise WireError("not a frame, or too large a one")
@@ -78,7 +78,7 @@ def sizes(header):
 
 
 def read(stream):
-    """The next (tree, arrays) of a binary stream, as bytes; None at its end."""
+    """Return the next (tree, arrays) of a binary stream, as bytes; None at its end."""
     raw = stream.read(HEADER.size)
     if not raw:
         return None
@@ -133,7 +133,7 @@ def unpack(head, body, function=None, record=None):
 
 
 def arrays_in(value):
-    """Every array in a value, in the order in which it goes over the wire."""
+    """Yield every array in a value, in the order in which it goes over the wire."""
     if isinstance(value, np.ndarray):
         yield value
     elif isinstance(value, tuple | list):
@@ -160,7 +160,7 @@ class Peer:
         self.may_change = lambda name: True  # whether that function of the other side's may change arrays
 
     def call(self, name, arguments):
-        """What the other side's function returns; raises what `error` makes of its answer."""
+        """Return what the other side's function returns; raises what `error` makes of its answer."""
         self.send(pack(("call", name, arguments), self.name_of))
         while True:
             kind, *content = self.message()
@@ -183,7 +183,7 @@ class Peer:
                 return result
 
     def message(self):
-        """The next message.  ["define", …] brings a function along, where this side takes any."""
+        """Return the next message.  ["define", …] brings a function along, where this side takes any."""
         while True:
             got = unpack(*self.receive(), self.resolve, self.record)
             if type(got) is not tuple or not got or type(got[0]) is not str:
@@ -212,7 +212,7 @@ class Peer:
 
 
 def answer(content):
-    """(result, changed) of a value message."""
+    """Return (result, changed) of a value message."""
     if len(content) != 2 or type(content[1]) is not tuple or not all(
             type(pair) is tuple and len(pair) == 2 and type(pair[0]) is int and isinstance(pair[1], np.ndarray)
             for pair in content[1]):

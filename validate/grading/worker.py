@@ -79,7 +79,7 @@ names: dict = {}     # and back
 
 
 def remote(name):
-    """A function of the parent's."""
+    """Return a function of the parent's."""
     def call(*arguments):
         return peer.call(name, arguments)
     names[call] = name
@@ -87,7 +87,7 @@ def remote(name):
 
 
 def students(name):
-    """A function of the student's file, which is imported when the first one is called."""
+    """Return a function of the student's file, which is imported when the first one is called."""
     def call(*arguments):
         return getattr(importlib.import_module(LESSON), name)(*arguments)
     names[call] = f"lesson:{name}"
@@ -101,7 +101,7 @@ def define(name, *parts):
 
 
 def resolve(name):
-    """A function by the name that it has on the wire."""
+    """Return a function by the name that it has on the wire."""
     kind, _, rest = name.partition(":")
     if name == "echo":
         return lambda text: text
@@ -111,7 +111,7 @@ def resolve(name):
 
 
 def name_of(function):
-    """The name by which the parent may call a function."""
+    """Return the name by which the parent may call a function."""
     if function not in names:
         names[function] = f"own:{len(own)}"
         own[names[function]] = function
@@ -122,7 +122,7 @@ records: dict = {}
 
 
 def record(name, fields, values):
-    """A NamedTuple of the class that a lesson has for it, or of one that looks the same."""
+    """Return a NamedTuple of the class that a lesson has for it, or of one that looks the same."""
     for module in [m for n, m in list(sys.modules.items()) if n.startswith(("lessons.", "solutions."))]:
         known = getattr(module, name, None)
         if isinstance(known, type) and getattr(known, "_fields", None) == fields:
@@ -148,7 +148,7 @@ def raised(names, message, where):
 
 
 def describe(e):
-    """Names of its class and that class's bases, message, and the last place in the student's file."""
+    """Return names of its class and that class's bases, message, and the last place in the student's file."""
     places = [entry.lineno for entry in traceback.extract_tb(e.__traceback__)
               if entry.filename.startswith(config["student"])]
     line = e.lineno if isinstance(e, SyntaxError) else places[-1] if places else None

@@ -26,7 +26,7 @@ class Outcome(NamedTuple):
 
 @with_overrides
 def errors(name, plan):
-    """Everything about a scene but its run times: a dict that JSON can hold."""
+    """Return everything about a scene but its run times: a dict that JSON can hold."""
     selection = select(name, plan)
     scene, cases = selection.scene, {}
     for case, p in selection.cases.items():
@@ -47,7 +47,7 @@ def errors(name, plan):
 
 
 def theory(scene):
-    """What the scene says about its limits and predictions: the texts of their functions."""
+    """Return what the scene says about its limits and predictions: the texts of their functions."""
     functions = [f for r in scene.runners for f in (r.limit, r.predicted) if callable(f)]
     return "\n\n".join(filter(None, dict.fromkeys(report_text(getattr(f, "func", f)) for f in functions)))
 
@@ -96,7 +96,7 @@ def run_to_end(scene, step, p, steps, asked=False):
 
 
 def run_engine_to_end(scene, engine, p, steps):
-    """The Outcome of an engine after so many steps."""
+    """Return the Outcome of an engine after so many steps."""
     world = engine.make(p, scene.duration / steps)
     try:
         for _ in range(steps):
@@ -108,7 +108,7 @@ def run_engine_to_end(scene, engine, p, steps):
 
 
 def finite(observed):
-    """The Outcome of a run that ended."""
+    """Return the Outcome of a run that ended."""
     return Outcome(observed) if np.all(np.isfinite(observed)) else Outcome(None, "not finite")
 
 
@@ -126,7 +126,7 @@ def relative_to(truth, a, b):
 # ---------------------------------------------------------------------------------------------- curves
 
 def our_curve(selection, runner, p, truth):
-    """The errors of one of our methods over the sweep."""
+    """Return the errors of one of our methods over the sweep."""
     scene, step = selection.fastest(runner)
     runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(runner, p))
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
@@ -163,7 +163,7 @@ def reason(runner):
 
 
 def bound(runner, p, dt, law):
-    """What theory says about a run with steps of dt: {"limit", "predicted", "band"} of its row.
+    """Return what theory says about a run with steps of dt: {"limit", "predicted", "band"} of its row.
 
     limit      the largest relative error; with a prediction its size and its band
     predicted  what theory says will be observed: `law`, the truth or the own law, and the error; None without one
@@ -178,7 +178,7 @@ def bound(runner, p, dt, law):
 
 
 def judged(scene, runner, p, truth, runs, enough):
-    """The curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
+    """Return the curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
 
     runs: pairs (number of steps, Outcome), from coarse to fine; none is taken after `enough` that can be judged.
     Where the scene gives it its own law, it must follow that law.  Where that is the truth, it departs from nothing.
@@ -205,7 +205,7 @@ def judged(scene, runner, p, truth, runs, enough):
 
 
 def verdict_on(rows, law, finest, order, order_shown):
-    """(Verdict, message) on the rows of a curve; `finest` is the Outcome at the finest step.
+    """Return (Verdict, message) on the rows of a curve; `finest` is the Outcome at the finest step.
 
     A limit holds only where it is small: an expansion in powers of dt says nothing about a step for which it promises
     50 %.  An order is compared with theory where two steps have small limits; predicted errors contain it already.
@@ -260,7 +260,7 @@ def shown_order(rows, floor):
 # ------------------------------------------------------------------------------------------ both speeds, and who agrees
 
 def parity(selection, p):
-    """What plain and compiled runs of the same methods observed, and their largest relative difference.
+    """Return what plain and compiled runs of the same methods observed, and their largest relative difference.
 
     parity is None where no method has both.
     """
@@ -281,7 +281,7 @@ def labels_that_agree(result):
 
 
 def labels_to_film(result):
-    """The same; where no theory judges any of them, those that came to the end."""
+    """Return the same; where no theory judges any of them, those that came to the end."""
     first = next(iter(result["cases"].values()))
     ended = {c["label"] for c in first["ours"] if c["verdict"] == Verdict.UNDECIDED and c["rows"]
              and c["rows"][-1]["failure"] is None}

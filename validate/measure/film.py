@@ -12,7 +12,7 @@ COLOURS = {Role.TRUTH: ("#8f8f8f",), Role.ENGINE: ("#D55E00",), Role.OURS: ("#00
 
 
 def picture(selection, p, agreeing):
-    """The film of a case as data: one entry for each run, with its role, its colour and its frames."""
+    """Return the film of a case as data: one entry for each run, with its role, its colour and its frames."""
     scene = selection.scene
     if not scene.moves:
         if scene.our_film is None:
@@ -51,13 +51,13 @@ def films(scene, shown, p):
 
 
 def colours(roles):
-    """A colour for each run: grey for the truth, vermilion for an engine, blue and others for ours."""
+    """Return a colour for each run: grey for the truth, vermilion for an engine, blue and others for ours."""
     own = iter(COLOURS[Role.OURS] * 3)
     return [next(own) if Role(role) is Role.OURS else COLOURS[Role(role)][0] for role in roles]
 
 
 def in_space(scene, shown, p, seconds):
-    """The same motion for the 3D player; None where the scene does not say what its bodies look like."""
+    """Return the same motion for the 3D player; None where the scene does not say what its bodies look like."""
     if scene.bodies is None:
         return None
     runs = {label: (role, [scene.poses(observed, p) for observed in film]) for label, (role, film) in shown.items()}
@@ -71,7 +71,7 @@ def in_space(scene, shown, p, seconds):
 
 
 def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False, walls=()):
-    """What the 3D player plays.
+    """Return what the 3D player plays.
 
     bodies    shapes of validate/scenes/drawing.py
     runs      {label: (role, poses)}; poses (frames, bodies, 7): position x, y, z [m] and unit quaternion w, x, y, z
@@ -100,7 +100,7 @@ def links(scene, p):
 
 
 def our_frames(scene, step, p, dt, per_frame):
-    """What our method observes at every frame."""
+    """Return what our method observes at every frame."""
     state, film = scene.start(p), []
     for _ in range(FRAMES + 1):
         film.append(scene.observe(state, p))
@@ -109,7 +109,7 @@ def our_frames(scene, step, p, dt, per_frame):
 
 
 def engine_frames(engine, p, dt, per_frame):
-    """What an engine reads at every frame."""
+    """Return what an engine reads at every frame."""
     world = engine.make(p, dt)
     film = []
     try:

@@ -30,7 +30,7 @@ UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def loop(simulator, dim):
-    """(step, bounds, narrow, make) of round bodies in the plane or in space."""
+    """Return (step, bounds, narrow, make) of round bodies in the plane or in space."""
     if dim == 2:
         return (simulator.contact_step_2d, simulator.disc_bounds, simulator.round_contacts, simulator.make_bodies_2d)
     return simulator.contact_step, simulator.ball_bounds, simulator.round_contacts, simulator.make_bodies
@@ -50,7 +50,7 @@ class Whole:
         self.state, self.bodies = make(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin)
 
     def advance(self, load, t, dt, **now):
-        """The state after dt, from one in which the fields `now` of the bodies (n, …) are these."""
+        """Return the state after dt, from one in which the fields `now` of the bodies (n, …) are these."""
         for name, values in now.items():
             rows = getattr(self.state, name).copy()
             rows[:len(values)] = values
@@ -210,7 +210,7 @@ FULL = {SYMPLECTIC_EULER: points, SLIDING: block, GYROSCOPIC: turning_body, ROLL
 
 
 def made_when_called(make):
-    """A step that is made by its first call: a lesson that is missing then fails as a run does."""
+    """Return a step that is made by its first call: a lesson that is missing then fails as a run does."""
     made = []
 
     def step(*now):
@@ -232,7 +232,7 @@ def labels_as_expected(result):
 
 
 def steps_that_fail(result, label):
-    """Numbers of steps with which a method does not come to the end in the first case."""
+    """Return numbers of steps with which a method does not come to the end in the first case."""
     first = next(iter(result["cases"].values()))
     return {row["steps"] for c in first["ours"] if c["label"] == label for row in c["rows"] if row["failure"]}
 

@@ -59,7 +59,7 @@ def numbers_of(scene):
 
 
 def readings(selection, engine, p):
-    """What the engine reads at T, for each number of steps."""
+    """Return what the engine reads at T, for each number of steps."""
     found = []
     for steps in selection.steps:
         if steps <= (engine.most_steps or steps):
@@ -69,7 +69,7 @@ def readings(selection, engine, p):
 
 
 def frames(scene, engine, p):
-    """The engine's film in drawing coordinates."""
+    """Return the engine's film in drawing coordinates."""
     per_frame = max(1, scene.steps[-3] // FRAMES)
     film = engine_frames(engine, p, (scene.film_seconds or scene.duration) / (per_frame * FRAMES), per_frame)
     return [scene.points(observed, p).tolist() for observed in film]

@@ -31,16 +31,16 @@ class Plan(NamedTuple):
     changes: tuple = ()                      # for a notebook: (field, value) pairs that replace fields of the Scene
 
     def time_limits(self):
-        """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
+        """Return {speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
         ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.25, 1.0)
         return {"plain": ours, "compiled": ours, "engine": engine}
 
     def repeats(self):
-        """Number of timed repeats; fewer where a reader is waiting."""
+        """Return number of timed repeats; fewer where a reader is waiting."""
         return 3 if self.most_steps else 5 if self.quick else REPEATS
 
     def enough(self):
-        """How many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.
+        """Return how many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.
 
         Finer runs take most of the time, and a fault shows as well before them.
         """
@@ -64,23 +64,23 @@ class Selection(NamedTuple):
         return next(iter(self.cases.items()))
 
     def ours_for(self, p):
-        """The methods of ours that support this case, and in a quick validation are not too slow in it."""
+        """Return the methods of ours that support this case, and in a quick validation are not too slow in it."""
         return tuple(r for r in self.ours if can_do(r, p) and not (self.plan.quick and self.is_slow(r, p)))
 
     def engines_for(self, p):
-        """The engines that support this case; an optional one only where it runs."""
+        """Return the engines that support this case; an optional one only where it runs."""
         return tuple(r for r in self.scene.engine_runners if can_do(r, p) and not left_out(r.who, self.plan))
 
     def is_slow(self, runner, p):
-        """Whether this case is one in which only a full validation runs it."""
+        """Return whether this case is one in which only a full validation runs it."""
         return any(self.cases.get(case) == p for case in runner.slow_cases)
 
     def is_live(self, runner):
-        """Whether this engine is run here rather than read from its record."""
+        """Return whether this engine is run here rather than read from its record."""
         return runner.who.product in self.plan.live
 
     def speeds(self, runner):
-        """The speeds at which a method of ours runs, the fastest last."""
+        """Return the speeds at which a method of ours runs, the fastest last."""
         return speeds_of(self.scene, self.plan, runner)
 
     def rank(self, runner):
@@ -88,14 +88,14 @@ class Selection(NamedTuple):
         return -runner.who.order, self.speeds(runner)[-1:] != ("compiled",)
 
     def bound(self, runner, speed):
-        """(scene, step): the scene and our step, both plain or both compiled."""
+        """Return (scene, step): the scene and our step, both plain or both compiled."""
         if speed not in self.bindings:
             self.bindings[speed] = bound_scene(self.name, self.plan, speed == "compiled")
         scene = self.bindings[speed]
         return scene, getattr(getattr(scene.lessons, runner.who.lesson), runner.who.function)
 
     def steps_of(self, runner, p):
-        """The numbers of steps of a runner.
+        """Return the numbers of steps of a runner.
 
         Some sweeps end sooner in a quick run.  In a full run some go on, in the case that is timed.
         """
@@ -106,18 +106,18 @@ class Selection(NamedTuple):
         return tuple(n for n in self.steps if n <= most) + finer
 
     def fastest(self, runner):
-        """The same at the fastest speed that was asked for."""
+        """Return the same at the fastest speed that was asked for."""
         return self.bound(runner, self.speeds(runner)[-1])
 
 
 def bound_scene(name, plan, compiled=False):
-    """The Scene of that name with the plan's lessons and changes."""
+    """Return the Scene of that name with the plan's lessons and changes."""
     scene = modules.bind_scene(name, plan.of, compiled)
     return replace(scene, **dict(plan.changes)) if plan.changes else scene
 
 
 def select(name, plan):
-    """The Selection of a scene under a plan."""
+    """Return the Selection of a scene under a plan."""
     scene = bound_scene(name, plan)
     ours = ours_of(scene, plan)
     notes = notes_of(scene, plan, ours)
@@ -125,22 +125,22 @@ def select(name, plan):
 
 
 def left_out(engine, plan):
-    """Whether this engine is optional and not run here: it has no record that could stand in."""
+    """Return whether this engine is optional and not run here: it has no record that could stand in."""
     return engine.product.optional and engine.product not in plan.live
 
 
 def can_do(runner, p):
-    """Whether a runner can do this case at all."""
+    """Return whether a runner can do this case at all."""
     return runner.supports is None or runner.supports(p)
 
 
 def ours_of(scene, plan):
-    """The methods of ours to run: slow ones only in a full validation, none without a speed."""
+    """Return the methods of ours to run: slow ones only in a full validation, none without a speed."""
     return tuple(r for r in scene.our_runners if r.in_quick or not plan.quick) if plan.speeds else ()
 
 
 def speeds_of(scene, plan, runner):
-    """The speeds at which a method of ours runs: a quick run compiles only what the scene says."""
+    """Return the speeds at which a method of ours runs: a quick run compiles only what the scene says."""
     plain_only = plan.quick and not (scene.refined and runner.compiled_in_quick)
     return ("plain",) if plain_only and "plain" in plan.speeds else plan.speeds
 
@@ -153,7 +153,7 @@ def sweep(scene, plan):
 
 
 def cases_of(scene, plan):
-    """The scene's cases; in a notebook only the first of what moves; with overrides the first one, changed."""
+    """Return the scene's cases; in a notebook only the first of what moves; with overrides the first one, changed."""
     name, p = next(iter(scene.cases.items()))
     if plan.overrides:
         return {f"{name}, changed": p._replace(**dict(plan.overrides))}
@@ -164,7 +164,7 @@ def cases_of(scene, plan):
 
 
 def notes_of(scene, plan, ours):
-    """Sentences: what the scene omits, and what this run leaves to --full.  A notebook has no --full."""
+    """Return sentences: what the scene omits, and what this run leaves to --full.  A notebook has no --full."""
     omitted = (scene.omitted_methods[0].upper() + scene.omitted_methods[1:],) if scene.omitted_methods else ()
     if plan.most_steps:
         return omitted

@@ -29,7 +29,7 @@ def engine_parts(selection, p):
 
 
 def switches_of(engine, p, dt):
-    """The switches of what the worlds of this engine have."""
+    """Return the switches of what the worlds of this engine have."""
     found = []
     for switch in engine.product.adapter.SWITCHES:
         with worlds_made() as worlds:
@@ -41,7 +41,7 @@ def switches_of(engine, p, dt):
 
 
 def without(engine, switch):
-    """The same engine without one of its parts."""
+    """Return the same engine without one of its parts."""
     def make(p, dt):
         with worlds_made() as worlds:
             run = engine.make(p, dt)
@@ -52,7 +52,7 @@ def without(engine, switch):
 
 
 def with_and_without(scene, engine, switch, p, steps, repeats):
-    """What one part of an engine costs, and what changes without it."""
+    """Return what one part of an engine costs, and what changes without it."""
     lean_engine, dt = without(engine, switch), scene.duration / steps
     items = [Timed(which, "engine", steps, dt, time_engine(one, p))
              for which, one in (("with", engine), ("without", lean_engine))]

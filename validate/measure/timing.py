@@ -72,7 +72,7 @@ def times(name, plan, result):
 
 
 def worth_timing(selection, case):
-    """{label: {steps: row}} of the runs that are worth timing:
+    """Return {label: {steps: row}} of the runs that are worth timing:
     those not lost, and in a quick run every second one of the sweep, from the first.
     """
     quick = selection.plan.quick and not selection.plan.most_steps
@@ -83,7 +83,7 @@ def worth_timing(selection, case):
 
 
 def our_items(selection, p, found):
-    """What to time of our own methods, at each speed."""
+    """Yield what to time of our own methods, at each speed."""
     for runner in selection.ours_for(p):
         for speed in selection.speeds(runner) if found[runner.label] else ():      # a lost start cannot be prepared
             prepare = time_ours(*selection.bound(runner, speed), p)
@@ -92,7 +92,7 @@ def our_items(selection, p, found):
 
 
 def engine_items(selection, p, found):
-    """What to time of the engines that are installed."""
+    """Yield what to time of the engines that are installed."""
     for runner in selection.engines_for(p):
         if selection.is_live(runner):
             for n in found[runner.label]:
@@ -202,7 +202,7 @@ def seconds_per_step(item, limit):
 
 
 def clock(item, inner, steps=None):
-    """Seconds of one stepping loop, or of its first steps."""
+    """Return seconds of one stepping loop, or of its first steps."""
     loop, close = item.prepare(steps or item.steps, item.dt)
     try:
         begin = time.perf_counter()
@@ -256,7 +256,7 @@ def ablations(selection, p, agreeing):
 
 
 def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full):
-    """What it costs to put one omitted thing in, and whether the motion stays the same."""
+    """Return what it costs to put one omitted thing in, and whether the motion stays the same."""
     dt = scene.duration / steps
     items = [Timed(which, speed, steps, dt, time_ours(scene, step, *begin))
              for which, *begin in (("without", p), ("with", p_full, state))]

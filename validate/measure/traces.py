@@ -8,13 +8,13 @@ from ..run.store import read_whole
 
 
 def trace(name):
-    """The record of a scene, or None.  Raises BadInput for a damaged file."""
+    """Return the record of a scene, or None.  Raises BadInput for a damaged file."""
     path = RECORDED / f"{name}.json"
     return read_whole(path, dict, f"restore it, or give: validate record --scene {name}") if path.is_file() else None
 
 
 def recorded(name, case, engine):
-    """The record of one engine run on one case, None if it was not recorded.
+    """Return the record of one engine run on one case, None if it was not recorded.
 
     Raises BadInput without the scene's file.
     """
@@ -28,7 +28,7 @@ def recorded(name, case, engine):
 
 
 def film_of(name, colour):
-    """The recorded film of pybullet as a list of one entry; empty where there is none."""
+    """Return the recorded film of pybullet as a list of one entry; empty where there is none."""
     record = trace(name)
     if record is None:
         return []

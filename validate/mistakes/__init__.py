@@ -33,7 +33,7 @@ FOLDER = Path(__file__).parent
 
 @functools.cache
 def table(lesson):
-    """{exercise: its function, the trace of a right answer, and those of wrong ones}; empty if there is none."""
+    """Return {exercise: its function, the trace of a right answer, and those of wrong ones}; empty if there is none."""
     file = FOLDER / f"{lesson}.json"
     return json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
 
@@ -50,7 +50,7 @@ class Traces:
         self.functions, self.every, self.found = functions, every, {}
 
     def begin(self, subject, lesson, exercise, test):
-        """The Trace of one test."""
+        """Return the Trace of one test."""
         if self.every:
             trace = Trace(self.functions[exercise], range(1, EVERY + 1))
         else:
@@ -61,7 +61,7 @@ class Traces:
         return trace
 
     def of(self, subject, exercise):
-        """{test: Trace} of an exercise."""
+        """Return {test: Trace} of an exercise."""
         return self.found.get((subject, exercise), {})
 
 
@@ -78,11 +78,11 @@ class Trace:
         self.numbers, self.plain = False, set()                      # what there is of them: `is_telling`
 
     def of_calls(self, orderless):
-        """{number of the call: its summary}; orderless: whether the order within a result does not matter."""
+        """Return {number of the call: its summary}; orderless: whether the order within a result does not matter."""
         return self.sorted_out if orderless else self.results
 
     def kept(self, orderless):
-        """The results of the first calls and of some later ones, and the number of calls."""
+        """Return the results of the first calls and of some later ones, and the number of calls."""
         return [*(one for call, one in self.of_calls(orderless).items() if is_kept(call)), f"{self.calls} calls"]
 
     def keep(self, result, orderless):
@@ -93,7 +93,7 @@ class Trace:
         self.keep(CHANGED, CHANGED)
 
     def watching(self, function):
-        """The function, which adds its results to this trace."""
+        """Return the function, which adds its results to this trace."""
         @functools.wraps(function)
         def watched(*arguments, **named):
             self.calls += 1
@@ -119,12 +119,12 @@ class Trace:
 
 
 def is_kept(call):
-    """Whether the result of the call of this number is kept in every trace."""
+    """Return whether the result of the call of this number is kept in every trace."""
     return call <= FIRST or call & (call - 1) == 0
 
 
 def summary(result, orderless=False):
-    """What is kept of a result: [entries, weighted sum, sum of sizes], or a word where there are no numbers."""
+    """Return what is kept of a result: [entries, weighted sum, sum of sizes], or a word where there are no numbers."""
     try:
         rows = list(result) if orderless and not np.isscalar(result) else [result]
         entries = [np.nan_to_num(np.array(list(leaves(row)), dtype=float), nan=0.7, posinf=1e9, neginf=-1e9)
@@ -142,7 +142,7 @@ def summary(result, orderless=False):
 
 
 def is_plain(result):
-    """Whether a result has no number but 0, 1 and −1: too little to know a mistake by."""
+    """Return whether a result has no number but 0, 1 and −1: too little to know a mistake by."""
     try:
         numbers = np.array(list(leaves(result)), dtype=float)
     except Exception:
@@ -151,13 +151,13 @@ def is_plain(result):
 
 
 def is_telling(traces):
-    """Whether these traces are more than one and the same plain result: many first tries return zeros."""
+    """Return whether these traces are more than one and the same plain result: many first tries return zeros."""
     traces = [*traces]
     return any(trace.numbers for trace in traces) or len(set().union(*(trace.plain for trace in traces))) > 1
 
 
 def kind(value):
-    """What kind of thing a result is, in words."""
+    """Return what kind of thing a result is, in words."""
     if value is None or value is NOTHING:
         return "None" if value is None else ""
     if isinstance(value, (bool, np.bool_)):
@@ -200,7 +200,7 @@ def same(kept, stored):
 
 
 def same_size(kept, stored, tolerance):
-    """Whether a result is the stored one up to this part of its own terms, however small they are."""
+    """Return whether a result is the stored one up to this part of its own terms, however small they are."""
     if isinstance(kept, str) or isinstance(stored, str):
         return kept == stored
     return kept[0] == stored[0] and abs(kept[1] - stored[1]) <= tolerance * kept[2]
@@ -211,14 +211,14 @@ def all_same(kept, stored):
 
 
 def differ(kept, right):
-    """Whether some result differs from the right one of the same call; the number of calls does not count."""
+    """Return whether some result differs from the right one of the same call; the number of calls does not count."""
     return not all(map(same, kept[:-1], right[:-1]))
 
 
 # ---------------------------------------------------------------------------------------------- what is stored
 
 def stored(results):
-    """The results of a trace in few digits, as they are written down."""
+    """Return the results of a trace in few digits, as they are written down."""
     return [one if isinstance(one, str) else [one[0], float(f"{one[1]:.{DIGITS}g}")] for one in results]
 
 
@@ -265,7 +265,7 @@ def misshapen(lesson, exercise, trace):
 
 
 def sentence(found):
-    """What a student reads about these ideas."""
+    """Return what a student reads about these ideas."""
     if not found:
         return ""
     return f"a known mistake gives the same results: {' or '.join(f'“{idea}”' for idea in found[:MOST])}"

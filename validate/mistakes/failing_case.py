@@ -39,7 +39,7 @@ def expected_result(result, got, expected):
 
 
 def is_same(part, got):
-    """Whether two things hold the same numbers; the rows of an array may have changed places."""
+    """Return whether two things hold the same numbers; the rows of an array may have changed places."""
     try:
         part, got = np.asarray(part, dtype=float), np.asarray(got, dtype=float)
     except (TypeError, ValueError):
@@ -53,13 +53,13 @@ def is_same(part, got):
 # ---------------------------------------------------------------------------------------------- as JSON
 
 def encoded(case):
-    """The case as text; None where it is too large."""
+    """Return the case as text; None where it is too large."""
     tree = [_tree(part) for part in case]
     return json.dumps(tree) if count(tree) <= MOST_NUMBERS else None
 
 
 def decoded(text):
-    """The Case of a text.  Records become objects with the same fields."""
+    """Return the Case of a text.  Records become objects with the same fields."""
     return Case(*map(_value, json.loads(text)))
 
 

@@ -51,7 +51,7 @@ warnings.filterwarnings("ignore", "No artists with labels found to put in legend
 
 
 def folder():
-    """Where the learner works."""
+    """Return where the learner works."""
     return Path(os.environ.get("WORKBOOK_LESSONS", modules.ROOT / "lessons"))
 
 
@@ -83,7 +83,7 @@ def mine(lesson):
 
 
 def source_of(lesson, function):
-    """The text of your function as saved just now, whether the file loads or not."""
+    """Return the text of your function as saved just now, whether the file loads or not."""
     file = folder() / f"{lesson}.py"
     text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
     found = re.search(rf"^def {function}\(.*?(?=^\S|\Z)", text, re.M | re.S)
@@ -121,7 +121,7 @@ class StandIn:
 
 
 def answers(lesson):
-    """The worked answers of a lesson.
+    """Return the worked answers of a lesson.
 
     In a copy of the workbook without them your own functions stand in, and a sentence says so.
     """
@@ -142,7 +142,7 @@ drawn: list[bool] = []
 
 
 def attempt(function, *arguments):
-    """What your function returns; None when it is not written yet or fails.
+    """Return what your function returns; None when it is not written yet or fails.
 
     A failure is reported at once.  What is not attempted yet is said once per cell or figure.
     """
@@ -196,7 +196,7 @@ if get_ipython():
 
 
 def fastest(lesson, trial):
-    """(your lesson, whether it is compiled): compiled if trial(your compiled lesson) runs.
+    """Return (your lesson, whether it is compiled): compiled if trial(your compiled lesson) runs.
 
     If numba cannot compile one of your functions, a sentence says which, and all of the lesson runs plain.
     """
@@ -248,7 +248,7 @@ def opening(notebook, make):
 
 
 def frozen(value):
-    """What `make` gave, in types that JSON knows; to five decimals, more than a picture shows."""
+    """Return what `make` gave, in types that JSON knows; to five decimals, more than a picture shows."""
     if isinstance(value, np.ndarray):
         return {ARRAY: frozen(value.tolist())}
     if isinstance(value, dict):
@@ -293,7 +293,7 @@ def check(exercise, hint=False):
 
 
 def _below(exercise, outcomes, own):
-    """The sentence about an exercise that this one calls, where that does not pass."""
+    """Return the sentence about an exercise that this one calls, where that does not pass."""
     below = needs.needed(exercise, own)
     if not below or not any(o["status"] == "not yet" for o in outcomes):
         return ""
@@ -303,7 +303,7 @@ def _below(exercise, outcomes, own):
 
 
 def _outcomes_of(exercises, own):
-    """The outcomes of some exercises, as saved just now; none where the code ends the program."""
+    """Return the outcomes of some exercises, as saved just now; none where the code ends the program."""
     files = dict.fromkeys(str(TESTS / f"test_{needs.table()[number]['lesson']}.py") for number in exercises)
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "outcomes.json"
@@ -351,7 +351,7 @@ class _Progress:
         self.possible = sum(o["points"] for o in outcomes)
 
     def signs(self):
-        """(exercise, its state) in the order of the lesson."""
+        """Return (exercise, its state) in the order of the lesson."""
         return [(number, self.states.get(number, "not attempted")) for number in needs.of_lesson(self.lesson)]
 
     def next(self):
@@ -407,11 +407,11 @@ class _Answer:
         self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
 
     def first(self):
-        """The outcome that is shown."""
+        """Return the outcome that is shown."""
         return next((o for o in self.open if o["status"] == "not yet"), None)
 
     def folds(self, name):
-        """Whether this line tells the formula that the exercise asks to find, and was not asked for."""
+        """Return whether this line tells the formula that the exercise asks to find, and was not asked for."""
         return name == "hint" and self.first()["tells"] and not self.unfolded
 
     def lines(self):
@@ -441,7 +441,7 @@ class _Answer:
         return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented), *drawn])
 
     def shown(self, name, value):
-        """A line as HTML."""
+        """Return a line as HTML."""
         if self.folds(name):
             return f"<details><summary>show it</summary>{escape(value)}</details>"
         return escape(value)
@@ -460,7 +460,7 @@ class _Answer:
 # ---------------------------------------------------------------------------------------------- pictures
 
 def look(method, **changes):
-    """How every figure draws a method of validate/methods.py: its arguments for `plot`, with changes."""
+    """Return how every figure draws a method of validate/methods.py: its arguments for `plot`, with changes."""
     return {"color": method.colour, "marker": method.marker, "label": method.label, **changes}
 
 
@@ -482,7 +482,7 @@ def save_film(frames, seconds, file, links=(), shown_as=None):
 
 
 def _plane(frames, seconds, links, shown_as):
-    """A film in the plane as data."""
+    """Return a film in the plane as data."""
     roles = [Role.TRUTH if label == "truth" else Role.OURS for label in frames]
     taken = {method.colour for label, method in shown_as.items() if label in frames}
     others = iter([colour for colour in film.COLOURS[Role.OURS] * 3 if colour not in taken])
@@ -523,14 +523,14 @@ def _display3d(picture, height=380):
 
 
 def scene_of(name):
-    """A scene with your lesson functions in it; with the workbook's own, and a sentence,
+    """Return a scene with your lesson functions in it; with the workbook's own, and a sentence,
     where yours cannot be loaded.
     """
     return _scene_and_owner(name)[0]
 
 
 def _scene_and_owner(name):
-    """(scene, whether it holds your functions)."""
+    """Return (scene, whether it holds your functions)."""
     try:
         return modules.bind_scene(name, folder()), True
     except Exception as e:

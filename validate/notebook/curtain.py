@@ -24,7 +24,7 @@ def threads(springs):
 
 
 def network(springs, fixed=RINGS, wind=(0.03, 0.0)):
-    """The curtain as a network of springs; springs is lesson 2."""
+    """Return the curtain as a network of springs; springs is lesson 2."""
     return springs.make_spring_network(points(), m=0.01, fixed=fixed, pairs=threads(springs), k=60.0, k_d=0.02,
                                        gravity=(0.0, -9.81), wind=wind, k_v=0.004)
 
@@ -73,7 +73,7 @@ def drawn_aside(step, law, network, spreads):
 
 
 def overlaid(films, links, place):
-    """(films, links) for `play`: several films in one picture, each with its own points, links and colour.
+    """Return (films, links) for `play`: several films in one picture, each with its own points, links and colour.
 
     films is {label: pictures (n, 2)}, links has one list of pairs per film.  In the film of another label the points
     are hidden at `place`, where they move by 10 µm, because points that never move are drawn as nails.
@@ -118,7 +118,7 @@ RING = drawing.mesh(*RING_MESH)
 
 
 def sheet(slipped=False):
-    """The hanging curtain as a shape about its middle: x lies along the pole, and z points up.
+    """Return the hanging curtain as a shape about its middle: x lies along the pole, and z points up.
 
     If its first ring has slipped off, its corner hangs down.
     """
@@ -140,7 +140,7 @@ def shapes(rings=RINGS, slipped=False):
 
 
 def still(rings=RINGS):
-    """Their poses (7,): the axis of the pole is the x axis."""
+    """Return their poses (7,): the axis of the pole is the x axis."""
     ends = [np.concatenate(([place, 0.0, 0.0], LEVEL)) for _, place in KNOBS]
     hung = [np.concatenate(([CELL * (ring - 0.5 * (COLS - 1)), 0.0, HANG], ALONG_X)) for ring in rings]
     cloth = np.array([0.0, 0.0, TOP - 0.5 * CELL * (ROWS - 1), *LEVEL])

@@ -28,7 +28,7 @@ def describe(figure):
 
 
 def plain(text):
-    """A label without line breaks, its formulas as text."""
+    """Return a label without line breaks, its formulas as text."""
     text = re.sub(r"\\([A-Za-z]+)", lambda found: LETTERS.get(found[1], found[1]), text) if "$" in text else text
     return " ".join(re.sub(r"[${}]", "", text).split()) if "$" in text else " ".join(text.split())
 
@@ -65,7 +65,7 @@ def _curves(axes):
 
 
 def _bars(axes):
-    """The lengths of the bars, and what each stands for; nothing where there are none."""
+    """Return the lengths of the bars, and what each stands for; nothing where there are none."""
     bars = [one for one in axes.containers if isinstance(one, BarContainer)]
     sizes = [[b.get_height() if one.orientation == "vertical" else b.get_width() for b in one] for one in bars]
     names = [f"“{plain(one.get_label())}” " if not one.get_label().startswith("_") else "" for one in bars]
@@ -90,7 +90,7 @@ def _ends(axes, handle):
 
 
 def _categories(axes):
-    """Names that stand at an axis in place of numbers."""
+    """Return names that stand at an axis in place of numbers."""
     ticks = [plain(tick.get_text()) for tick in [*axes.get_xticklabels(), *axes.get_yticklabels()]]
     return [tick for tick in ticks if re.search(r"[^\W\d_]", tick)]
 

@@ -28,7 +28,7 @@ class Ended(Exception):
 
 
 def run(*arguments):
-    """What pytest prints.  Raises Ended when the code under test ends its process; this one survives."""
+    """Return what pytest prints.  Raises Ended when the code under test ends its process; this one survives."""
     return (in_this_one if BROWSER else in_a_process)(*arguments)
 
 
@@ -44,7 +44,7 @@ def in_a_process(*arguments):
 
 @cache
 def processes():
-    """How processes are started."""
+    """Return how processes are started."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -80,7 +80,7 @@ def in_this_one(*arguments):
 
 
 def quiet(*arguments):
-    """What pytest prints, in this process."""
+    """Return what pytest prints, in this process."""
     with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
         pytest.main([*arguments, "-p", "no:cacheprovider", "--disable-plugin-autoload"])
     return said.getvalue()

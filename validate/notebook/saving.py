@@ -18,7 +18,7 @@ FRAMES_PER_SECOND = 25       # of a GIF: viewers round longer times between pict
 
 
 def film_html(picture, height=260):
-    """The HTML of a film, its player included."""
+    """Return the HTML of a film, its player included."""
     name = f"p{uuid.uuid4().hex}"
     runs = picture["films"]
     alone = runs if len(runs) == 1 else []                           # the player's bar names several

@@ -21,7 +21,7 @@ LESSONS = {"pbd": "PBD"}     # names that are no words
 
 
 def pictures(results, stability):
-    """(plot, file, data, the scene or lesson that it is of) of every still picture."""
+    """Return (plot, file, data, the scene or lesson that it is of) of every still picture."""
     refined = [({key: value for key, value in r.items() if key != "picture"}, r["scene"])
                for r in results if r["refinement"]]
     drawn = [case for case in stability if case["picture"]]
@@ -38,7 +38,7 @@ def copied(results):
 
 
 def files(results, stability):
-    """The names of all files of a report."""
+    """Return the names of all files of a report."""
     always = "index.html", "report.json", "coverage.html", "left_out.html"
     return {*always, *(["stability.html"] if stability else []), *copied(results), *tables.names(results, stability),
             *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
@@ -49,19 +49,19 @@ LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for 
 
 
 def place(ratio, least=LEAST, most=MOST):
-    """Where a ratio stands on a scale, which is logarithmic and by default the front page's [%]."""
+    """Return where a ratio stands on a scale, which is logarithmic and by default the front page's [%]."""
     share = log(min(max(ratio, least), most) / least) / log(most / least)
     return round(100.0 * share, 2)
 
 
 def thumbnail(picture):
-    """A still picture of a film, as an SVG in the page."""
+    """Return a still picture of a film, as an SVG in the page."""
     return Markup(environment().get_template("thumbnail.html").render(runs=films.still(picture)))
 
 
 @cache
 def environment():
-    """The templates, with what they call."""
+    """Return the templates, with what they call."""
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
                         trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,

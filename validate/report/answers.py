@@ -9,7 +9,7 @@ from . import words
 
 
 def answers(results, stability, cores=None):
-    """{question's name: what the front page says}: right, faster, departures, stable."""
+    """Return {question's name: what the front page says}: right, faster, departures, stable."""
     return {"right": right(results), "faster": faster(results, cores), "departures": departures(results),
             "stable": stable(stability)}
 
@@ -80,7 +80,7 @@ def departures(results):
 
 
 def stable(stability):
-    """How many findings hold, and the cases in which one fails."""
+    """Return how many findings hold, and the cases in which one fails."""
     held = [f["holds"] for case in stability for f in case["findings"]]
     failing = {f"{case['lesson']}-{case['slug']}": case["title"] for case in stability
                if not all(f["holds"] for f in case["findings"])}

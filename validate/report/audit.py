@@ -35,7 +35,7 @@ def audit(folder, data):
 
 
 def differs(a, b):
-    """Whether two figures are not the same; None is a figure that there is none of."""
+    """Return whether two figures are not the same; None is a figure that there is none of."""
     if a is None or b is None:
         return a is not b
     return not abs(a - b) <= NEAR * max(abs(a), abs(b))
@@ -44,7 +44,7 @@ def differs(a, b):
 # ---------------------------------------------------------------------------------------------- errors and verdicts
 
 def of_scene(result, counts):
-    """What is wrong with the figures of one scene."""
+    """Yield what is wrong with the figures of one scene."""
     for name, case in result["cases"].items():
         if not np.all(np.isfinite(np.array(case["truth"], dtype=float))):
             yield f"the truth of {name!r} is not finite"
@@ -60,7 +60,7 @@ def of_scene(result, counts):
 
 
 def of_curve(curve, case, result):
-    """What is wrong with the errors, the order and the verdict of one curve."""
+    """Yield what is wrong with the errors, the order and the verdict of one curve."""
     truth, rows, own = case["truth"], curve["rows"], curve.get("own_law")
     if not rows:
         if Verdict(curve["verdict"]) is not Verdict.UNDECIDED:
@@ -98,7 +98,7 @@ def distance(observed, truth):
 
 
 def outside(row, law):
-    """Whether a run ended outside of the band about what theory predicts for it."""
+    """Return whether a run ended outside of the band about what theory predicts for it."""
     if row["predicted"] is None or row["failure"]:
         return False
     size = sum(x * x for x in law) ** 0.5
@@ -107,7 +107,7 @@ def outside(row, law):
 
 
 def slope(rows, floor):
-    """The order of the finest four runs after the last one that was lost: the slope of log error over log dt."""
+    """Return the order of the finest four runs after the last one that was lost: the slope of log error over log dt."""
     lost = [k for k, row in enumerate(rows) if row["error"] is None or row["error"] >= ASYMPTOTIC]
     clear = [row for row in rows[lost[-1] + 1 if lost else 0:]
              if row["error"] > max(1e-11 + floor, 100.0 * ROUND_OFF * row["steps"])][-4:]
@@ -118,7 +118,7 @@ def slope(rows, floor):
 
 
 def verdict_of(rows, expected, order, has_own_law):
-    """The Verdict that the rows give; None where an exercise has no answer yet."""
+    """Return the Verdict that the rows give; None where an exercise has no answer yet."""
     small = [row for row in rows if row["limit"] is not None and row["limit"] < ASYMPTOTIC]   # None: theory is silent
     ratios = [row["error"] / row["limit"] for row in small if row["error"] is not None]
     failure = rows[-1]["failure"] or ""
@@ -139,7 +139,7 @@ def verdict_of(rows, expected, order, has_own_law):
 # ---------------------------------------------------------------------------------------------- times
 
 def of_times(result, counts):
-    """What is wrong with the medians, ranges and ratios of one scene."""
+    """Yield what is wrong with the medians, ranges and ratios of one scene."""
     times = result["times"]
     errors = {(c["label"], row["steps"]): row["error"] for case in list(result["cases"].values())[:1]
               for c in case["ours"] + case["engines"] for row in c["rows"]}
@@ -154,7 +154,7 @@ def of_times(result, counts):
 
 
 def of_time(row, error):
-    """What is wrong with the time of one run, and with the error that stands beside it."""
+    """Yield what is wrong with the time of one run, and with the error that stands beside it."""
     place = f"the time of {row['label']}, {row['speed']}, {row['steps']} steps"
     if row["speed"] != "recorded" and not row.get("repeats"):
         yield f"{place} has no repeats"
@@ -166,7 +166,7 @@ def of_time(row, error):
 
 
 def of_targets(label, targets, rows):
-    """What is wrong with the times that one curve takes to given errors."""
+    """Yield what is wrong with the times that one curve takes to given errors."""
     mine = [row for row in rows if f"{row['label']} ({row['speed']})" == label]
     points = [(row["error"], row["seconds"]) for row in mine]
     if len(targets) != len(TARGETS) or not points:
@@ -177,7 +177,7 @@ def of_targets(label, targets, rows):
 
 
 def of_costs(times):
-    """What is wrong with the cost of what a scene, our whole loop or an engine leaves out."""
+    """Yield what is wrong with the cost of what a scene, our whole loop or an engine leaves out."""
     for row in times["ablations"]:
         if row["cost"] is not None and not follows(row, "cost"):
             yield f"what it costs to put in {row['what']!r} does not follow from its repeats"
@@ -193,7 +193,7 @@ def of_costs(times):
 
 
 def follows(row, key):
-    """Whether a ratio of times is that of its repeats, and `same` says whether both runs observed the same."""
+    """Return whether a ratio of times is that of its repeats, and `same` says whether both runs observed the same."""
     full, lean = (median(repeats) for repeats in row["repeats"])
     return not differs(row[key], full / lean) and row["same"] == (distance(*row["observed"]) < SAME)
 
@@ -211,7 +211,7 @@ def least_time(points, target):
 
 
 def of_advantage(one, rows):
-    """What is wrong with one ratio of an engine's time to ours."""
+    """Yield what is wrong with one ratio of an engine's time to ours."""
     worth = [(r["error"], r["seconds"]) for r in rows
              if r["label"] == one["engine"] and r["speed"] == "engine" and EXACTLY < r["error"] < ASYMPTOTIC]
     best = min(worth, default=None)
@@ -232,7 +232,7 @@ def of_advantage(one, rows):
 # ---------------------------------------------------------------------------------------------- findings, limits, pages
 
 def of_case(case, counts):
-    """What is wrong with the findings of a stability case."""
+    """Yield what is wrong with the findings of a stability case."""
     if not case["findings"]:
         yield "there are no findings"
     for f in case["findings"]:
@@ -264,7 +264,7 @@ def of_limits(data, counts):
 
 
 def apart(row, theory):
-    """Whether what theory predicts is not what was stored."""
+    """Return whether what theory predicts is not what was stored."""
     a, b = row["predicted"], theory["predicted"]
     return (a is None) != (b is None) or (a is not None and distance(a, b) > NEAR)
 

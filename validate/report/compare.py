@@ -23,12 +23,12 @@ class Change(NamedTuple):
 
 
 def changes(old, new):
-    """Every Change from one report to another; both are the content of a report.json."""
+    """Return every Change from one report to another; both are the content of a report.json."""
     return [*verdicts(old, new), *findings(old, new), *orders_and_errors(old, new), *times(old, new)]
 
 
 def curves(report):
-    """{(scene, case, role, label): curve} of a report."""
+    """Return {(scene, case, role, label): curve} of a report."""
     return {(scene["scene"], case, curve["role"], curve["label"]): curve
             for scene in report["scenes"] for case, one in scene["cases"].items()
             for curve in one["ours"] + one["engines"]}
@@ -79,7 +79,7 @@ def findings(old, new):
 
 
 def by_case(report):
-    """{lesson/slug: {(quantity, how many before it): finding}} of a report: a claim may be reworded."""
+    """Return {lesson/slug: {(quantity, how many before it): finding}} of a report: a claim may be reworded."""
     cases = {}
     for case in report["stability"]:
         found = cases.setdefault(f"{case['lesson']}/{case['slug']}", {})
@@ -133,7 +133,7 @@ def times(old, new):
 
 
 def timed(report):
-    """{(scene, label, speed, steps): row} of all times that were measured in this run."""
+    """Return {(scene, label, speed, steps): row} of all times that were measured in this run."""
     return {(scene["scene"], row["label"], row["speed"], row["steps"]): row
             for scene in report["scenes"] for row in (scene.get("times") or {}).get("rows", ())
             if row["speed"] != "recorded"}

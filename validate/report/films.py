@@ -29,7 +29,7 @@ def packed(frames):
 
 
 def still(picture):
-    """What a thumbnail draws: [{role, colour, trails, lines, dots}], as paths of an SVG of WIDTH by HEIGHT."""
+    """Return what a thumbnail draws: [{role, colour, trails, lines, dots}], as paths of an SVG of WIDTH by HEIGHT."""
     runs = [(f, np.asarray(f["frames"], dtype=float)) for f in picture["films"]]
     at = placed(np.concatenate([points.reshape(-1, 2) for _, points in runs]))
     drawn = []
@@ -57,5 +57,5 @@ def placed(points):
 
 
 def path(points):
-    """A broken line in the language of SVG."""
+    """Return a broken line in the language of SVG."""
     return "M" + " ".join(f"{x:.1f} {y:.1f}" for x, y in points)

@@ -34,7 +34,7 @@ class Row(NamedTuple):
 
 
 def rows_of(report):
-    """The runs of a report that were judged by more than round-off."""
+    """Yield the runs of a report that were judged by more than round-off."""
     for result in report["scenes"]:
         for name, case in result["cases"].items():
             for curve in case["ours"] + case["engines"]:
@@ -49,14 +49,14 @@ def rows_of(report):
 
 
 def share(ratios, percent):
-    """The value that so many percent of the ratios do not exceed."""
+    """Return the value that so many percent of the ratios do not exceed."""
     if len(ratios) == 1 or math.isinf(max(ratios)):                    # quantiles() cannot interpolate to infinity
         return sorted(ratios)[math.ceil(percent / 100.0 * len(ratios)) - 1]
     return quantiles(ratios, n=100, method="inclusive")[percent - 1]
 
 
 def table_of(title, rows, key):
-    """A table of the ratios, one line for each value of `key`, and one for all."""
+    """Return a table of the ratios, one line for each value of `key`, and one for all."""
     table = Table(title, "rows", "two-sided", "median", "90 %", "largest", box=None, header_style="bold")
     groups = {}
     for row in rows:
@@ -70,7 +70,7 @@ def table_of(title, rows, key):
 
 
 def loosest(rows):
-    """The curves whose tightest row is the loosest: a wrong number hides best there."""
+    """Return the curves whose tightest row is the loosest: a wrong number hides best there."""
     curves = {}
     for row in rows:
         curves.setdefault((row.scene, row.case, row.label), []).append(row)

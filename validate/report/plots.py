@@ -36,7 +36,7 @@ def style():
 
 
 def looks(result):
-    """{label: how it is drawn} of every curve of a scene.
+    """Return {label: how it is drawn} of every curve of a scene.
 
     Curves may lie on each other, so each has smaller markers than the one below it; engines have crosses and rings,
     which show what is below.
@@ -168,7 +168,7 @@ def maps(path, picture):
 
 
 def thing_of(label):
-    """What a curve is of, without whether it is theory's or measured."""
+    """Return what a curve is of, without whether it is theory's or measured."""
     return THEORY_OR_MEASURED.sub("", label)
 
 
@@ -176,7 +176,7 @@ THEORY_OR_MEASURED = re.compile(r"^theory, |, (theory|measured)$|: .*$")
 
 
 def series_colours(labels):
-    """A colour each: a method has its own, theory and measurement of one thing share theirs,
+    """Return a colour each: a method has its own, theory and measurement of one thing share theirs,
     and no two things have one.
     """
     things, colours = [thing_of(label) for label in labels], {}
@@ -209,7 +209,7 @@ def series_markers(labels):
 
 
 def series_dashes(labels):
-    """A dash pattern each: lines that have no markers are told apart without their colours."""
+    """Return a dash pattern each: lines that have no markers are told apart without their colours."""
     things = list(dict.fromkeys(map(thing_of, labels)))
     return [DASHES[things.index(thing_of(label)) % len(DASHES)] for label in labels]
 
@@ -246,7 +246,7 @@ COLOUR = re.compile(r"(fill|stroke): (#[0-9a-f]{6})")
 
 
 def css_colour(colour):
-    """A colour that a dark page may replace by a lighter one."""
+    """Return a colour that a dark page may replace by a lighter one."""
     return f"var(--c{colour.lower().replace('#', '-')}, {colour.lower()})"
 
 

@@ -43,14 +43,14 @@ def show(console, results, stability):
 
 
 def signs(curves):
-    """How many of these curves have each verdict, such as ✓ 8 ≈ 1."""
+    """Return how many of these curves have each verdict, such as ✓ 8 ≈ 1."""
     count = Counter(SIGNS[Verdict(c["verdict"])] for c in curves)
     return " ".join(f"[{style}]{sign} {count[sign, style]}[/{style}]" for sign, style in dict.fromkeys(SIGNS.values())
                     if count[sign, style]) or "–"
 
 
 def best_order(result):
-    """The highest order that one of our methods shows."""
+    """Return the highest order that one of our methods shows."""
     best = words.best_order(next(iter(result["cases"].values()))["ours"])
     if best is None:
         return "–"
@@ -58,7 +58,7 @@ def best_order(result):
 
 
 def faster(result):
-    """The smallest of our advantages over the engines."""
+    """Return the smallest of our advantages over the engines."""
     ratios = advantages(result)
     return words.factor(min(ratios)) if ratios else "–"
 
@@ -90,7 +90,7 @@ def advantages(result):
 
 
 def plain_signs(results, kind):
-    """How many curves of these results have each verdict, without colours: ✓ 8 ≈ 1."""
+    """Return how many curves of these results have each verdict, without colours: ✓ 8 ≈ 1."""
     verdicts = [Verdict(c["verdict"]) for result in results for case in result["cases"].values() for c in case[kind]]
     count = Counter(SIGNS[v][0] for v in verdicts)
     return " ".join(f"{sign} {count[sign]}" for sign, _ in dict.fromkeys(SIGNS.values()) if count[sign]) or "–"

@@ -19,7 +19,7 @@ FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tol
 
 
 def text(header, rows):
-    """A CSV; None is an empty cell."""
+    """Return a CSV; None is an empty cell."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(header)
@@ -28,12 +28,12 @@ def text(header, rows):
 
 
 def address(header, rows):
-    """The same as an address that a link can lead to: small tables need no file."""
+    """Return the same as an address that a link can lead to: small tables need no file."""
     return "data:text/csv;charset=utf-8," + quote(text(header, rows))
 
 
 def names(results, stability):
-    """The files that `texts` gives."""
+    """Return the files that `texts` gives."""
     drawn = [case for case in stability if case["picture"]]
     front = {"scenes.csv": True, "races.csv": faster(results)["races"], "departures.csv": departures(results)["lines"],
              "engine-parts.csv": words.engine_parts(results)}
@@ -43,7 +43,7 @@ def names(results, stability):
 
 
 def texts(results, stability):
-    """{file: CSV} of all plots and of the long tables; none for a table that is empty."""
+    """Return {file: CSV} of all plots and of the long tables; none for a table that is empty."""
     products = words.products(results)
     rows = [(r, words.row(r, products)) for r in results]
     races, lines = faster(results)["races"], departures(results)["lines"]
@@ -80,7 +80,7 @@ def texts(results, stability):
 
 
 def runs(result):
-    """Every run of every case of a scene."""
+    """Yield every run of every case of a scene."""
     for name, case in result["cases"].items():
         for c in case["ours"] + case["engines"]:
             own = {row["steps"]: error for row, error in words.own_errors(c)}
@@ -90,17 +90,17 @@ def runs(result):
 
 
 def ablations(result):
-    """What a scene leaves out, and what it costs to put it in."""
+    """Return what a scene leaves out, and what it costs to put it in."""
     return [(row["what"], row["cost"], row["same"], row["note"]) for row in result["times"]["ablations"]]
 
 
 def coverage(table):
-    """Which places run each exercise."""
+    """Return which places run each exercise."""
     return [(number, row["function"], row["lesson"], " ".join(row["places"])) for number, row in table.items()]
 
 
 def of_picture(picture):
-    """The curves of a stability case; of maps a table each, with a line for each y and a column for each x."""
+    """Return the curves of a stability case; of maps a table each, with a line for each y and a column for each x."""
     if not picture.get("maps"):
         rows = [(label, x, y) for label, xs, ys, _ in picture["series"] for x, y in zip(xs, ys)]
         return text(("curve", picture["x_label"], picture["y_label"]), rows)

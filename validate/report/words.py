@@ -37,7 +37,7 @@ BUSY_LOAD = 1.5              # the same where only the load of the machine is kn
 # ---------------------------------------------------------------------------------------------- numbers
 
 def rounded(x, digits=2):
-    """A number with so many digits that count, written out: 270, 3.8, 0.042."""
+    """Return a number with so many digits that count, written out: 270, 3.8, 0.042."""
     x = float(f"{x:.{digits}g}")
     decimals = max(0, digits - 1 - floor(log10(abs(x)))) if x else 0
     return f"{x:,.{decimals}f}"
@@ -57,7 +57,7 @@ def number(x, digits=3):
 
 
 def known(x, tolerance):
-    """A number with as many decimals as its tolerance leaves: 2.82843 where the tolerance is 0.00003."""
+    """Return a number with as many decimals as its tolerance leaves: 2.82843 where the tolerance is 0.00003."""
     if x is not None and not tolerance and x == round(x) and abs(x) < 1e9:
         return f"{x:,.0f}"                                           # a count
     if x is None or not tolerance or x == 0:
@@ -67,7 +67,7 @@ def known(x, tolerance):
 
 
 def seconds(t):
-    """A duration with its unit, to two digits: a machine repeats no time more exactly."""
+    """Return a duration with its unit, to two digits: a machine repeats no time more exactly."""
     if t is None:
         return "–"
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
@@ -85,17 +85,17 @@ def percent(x):
 
 
 def percents(low, high):
-    """A range of relative errors."""
+    """Return a range of relative errors."""
     return percent(high) if percent(low) == percent(high) else f"{percent(low).removesuffix(' %')} to {percent(high)}"
 
 
 def factor(x):
-    """A ratio of times."""
+    """Return a ratio of times."""
     return "–" if x is None else f"{rounded(x)}×"
 
 
 def ratio(race):
-    """A ratio of times with its range, or why there is none.
+    """Return a ratio of times with its range, or why there is none.
 
     It has two digits where the range is narrow or the ratio near 1, else one.
     """
@@ -114,7 +114,7 @@ def order(curve):
 
 
 def with_units(params, table):
-    """The numbers of a case with their units, such as k = 100 N/m; table: [(name, value, meaning [unit])]."""
+    """Return the numbers of a case with their units, such as k = 100 N/m; table: [(name, value, meaning [unit])]."""
     units = {name: re.search(r"\[([^\]]+)\]$", meaning) for name, _, meaning in table}
     shown = {name: unit[1] for name, unit in units.items() if unit and unit[1] != "-"}
     each = (f"{name} = {number(x, 4)} {shown.get(name, '')}".rstrip() for name, x in params.items()
@@ -125,7 +125,7 @@ def with_units(params, table):
 # ---------------------------------------------------------------------------------------------- verdicts
 
 def judge(curve):
-    """(text, kind) of a curve's verdict; the kind is a class of the style sheet."""
+    """Return (text, kind) of a curve's verdict; the kind is a class of the style sheet."""
     verdict = Verdict(curve["verdict"])
     return verdict.value, KINDS[verdict]
 
@@ -139,12 +139,12 @@ def verdicts(curves):
 
 
 def verdict(curves):
-    """(text, kind) of the verdict that matters most among several."""
+    """Return (text, kind) of the verdict that matters most among several."""
     return verdicts(curves)[0][:2] if curves else ("not done here", "none")
 
 
 def named(curve):
-    """A curve's name inside a sentence: pybullet (default)."""
+    """Return a curve's name inside a sentence: pybullet (default)."""
     product, _, variant = curve["label"].partition(", ") if "product" in curve else (curve["label"], "", "")
     return f"{product} ({variant})" if variant else product
 
@@ -161,14 +161,14 @@ def relative_to(observed, law):
 
 
 def finest(curve):
-    """The run of the most steps, or None."""
+    """Return the run of the most steps, or None."""
     return curve["rows"][-1] if curve["rows"] else None
 
 
 # ---------------------------------------------------------------------------------------------- races
 
 def races(result):
-    """{product: the race to its smallest error} of a scene.  To be as wrong as another law is no race.
+    """Return {product: the race to its smallest error} of a scene.  To be as wrong as another law is no race.
 
     Of an engine's settings that reach that error, or nearly, the fastest one runs.
     """
@@ -218,7 +218,7 @@ def why_open(a, result):
 
 
 def range_of(a, result):
-    """The lowest and the highest ratio that the repeats allow.
+    """Return the lowest and the highest ratio that the repeats allow.
 
     Our time to that error was interpolated between runs: its spread is that of the run beside it.
     """
@@ -231,7 +231,7 @@ def range_of(a, result):
 
 
 def tied(a, result):
-    """Whether a ratio is within a factor of two, or within the spread of its times."""
+    """Return whether a ratio is within a factor of two, or within the spread of its times."""
     low, high = range_of(a, result)
     return 1.0 / TIE < a["ratio"] < TIE or low < 1.0 < high
 
@@ -244,7 +244,7 @@ def accurate_enough(advantage, result):
 
 
 def busy(results):
-    """(cores that other programs used, at most, while times were taken; True where that is only a load)."""
+    """Return (cores that other programs used, at most, while times were taken; True where that is only a load)."""
     others = [r["times"]["others"] for r in results if r["times"].get("others") is not None]
     if others:
         return max(others), False
@@ -267,7 +267,7 @@ def busy_warning(results, cores):
 # ---------------------------------------------------------------------------------------------- the front page
 
 def products(results):
-    """The engines that a report has columns for: one that is optional only where it ran."""
+    """Return the engines that a report has columns for: one that is optional only where it ran."""
     ran = {c["product"] for r in results for one in r["cases"].values() for c in one["engines"]}
     return [product.name for product in PRODUCTS if not product.optional or product.name in ran]
 
@@ -298,7 +298,7 @@ def left_out(results):
 
 
 def engine_parts(results):
-    """The parts of engines that were switched off in turn: [{scene, title, lesson, found: {part: its rows}}]."""
+    """Return the parts of engines that were switched off in turn: [{scene, title, lesson, found: {part: its rows}}]."""
     rows = []
     for r in results:
         found = {}
@@ -310,7 +310,7 @@ def engine_parts(results):
 
 
 def unpredicted(result):
-    """{reason: labels} of the curves of a scene whose error no theory predicts."""
+    """Return {reason: labels} of the curves of a scene whose error no theory predicts."""
     found = {}
     for case in result["cases"].values():
         for curve in case["ours"] + case["engines"]:
@@ -320,18 +320,18 @@ def unpredicted(result):
 
 
 def part_names(parts):
-    """Names of what was switched off anywhere."""
+    """Return names of what was switched off anywhere."""
     return list(dict.fromkeys(name for row in parts for name in row["found"]))
 
 
 def part_products(parts):
-    """Names of the engines of which parts were switched off."""
+    """Return names of the engines of which parts were switched off."""
     measured = {one["product"] for row in parts for rows in row["found"].values() for one in rows}
     return [product.name for product in PRODUCTS if product.name in measured]
 
 
 def change_without(row):
-    """What becomes of a motion without a part of the engine, in a word or two."""
+    """Return what becomes of a motion without a part of the engine, in a word or two."""
     if row["change"] is None:
         return "lost"
     if row["change"] >= 1.0:
@@ -340,7 +340,7 @@ def change_without(row):
 
 
 def best_order(curves):
-    """The curve of ours that agrees and shows the highest order."""
+    """Return the curve of ours that agrees and shows the highest order."""
     agreeing = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES]
     known = [c for c in agreeing if c["order"] is not None or c["expected"] == EXACT]
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
@@ -369,7 +369,7 @@ def seen_in_steps(result):
 # ---------------------------------------------------------------------------------------------- texts of scenes
 
 def summary_line(story):
-    """The first sentence or two of a scene's text, as far as its first line."""
+    """Return the first sentence or two of a scene's text, as far as its first line."""
     return story.splitlines()[0] if story else ""
 
 
@@ -437,7 +437,7 @@ def indented(line):
 
 
 def plain_words(text):
-    """A sentence of a docstring for a reader: no imperative to a programmer, no shapes of arrays."""
+    """Return a sentence of a docstring for a reader: no imperative to a programmer, no shapes of arrays."""
     text = SHAPE.sub("", re.sub(r"\s+", " ", text).strip().replace("`", ""))
     return re.sub(r"^(Return|Give|Compute) (the )?(?=\S)", "", text)
 
@@ -469,7 +469,7 @@ def headline(result):
 
 
 def findings(result):
-    """Sentences, the most important first, and what was left out at the end."""
+    """Return sentences, the most important first, and what was left out at the end."""
     notes = (f"{sentence}." for sentence in result["notes"])
     return [*leading(result), *notes]
 
@@ -518,7 +518,7 @@ def _ours(result):
 
 
 def _engines_of(result):
-    """What the engines do in the first case; of what does not move, only what could not be judged."""
+    """Yield what the engines do in the first case; of what does not move, only what could not be judged."""
     if result["moves"]:
         yield from _engines(next(iter(result["cases"].values())))
     undecided = {}
@@ -540,7 +540,7 @@ def _engines(case):
 
 
 def _times(result):
-    """The races; to be as wrong as another law is none."""
+    """Yield the races; to be as wrong as another law is none."""
     first = next(iter(result["cases"].values()))
     own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
     for a in result["times"]["advantage"]:

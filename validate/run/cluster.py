@@ -113,7 +113,7 @@ class Cluster(Affinity):
 
     @staticmethod
     def opened(answer, worker):
-        """The result of a call.  Raises what it raised."""
+        """Return the result of a call.  Raises what it raised."""
         unfit, result, error = pickle.loads(answer)
         if unfit:
             raise refusal(f"the worker at {worker}", unfit)
@@ -166,7 +166,7 @@ def refusal(thing, unfit):
 
 
 def makeup(of):
-    """{thing: version} on which a result depends.  It does not depend on where the workbook lies."""
+    """Return {thing: version} on which a result depends.  It does not depend on where the workbook lies."""
     files = sorted((path.relative_to(modules.ROOT).as_posix() if path.is_relative_to(modules.ROOT) else path.name, path)
                    for path in sources(of))
     text = b"".join(name.encode() + path.read_bytes() for name, path in files if path.is_file())
@@ -183,7 +183,7 @@ class Child:
         self.lock, self.process, self.run = threading.Lock(), None, None
 
     def ask(self, run, parcel):
-        """The answer to a parcel.  Raises EOFError where the process breaks."""
+        """Return the answer to a parcel.  Raises EOFError where the process breaks."""
         with self.lock:
             if self.process is None or run != self.run or self.process.poll() is not None:
                 self.end(self.run)

@@ -21,7 +21,7 @@ STABILITY = "stability/"
 
 @cache
 def trees():
-    """{module below solutions: its syntax tree}, such as "pbd" and "given.ropes"."""
+    """Return {module below solutions: its syntax tree}, such as "pbd" and "given.ropes"."""
     files = {path.relative_to(modules.SOLUTIONS).with_suffix(""): path for path in modules.SOLUTIONS.rglob("*.py")}
     return {".".join(name.parts): ast.parse(path.read_text(encoding="utf-8")) for name, path in files.items()}
 
@@ -52,7 +52,7 @@ def imported(tree, home=""):
 
 @cache
 def calls():
-    """{(module, function): what it names of solutions} for every function of solutions."""
+    """Return {(module, function): what it names of solutions} for every function of solutions."""
     found = {}
     for module, tree in trees().items():
         there = imported(tree, module)
@@ -65,7 +65,7 @@ def calls():
 
 
 def defined(place):
-    """(module, function) where it is defined; None where it is no function.
+    """Return (module, function) where it is defined; None where it is no function.
 
     A lesson may import it from elsewhere, or have it in its companion.
     """
@@ -81,7 +81,7 @@ def defined(place):
 
 @cache
 def imports_of(module):
-    """What a module below solutions imports, as `imported` says it; nothing where there is no such module."""
+    """Return what a module below solutions imports, as `imported` says it; nothing where there is no such module."""
     return imported(trees()[module], module) if module in trees() else {}
 
 
@@ -114,7 +114,7 @@ def named(nodes, there, lesson):
 
 @cache
 def parsed(path):
-    """(syntax tree, what it imports from solutions, {name: its definition}) of a file."""
+    """Return (syntax tree, what it imports from solutions, {name: its definition}) of a file."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     own = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
     own |= {target.id: node for node in tree.body if isinstance(node, ast.Assign)
@@ -123,7 +123,7 @@ def parsed(path):
 
 
 def roots_of_scene(name):
-    """What a scene calls of `lessons` and names of solutions, its methods included."""
+    """Return what a scene calls of `lessons` and names of solutions, its methods included."""
     scene = modules.bind_scene(name)
     tree, there, _ = parsed(modules.scene_files()[name])
     return {*modules.called_by_scene(name), *named([tree], there, scene.lesson),
@@ -131,7 +131,7 @@ def roots_of_scene(name):
 
 
 def roots_of_case(case):
-    """What a stability case names of its lesson, in its own function and in what it uses of its file."""
+    """Return what a stability case names of its lesson, in its own function and in what it uses of its file."""
     _, there, own = parsed(Path(inspect.getsourcefile(case.examine)))
     pieces, waiting = {}, [case.examine.__name__]
     while waiting:
@@ -143,7 +143,7 @@ def roots_of_case(case):
 
 
 def methods_in(nodes):
-    """The functions of the methods that pieces of source name, such as INTEGRATORS."""
+    """Yield the functions of the methods that pieces of source name, such as INTEGRATORS."""
     for node in nodes:
         for one in parts(node):
             found = getattr(methods, one.id, ()) if isinstance(one, ast.Name) else ()
@@ -160,7 +160,7 @@ def exercises(lesson):
 
 @cache
 def places():
-    """{(module, function): the scenes and stability cases that run it}, in the order of the course."""
+    """Return {(module, function): the scenes and stability cases that run it}, in the order of the course."""
     where = {}
     for name in modules.in_course_order(modules.scene_names()):
         for place in reached(roots_of_scene(name)):
@@ -180,5 +180,5 @@ def table():
 
 
 def missing():
-    """The exercises that nothing in the report runs."""
+    """Return the exercises that nothing in the report runs."""
     return [f"{number} {row['function']}" for number, row in table().items() if not row["places"]]

@@ -200,7 +200,7 @@ def end_with(parent):
 
 
 def outcome(function, *arguments):
-    """(result, None), or (None, the error)."""
+    """Return (result, None), or (None, the error)."""
     try:
         return function(*arguments), None
     except (BadInput, OSError, MemoryError) as e:

@@ -81,7 +81,7 @@ def report_on(store, names, plan, pool, bars, measuring=None):
 
 
 def about(plan, out=None, measuring=None):
-    """What a report was made with: a plain record for the foot of its pages.
+    """Return what a report was made with: a plain record for the foot of its pages.
 
     Links to the sources are there only for a report in a folder of the repository.
     """
@@ -104,7 +104,7 @@ def about(plan, out=None, measuring=None):
 
 
 def commit():
-    """The commit of the workbook, marked where files were changed since; nothing without git."""
+    """Return the commit of the workbook, marked where files were changed since; nothing without git."""
     try:
         done = subprocess.run(["git", "describe", "--always", "--dirty=, changed since", "--exclude=*"],
                               cwd=modules.ROOT, capture_output=True, text=True, timeout=10)
@@ -114,13 +114,13 @@ def commit():
 
 
 def notebooks():
-    """{lesson: its notebook}."""
+    """Return {lesson: its notebook}."""
     files = sorted((modules.ROOT / "notebooks").glob("[0-9][0-9]_*.ipynb"))
     return {file.stem.partition("_")[2]: f"notebooks/{file.name}" for file in files}
 
 
 def processor():
-    """The name of the processor, as far as the system tells."""
+    """Return the name of the processor, as far as the system tells."""
     try:
         names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
     except OSError:

@@ -56,14 +56,14 @@ def code_digest(of):
 
 
 def sources(of):
-    """The files on which a result depends."""
+    """Return the files on which a result depends."""
     package, subject = modules.ROOT / "validate", modules.subject_folder(of)
     return {*package.rglob("*.py"), *package.glob("recorded/*.json"),
             *subject.rglob("*.py"), *modules.SOLUTIONS.rglob("*.py")}
 
 
 def installed_versions():
-    """{package: its version or None} of those on which a result depends."""
+    """Return {package: its version or None} of those on which a result depends."""
     return {"numpy": version("numpy"), "scipy": version("scipy"), "numba": modules.numba_version(),
             **{product.name: product.installed() for product in PRODUCTS}}
 
@@ -82,7 +82,7 @@ def store_for(out, plan, names):
 
 
 def lessons_of(names):
-    """The lessons of these scenes, in the order of the course."""
+    """Return the lessons of these scenes, in the order of the course."""
     there = {modules.bind_scene(name).lesson for name in names}
     return [lesson for lesson in modules.lesson_names() if lesson in there]
 
@@ -136,7 +136,7 @@ class Store:
         self.note(todo=[key for key in self.state["todo"] if key != f"{name}.{kind}"])
 
     def scenes(self):
-        """The scenes with all of their results, from this run or an earlier one."""
+        """Return the scenes with all of their results, from this run or an earlier one."""
         return [n for n in modules.scene_names()
                 if self.path("errors", n).is_file() and self.path("times", n).is_file()]
 
@@ -148,7 +148,7 @@ class Store:
         return [case for lesson in lessons for case in self.get("stability", lesson)]
 
     def measured(self, name):
-        """The time at which the results of a scene or a lesson were written [ns]."""
+        """Return the time at which the results of a scene or a lesson were written [ns]."""
         return max(path.stat().st_mtime_ns for path in self.folder.glob(f"{name}.*.json"))
 
     def finish(self, names, pages):
@@ -159,7 +159,7 @@ class Store:
 
 
 def stored_report(folder):
-    """The content of a report's report.json.  Raises BadInput for a folder that is none."""
+    """Return the content of a report's report.json.  Raises BadInput for a folder that is none."""
     try:
         report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
         return {part: report[part] for part in ("run", "scenes", "stability")}
@@ -168,7 +168,7 @@ def stored_report(folder):
 
 
 def writable(out):
-    """The output folder, made if need be.  Raises BadInput when nothing can be written there."""
+    """Return the output folder, made if need be.  Raises BadInput when nothing can be written there."""
     try:
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=out):

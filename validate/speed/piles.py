@@ -35,7 +35,7 @@ RIVALS = {                   # {kind: {label: (engine, iterations, goal: greates
 
 
 def functions(lesson, kind):
-    """(advance, bounds, contacts) of a kind of pile."""
+    """Return (advance, bounds, contacts) of a kind of pile."""
     return {(2, "round"): (lesson.advance_pile_2d, lesson.disc_bounds, lesson.round_contacts),
             (2, "box"): (lesson.advance_pile_2d, lesson.box_bounds_2d, lesson.box_contacts_2d),
             (3, "round"): (lesson.advance_pile, lesson.ball_bounds, lesson.round_contacts),
@@ -56,7 +56,7 @@ class Ours:
 
 
 def overlaps(lesson, kind, pile, x, q):
-    """(largest, mean) overlap [mm] of all contacts that overlap."""
+    """Return (largest, mean) overlap [mm] of all contacts that overlap."""
     _, bounds, contacts = functions(lesson, kind)
     low, high, turn = bounds(x, q, pile.half)
     gap = contacts(x, turn, pile.half, pile.planes, lesson.near_pairs(low - REACH, high + REACH, pile.planes),
@@ -92,7 +92,7 @@ def compare(lesson, name, n, rounds):
 
 
 def landed(lesson, name, n):
-    """The lesson's pile of n bodies after a while, as wide as it is high."""
+    """Return the lesson's pile of n bodies after a while, as wide as it is high."""
     kind = KINDS[name]
     kind = kind._replace(across=max(2, round(n ** (1.0 / kind.d))))
     ours = Ours(lesson, kind, *fallen(kind, n))
@@ -101,7 +101,7 @@ def landed(lesson, name, n):
 
 
 def growth(lesson, name, sizes, rounds):
-    """(power of n, [(n, ms per step, contacts per body)]): the slope of all medians, over logarithms."""
+    """Return (power of n, [(n, ms per step, contacts per body)]): the slope of all medians, over logarithms."""
     piles = [landed(lesson, name, n) for n in sizes]
     times = np.median([[cpu_time(pile) for pile in piles] for _ in range(rounds)], axis=0)
     power = np.polyfit(np.log(sizes), np.log(times), 1)[0]
@@ -119,7 +119,7 @@ def grow(lesson, names, rounds):
 
 
 def peak_memory():
-    """The most memory [GiB] that this process has ever had."""
+    """Return the most memory [GiB] that this process has ever had."""
     import resource  # Windows has none
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (2**30 if sys.platform == "darwin" else 2**20)
 

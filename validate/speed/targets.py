@@ -52,7 +52,7 @@ def drawn(name, n):
 
 
 def ours(lesson, name, targets, tolerance):
-    """() → angles (n, joints): a damped search for each target, all in one compiled call."""
+    """Return () → angles (n, joints): a damped search for each target, all in one compiled call."""
     axes, offsets, start, damping = ARMS[name]
     settings = (0.0, damping, -np.inf, np.inf, 0.0, 0.0)
     if name == "planar":
@@ -63,7 +63,7 @@ def ours(lesson, name, targets, tolerance):
 
 
 def theirs(name, targets, our_damping):
-    """() → the same by pybullet, which stops at THRESHOLD or after MOST iterations."""
+    """Return () → the same by pybullet, which stops at THRESHOLD or after MOST iterations."""
     axes, offsets, start, damping = ARMS[name]
     engine, places = BulletChain(axes, offsets), targets.tolist()
     engine.begin(start)

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def copy_around(place):
-    """The copy of the workbook in which a folder lies; None if it lies in none."""
+    """Return the copy of the workbook in which a folder lies; None if it lies in none."""
     whole = lambda folder: all((folder / name / "__init__.py").is_file() for name in PACKAGES)
     place = Path(place).resolve()
     return next(filter(whole, (place, *place.parents)), None)

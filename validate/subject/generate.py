@@ -45,25 +45,25 @@ def stub(source, solved=(), elsewhere=None):
 
 
 def exercises(source):
-    """{"1.2": "midpoint_step", …} in the order of the text."""
+    """Return {"1.2": "midpoint_step", …} in the order of the text."""
     return {m["exercise"]: FUNCTION.findall(source, 0, m.start())[-1] for m in ANSWER.finditer(source)}
 
 
 def lessons():
-    """{file name: text} of everything that belongs into lessons/."""
+    """Return {file name: text} of everything that belongs into lessons/."""
     texts = {f"{name}.py": stub((SOLUTIONS / f"{name}.py").read_text()) for name in lesson_names()}
     about = "Your copy of the lessons: each function waits for its body.  Start with notebooks/00_start_here.ipynb."
     return {"__init__.py": f'"""{about}"""\n', **texts}
 
 
 def needs_text():
-    """The text of needs.json."""
+    """Return the text of needs.json."""
     rows = needs.read_from(SOLUTIONS, lesson_names(), exercises).items()
     return "{\n" + ",\n".join(f"{json.dumps(number)}: {json.dumps(one)}" for number, one in rows) + "\n}\n"
 
 
 def differing(folder=None):
-    """Names of the files that are not what the solutions would give, missing and superfluous ones included."""
+    """Return names of the files that are not what the solutions would give, missing and superfluous ones included."""
     texts = lessons()
     there = {path.name: path.read_text() for path in Path(folder or LESSONS).glob("*.py")}
     return sorted(name for name in texts.keys() | there.keys() if texts.get(name) != there.get(name))

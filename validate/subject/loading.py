@@ -82,7 +82,7 @@ REMEDIES = {                 # {sign in what Python says: what to do}; the first
 
 
 def unloadable(file, error):
-    """The Unloadable for a file that raised that error while it was loaded."""
+    """Return the Unloadable for a file that raised that error while it was loaded."""
     at_fault, place = _place(file, error)
     words = re.sub(r" \([^()]*\.(py|so)\)$", "", " ".join(words_of(error).split()))     # without where a library lies
     words = words if len(words) <= LONGEST_REASON else f"{words[:LONGEST_REASON]} …"
@@ -92,7 +92,7 @@ def unloadable(file, error):
 
 
 def remedy_for(told, place):
-    """What to do about a file that cannot be loaded, by what Python said."""
+    """Return what to do about a file that cannot be loaded, by what Python said."""
     if not place and ("No such file" in told or "Is a directory" in told):
         return "put the file back where it was"
     known = (remedy for sign, remedy in REMEDIES.items() if sign in told)
@@ -103,7 +103,7 @@ PUT_BACK = "put it back under that name, with its arguments"
 
 
 def lacks(file, name):
-    """The sentence about a file without a function."""
+    """Return the sentence about a file without a function."""
     return f"{file.parent.name}/{file.name} has no {name}: {PUT_BACK}"
 
 
@@ -116,7 +116,7 @@ def part(module, name):
 
 
 def words_of(error):
-    """What an error says; a class of the student's own may fail at that, too."""
+    """Return what an error says; a class of the student's own may fail at that, too."""
     try:
         return str(error.msg if isinstance(error, SyntaxError) else getattr(error, "strerror", None) or error)
     except Exception:
@@ -135,7 +135,7 @@ def _place(file, error):
 
 
 def _line_without_text(data):
-    """Number of the first line that is not UTF-8 or holds a NUL byte; 0 when there is none."""
+    """Return number of the first line that is not UTF-8 or holds a NUL byte; 0 when there is none."""
     try:
         data.decode("utf-8")
         place = data.find(b"\0")
@@ -147,7 +147,7 @@ def _line_without_text(data):
 # ---------------------------------------------------------------------------------------------- what stands in
 
 def waiting(why):
-    """A function that cannot be had yet: it raises NotImplementedError with the reason."""
+    """Return a function that cannot be had yet: it raises NotImplementedError with the reason."""
     def waits(*_, **__):
         raise NotImplementedError(why)
     return waits
@@ -170,7 +170,7 @@ def refuse_private(name):
 
 
 def stand_in(name, given, exercises, why):
-    """A module in place of one that cannot be loaded: it has what is given, and all else waits."""
+    """Return a module in place of one that cannot be loaded: it has what is given, and all else waits."""
     def absent(name):
         refuse_private(name)
         return waiting(why)

@@ -47,7 +47,7 @@ MAKE = "make_"           # begins the names of functions that make records: they
 
 
 def subject_folder(of):
-    """The folder that a subject's name means.  Raises BadInput when there is none."""
+    """Return the folder that a subject's name means.  Raises BadInput when there is none."""
     folder = {"solutions": SOLUTIONS, "lessons": ROOT / "lessons"}.get(str(of), Path(of).expanduser())
     if not folder.is_dir():
         raise BadInput(f"subject {of!r}", "not a folder", "name solutions, lessons or a folder of lesson files")
@@ -55,31 +55,31 @@ def subject_folder(of):
 
 
 def lesson_names(folder=SOLUTIONS):
-    """The lessons in a folder, in the order of the course: by the number in the first line of the text."""
+    """Return the lessons in a folder, in the order of the course: by the number in the first line of the text."""
     files = [path for path in Path(folder).glob("*.py") if path.stem not in GIVEN and path.is_file()]
     return [path.stem for path in sorted(files, key=lambda path: (lesson_number(path) or 99, path.stem))]
 
 
 def lessons_by_number():
-    """{number: name} of the workbook's lessons, in the order of the course."""
+    """Return {number: name} of the workbook's lessons, in the order of the course."""
     return {lesson_number(SOLUTIONS / f"{name}.py"): name for name in lesson_names()}
 
 
 def lesson_number(path):
-    """The number in the first line of a lesson's text, or None."""
+    """Return the number in the first line of a lesson's text, or None."""
     found = re.match(r'"""Lesson (\d+)', Path(path).read_text(encoding="utf-8", errors="replace"))
     return int(found[1]) if found else None
 
 
 @lru_cache(maxsize=1)
 def companions():
-    """{name of the companion: its lesson}, such as {"given.friction": "friction"}."""
+    """Return {name of the companion: its lesson}, such as {"given.friction": "friction"}."""
     lessons = {f"given.{name}": name for name in lesson_names()}
     return {name: lessons[name] for name in given_modules() if name in lessons}
 
 
 def both(lesson, companion):
-    """A module with everything of a lesson and of its companion; where both have a name, it is the lesson's."""
+    """Return a module with everything of a lesson and of its companion; where both have a name, it is the lesson's."""
     module = types.ModuleType(lesson.__name__)
     vars(module).update({**vars(companion), **vars(lesson)})
     return module
@@ -87,13 +87,13 @@ def both(lesson, companion):
 
 @lru_cache(maxsize=1)
 def given_modules():
-    """Names of the modules beside the lessons, below `solutions`: checks, given.bodies, support.arms …"""
+    """Return names of the modules beside the lessons, below `solutions`: checks, given.bodies, support.arms …"""
     paths = sorted(path.relative_to(SOLUTIONS).with_suffix("") for path in SOLUTIONS.rglob("*.py"))
     return tuple(".".join(path.parts) for path in paths if path.parts[0] in GIVEN and path.stem != "__init__")
 
 
 def original(name):
-    """A given module as it is written."""
+    """Return a given module as it is written."""
     return importlib.import_module(f"{ORIGINALS}.{name}")
 
 
@@ -106,7 +106,7 @@ def withheld(lesson, folder=SOLUTIONS):
 
 
 def scene_files():
-    """{name: path} of every scene: one file each in a folder per lesson.
+    """Return {name: path} of every scene: one file each in a folder per lesson.
 
     A name that begins with an underscore is no scene: `_common.py` has what the scenes of a lesson share.
     """
@@ -115,7 +115,7 @@ def scene_files():
 
 
 def scene_names():
-    """The names of all scenes."""
+    """Return the names of all scenes."""
     return list(scene_files())
 
 
@@ -137,7 +137,7 @@ class Lessons:
 
 
 def written_scene(name):
-    """The Scene of that name as it is written, without lessons."""
+    """Return the Scene of that name as it is written, without lessons."""
     return record_of(importlib.import_module(f"validate.scenes.{scene_files()[name].parent.name}.{name}"), name)
 
 
@@ -174,7 +174,7 @@ def called_of_lessons(tree):
 
 
 def _names_of_lessons(function):
-    """{name: lesson} of the names that a function gives to lessons."""
+    """Return {name: lesson} of the names that a function gives to lessons."""
     found = {}
     for node in ast.walk(function):
         if isinstance(node, ast.Assign):
@@ -185,7 +185,7 @@ def _names_of_lessons(function):
 
 
 def _lesson_named(node):
-    """The lesson that source names by lessons.<lesson>; None for anything else."""
+    """Return the lesson that source names by lessons.<lesson>; None for anything else."""
     named = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "lessons"
     return node.attr if named else None
 
@@ -197,7 +197,7 @@ def in_course_order(names):
 
 
 def bind(lesson, of="solutions", compiled=False):
-    """The module of one lesson, as saved just now.  Raises BadInput for an unknown subject or lesson."""
+    """Return the module of one lesson, as saved just now.  Raises BadInput for an unknown subject or lesson."""
     folder = subject_folder(of)
     if not (folder / f"{lesson}.py").is_file():
         if lesson in lesson_names():
@@ -227,7 +227,7 @@ def bind_scene(scene, of="solutions", compiled=False):
 
 
 def module_set(of="solutions", compiled=False):
-    """The module set of a subject, as its files are now."""
+    """Return the module set of a subject, as its files are now."""
     folder = subject_folder(of)
     if folder == SOLUTIONS and not compiled:
         return PLAIN
@@ -256,7 +256,7 @@ def numba_version():
 
 
 def can_compile():
-    """Whether numba is installed here: it has no wheel for some machines, and the workbook works without it."""
+    """Return whether numba is installed here: it has no wheel for some machines, and the workbook works without it."""
     return numba_version() is not None
 
 
@@ -268,7 +268,7 @@ def _module_set(folder, compiled, digest):
 
 
 def record_of(module, name):
-    """The SCENE of a scene's module, with its story.
+    """Return the SCENE of a scene's module, with its story.
 
     Raises BadInput when it is missing or belongs to another lesson.
     """
@@ -285,7 +285,7 @@ def record_of(module, name):
 
 
 def report_text(thing):
-    """Its docstring, without the remarks for authors of lessons."""
+    """Return its docstring, without the remarks for authors of lessons."""
     text = (inspect.getdoc(thing) or "").removeprefix("Given.")
     return text.replace("*Source:*", "Source:").replace("*Left out:*", "Left out:").strip()
 
@@ -297,7 +297,7 @@ class Binding:
         self.lessons, self.scenes = Lessons(lesson), {}
 
     def scene(self, name):
-        """A scene with the lessons of this set."""
+        """Return a scene with the lessons of this set."""
         if name not in self.scenes:
             scene = written_scene(name)
             load_lessons_of(name, scene, self.lessons)
@@ -324,7 +324,7 @@ PLAIN = PlainModules()
 
 
 def _siblings(file):
-    """Names of the lessons beside a subject's file that it imports."""
+    """Return names of the lessons beside a subject's file that it imports."""
     named = re.findall(r"^from \.(\w+) import", file.read_text(encoding="utf-8", errors="replace"), re.M)
     return {name for name in named if name not in GIVEN and (file.parent / f"{name}.py").is_file()}
 
@@ -357,11 +357,11 @@ class ModuleSet(Binding):
     # ------------------------------------------------------------------------------------------ lessons
 
     def lesson(self, name):
-        """A lesson as a person or a scene calls it."""
+        """Return a lesson as a person or a scene calls it."""
         return self.inner_lesson(name)
 
     def inner_lesson(self, name):
-        """A lesson of the subject, with its companion, as the other modules of this set call it.
+        """Return a lesson of the subject, with its companion, as the other modules of this set call it.
 
         Raises the same Unloadable every time when its file cannot be loaded.
         """
@@ -376,7 +376,7 @@ class ModuleSet(Binding):
         return self.whole[name]
 
     def _own_lesson(self, name):
-        """A lesson of the subject, without its companion."""
+        """Return a lesson of the subject, without its companion."""
         if name not in self.stuck and ("subject", name) not in self.done:
             self._load_safely(name)
         if name in self.stuck:
@@ -415,13 +415,13 @@ class ModuleSet(Binding):
             sys.modules[f"{self.name}.subject.{sibling}"] = stand_in(sibling, given, exercises, str(e))
 
     def solution(self, name):
-        """A lesson of the solutions or a shared given module, as lessons and scenes of this set see it."""
+        """Return a lesson of the solutions or a shared given module, as lessons and scenes of this set see it."""
         return original(name) if name in given_modules() else PLAIN.lesson(name)
 
     # ------------------------------------------------------------------------------------------ given modules
 
     def given(self, name):
-        """A given module as this set sees it: shared, or a copy that calls the subject's exercises."""
+        """Return a given module as this set sees it: shared, or a copy that calls the subject's exercises."""
         if name not in self.copied:
             return self.solution(name)
         if ("subject", name) not in self.done:
@@ -442,7 +442,7 @@ class ModuleSet(Binding):
                 vars(copy)[key] = there if isinstance(value, types.ModuleType) else getattr(there, value.__name__)
 
     def _as_given_code_means(self, origin, by):
-        """The module that the given module `by` means by that name of a lesson or of a given module."""
+        """Return the module that the given module `by` means by that name of a lesson or of a given module."""
         if origin in given_modules():
             return self.given(origin)
         if not self._is_subjects(origin, by):
@@ -452,7 +452,7 @@ class ModuleSet(Binding):
         return sys.modules[f"{self.name}.subject.{origin}"]
 
     def _is_subjects(self, lesson, by):
-        """Whether a given module means the subject's lesson; a companion does, where there is one."""
+        """Return whether a given module means the subject's lesson; a companion does, where there is one."""
         of_its_own = companions().get(by) == lesson and (self.folder / f"{lesson}.py").is_file()
         return of_its_own or lesson in self.meant
 
@@ -475,7 +475,7 @@ class ModuleSet(Binding):
     # ------------------------------------------------------------------------------------------ scenes
 
     def lesson_of_scenes(self, name):
-        """A lesson as scenes call it: the subject's; where it has none, the worked one."""
+        """Return a lesson as scenes call it: the subject's; where it has none, the worked one."""
         return self.lesson(name) if (self.folder / f"{name}.py").is_file() else self._worked(name)
 
     def _worked(self, name):
@@ -494,7 +494,7 @@ class ModuleSet(Binding):
         vars(module).update(self._redirected(package, module))
 
     def _home(self, value):
-        """(package, name below it) of the module that a thing comes from: ("solutions", "friction"), ("subject",
+        """Return (package, name below it) of the module that a thing comes from: ("solutions", "friction"), ("subject",
         "given.bodies"); twice an empty text for what is neither of the solutions nor of this subject.
         """
         home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
@@ -507,7 +507,7 @@ class ModuleSet(Binding):
         return origin not in self.copied
 
     def _redirected(self, package, module):
-        """{name: what it means in this set} for everything that module imported from a lesson or a given module.
+        """Return {name: what it means in this set} for everything that module imported from a lesson or a given module.
 
         Classes are the same in all sets, or `except BadInput` would not recognise what a twin raises.
         """
@@ -524,7 +524,7 @@ class ModuleSet(Binding):
         return meant
 
     def _meant(self, package, source, origin):
-        """The module that a lesson means by one of the solutions or of the subject."""
+        """Return the module that a lesson means by one of the solutions or of the subject."""
         if origin in given_modules():
             return self.given(origin)
         return self.inner_lesson(origin) if source == "subject" else self.solution(origin)
@@ -543,7 +543,7 @@ class CompiledModules(ModuleSet):
         self.cache, self.digest, self.outside = use_cache(digest), digest, {}
 
     def lesson(self, name):
-        """A lesson with plain make_* and with loops that check their record first."""
+        """Return a lesson with plain make_* and with loops that check their record first."""
         return self._outside(name, self.inner_lesson(name), vars(module_set(self.folder).lesson(name)))
 
     def _outside(self, name, inside, plain):
@@ -594,7 +594,7 @@ class CompiledModules(ModuleSet):
         self._compile(package, module)
 
     def lesson_of_scenes(self, name):
-        """The same, with functions that find their machine code sooner."""
+        """Return the same, with functions that find their machine code sooner."""
         lesson = types.ModuleType(name)
         vars(lesson).update({key: cached_dispatch(value) if hasattr(value, "py_func") else value
                              for key, value in vars(super().lesson_of_scenes(name)).items()})
@@ -614,7 +614,7 @@ class CompiledModules(ModuleSet):
         return compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes"))
 
     def _inside(self, name):
-        """A lesson as compiled functions call it."""
+        """Return a lesson as compiled functions call it."""
         if (self.folder / f"{name}.py").is_file():
             return self.inner_lesson(name)
         return self._with_companion(name, self.solution(name))

@@ -24,12 +24,12 @@ def table():
 
 
 def asks_to_find(exercise):
-    """Whether a formula is to be found: a ★★ exercise."""
+    """Return whether a formula is to be found: a ★★ exercise."""
     return table().get(exercise, {}).get("find", False)
 
 
 def of_lesson(lesson):
-    """The exercises of a lesson."""
+    """Return the exercises of a lesson."""
     return [number for number, one in table().items() if one["lesson"] == lesson]
 
 
@@ -51,7 +51,7 @@ def needed(exercise, folder=None):
 
 
 def siblings(folder, lesson):
-    """The lessons that this one imports from beside it."""
+    """Return the lessons that this one imports from beside it."""
     file = folder / f"{lesson}.py"
     text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
     return set(re.findall(r"^from \.(\w+) import", text, re.M))
@@ -66,7 +66,7 @@ def states(outcomes):
 
 
 def first_open(exercise, states, folder=None):
-    """The first exercise below this one that does not pass, by its number; None if all of them do.
+    """Return the first exercise below this one that does not pass, by its number; None if all of them do.
 
     states: {exercise: "passed", "not yet" or "not attempted"}; one that is not in it counts as passed.
     """
@@ -74,13 +74,13 @@ def first_open(exercise, states, folder=None):
 
 
 def next_of(lesson, states):
-    """The first exercise of a lesson that does not pass, while all that it calls do; None if there is none."""
+    """Return the first exercise of a lesson that does not pass, while all that it calls do; None if there is none."""
     return next((number for number in of_lesson(lesson)
                  if states.get(number) != "passed" and first_open(number, states) is None), None)
 
 
 def sentence(exercise, below, state):
-    """What a student reads where an exercise calls another one that does not pass."""
+    """Return what a student reads where an exercise calls another one that does not pass."""
     own, other = table()[exercise], table()[below]
     lesson = "" if own["lesson"] == other["lesson"] else f" of lesson {other['lesson']}"
     is_open = "is not written yet: write" if state == "not attempted" else "does not pass yet: mend"
@@ -91,7 +91,7 @@ def sentence(exercise, below, state):
 # ---------------------------------------------------------------------------------------------- reading the answers
 
 def read_from(solutions, lessons, exercises):
-    """The table, from a folder of worked answers.
+    """Return the table, from a folder of worked answers.
 
     exercises: the function that finds {exercise: function} in a text.
     """
@@ -129,7 +129,7 @@ def in_order(number):
 
 
 def used_names(text, module, modules):
-    """{name at the top of a module: the (module, name) that its text uses}."""
+    """Return {name at the top of a module: the (module, name) that its text uses}."""
     tree, package = ast.parse(text), module.split(".")[:-1]
     meant, used = {}, {}
     for node in tree.body:
@@ -151,7 +151,7 @@ def used_names(text, module, modules):
 
 
 def uses(node, module, meant):
-    """The (module, name) that a statement uses; names of its own are harmless, because no module has them."""
+    """Yield the (module, name) that a statement uses; names of its own are harmless, because no module has them."""
     for part in ast.walk(node):
         if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load):
             home, name = meant.get(part.id, (module, part.id))

@@ -25,7 +25,7 @@ IN_USE = 3600.0              # a digest that was asked for so long ago [s] may s
 
 
 def compiled_twins(module, names, space, cache):
-    """{name: compiled function}, whose globals are `space`, for those functions of a module.
+    """Return {name: compiled function}, whose globals are `space`, for those functions of a module.
 
     cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
     its functions call others there.
@@ -117,7 +117,7 @@ def cached_dispatch(function):
 
 
 def _kind(argument):
-    """The properties of an argument that decide which machine code it needs."""
+    """Return the properties of an argument that decide which machine code it needs."""
     if isinstance(argument, np.ndarray):
         return argument.dtype, argument.ndim, argument.flags.num
     if isinstance(argument, tuple):

@@ -38,14 +38,14 @@ class Drawn(NamedTuple):
 
 @cache
 def pictures():
-    """{exercise: Picture} of all lessons."""
+    """Return {exercise: Picture} of all lessons."""
     files = sorted(file.stem for file in Path(__file__).parent.glob("*.py") if file.stem not in PLAIN)
     return {number: one for name in files
             for number, one in importlib.import_module(f"{__name__}.{name}").PICTURES.items()}
 
 
 def drawn(case):
-    """The Drawn picture of a Case; None where its exercise has none, or its numbers cannot be drawn."""
+    """Return the Drawn picture of a Case; None where its exercise has none, or its numbers cannot be drawn."""
     how = pictures().get(case.exercise)
     if how is None:
         return None
@@ -74,7 +74,7 @@ def drawn(case):
 
 
 def _marks(how, result, arguments, whose):
-    """The marks of a result, named as the answer or as the expected one; none where it cannot be drawn."""
+    """Return the marks of a result, named as the answer or as the expected one; none where it cannot be drawn."""
     if result is None:
         return []
     try:
@@ -85,7 +85,7 @@ def _marks(how, result, arguments, whose):
 
 
 def _beside(views, given, answer):
-    """A sentence about an answer that is not in the plane in which all that is given lies."""
+    """Return a sentence about an answer that is not in the plane in which all that is given lies."""
     known, found = ([mark.points for mark in some if isinstance(mark, (Dots, Way))] for some in (given, answer))
     if len(views) > 1 or not known or not found:
         return []

@@ -54,7 +54,7 @@ def flight_to_plane(t, dt, x_0, x_1, r, plane):
 
 
 def ball_at(when, t, dt, x_0, x_1, r, *_):
-    """The ball at the time of impact."""
+    """Return the ball at the time of impact."""
     when = float(when)
     if not np.isfinite(when):
         return [Note(f"t* = {'NEVER' if when == np.inf else when}")]
@@ -65,12 +65,12 @@ def ball_at(when, t, dt, x_0, x_1, r, *_):
 # ---------------------------------------------------------------------------------------------- the cylinder along x
 
 def ring(r, label):
-    """A circle about the x axis."""
+    """Return a circle about the x axis."""
     return Way(r * np.stack((0.0 * TURN, np.cos(TURN), np.sin(TURN)), axis=1), label, True, dots=False)
 
 
 def cylinder(R, x, half):
-    """The part of the cylinder about the x axis that is beside x [m]."""
+    """Return the part of the cylinder about the x axis that is beside x [m]."""
     rim = R * np.stack((0.0 * TURN, np.cos(TURN), np.sin(TURN)), axis=1)
     ends = [rim + np.array([x + side * half, 0.0, 0.0]) for side in BOTH_WAYS]
     return Hull(np.concatenate(ends), f"cylinder, R = {R:.4g} m")
@@ -89,7 +89,7 @@ def cloth_and_cylinder(a, b, c, r, R):
 
 
 def reach_of_gap(gap, a, b, c, r, R):
-    """The circle that is as far from the axis as the triangle is by this gap."""
+    """Return the circle that is as far from the axis as the triangle is by this gap."""
     out = abs(R + r + float(gap))
     label = f"circle of radius R + r + gap = {out:.4g} m"
     return [Dots(np.zeros((1, 3)), label) if out < 1e-9 * R else ring(out, label)]
@@ -124,7 +124,7 @@ def point_and_triangle(p, a, b, c):
 
 
 def corners_of(box):
-    """The corners (8, 3) of a Box."""
+    """Return the corners (8, 3) of a Box."""
     signs = np.stack(np.meshgrid(*[BOTH_WAYS] * 3), axis=-1).reshape(-1, 3)
     return box.x + signs * box.half @ box.R.T
 
@@ -141,7 +141,7 @@ def ball_and_box(x, r, box):
 # ---------------------------------------------------------------------------------------------- boxes along the axes
 
 def upright(low, high, label):
-    """A box along the axes."""
+    """Return a box along the axes."""
     return Hull(np.stack(np.meshgrid(*zip(low, high)), axis=-1).reshape(-1, len(low)), label)
 
 
@@ -158,7 +158,7 @@ def around(result, low, high, move):
 
 
 def edges_of(low, high, label):
-    """The edges of many boxes (n, d), as one mark."""
+    """Return the edges of many boxes (n, d), as one mark."""
     d = low.shape[1]
     ends = np.stack(np.meshgrid(*[[0.0, 1.0]] * d), axis=-1).reshape(-1, d)
     i, j = np.array([(i, j) for i in range(2**d) for j in range(i) if np.sum(ends[i] != ends[j]) == 1]).T
@@ -200,7 +200,7 @@ def both_hulls(a, b):
 
 
 def best_edge(result, a, b):
-    """The chosen edge, and the line along it at the distance of the gap."""
+    """Return the chosen edge, and the line along it at the distance of the gap."""
     gap, i = result
     i = None if i is None else int(i) % len(a)
     found = [Note(f"gap {gap:.4g} m")] if i is None else [Way(np.stack((a[i], a[(i + 1) % len(a)])), f"edge {i}")]
@@ -212,7 +212,7 @@ def best_edge(result, a, b):
 
 
 def over_polygon(_, y, n, d):
-    """The plane of a polygon, seen at right angles."""
+    """Return the plane of a polygon, seen at right angles."""
     longest = (y - y[0])[np.argmax(np.linalg.norm(y - y[0], axis=1))] if len(y) else 0.0 * n
     normal = np.linalg.svd(y - y[0])[2][-1] if len(y) > 2 else 0.0 * n
     return [plane_view("at right angles to the polygon", n - n @ normal * normal, longest, y[0] if len(y) else 0.0 * n,
@@ -244,7 +244,7 @@ def across_axes(results, a, b):
 
 
 def axis_and_gap(result, a, b):
-    """The axis, and where a begins if the gap is right."""
+    """Return the axis, and where a begins if the gap is right."""
     gap, n, k = (result[i] for i in range(3))
     found = [Note(", ".join([f"axis number {k:g}"] * (k is not None) + [f"gap {gap:.4g} m"] * (gap is not None)))]
     found = found if k is not None or gap is not None else []
@@ -277,7 +277,7 @@ def push_away(a, x, centre, radius, *_):
 
 
 def passing(x, v, centre):
-    """The time until x passes the centre [s]; 1 s at rest."""
+    """Return the time until x passes the centre [s]; 1 s at rest."""
     return (centre - x) @ v / (v @ v) if v @ v > 0.0 else 1.0
 
 
@@ -288,7 +288,7 @@ def walk(x, v, centre, radius, ahead):
 
 
 def steered(a, x, v, centre, radius, ahead):
-    """The path with a constant acceleration until it passes the centre."""
+    """Return the path with a constant acceleration until it passes the centre."""
     a, t = array(a, 2), np.linspace(0.0, passing(x, v, centre), 40)[:, None]
     return [Way(x + t * v + 0.5 * t**2 * a, f"path with the acceleration, {np.linalg.norm(a):.4g} m/s²", dots=False),
             Arrow(x, scaled(a, 0.6 * radius), "direction of the acceleration")]

@@ -7,14 +7,14 @@ from .pieces import Picture, array, flat, part, plane_view, scaled, size_of, wor
 
 
 def contacts_of(x, contacts, *_):
-    """The middles of the bodies, the contacts and their normals."""
+    """Return the middles of the bodies, the contacts and their normals."""
     size = 0.25 * size_of(contacts.p, x)
     return [Dots(x, "middles of the bodies"), Dots(contacts.p, "contacts"),
             Links(np.stack((contacts.p, contacts.p + size * contacts.n), axis=1), "n, from b to a")]
 
 
 def normal_rows(G, x, contacts):
-    """What the normal rows of G multiply the velocities of the bodies with, as arrows at their middles."""
+    """Return what the normal rows of G multiply the velocities of the bodies with, as arrows at their middles."""
     G, size = array(G, 2 * len(contacts.p), 3 * len(x)), 0.25 * size_of(contacts.p, x)
     parts = [(x[i], row[3 * i:3 * i + 2]) for row in G[::2] for i in range(len(x))]
     arrows = np.array([(at, at + size * row) for at, row in parts])

@@ -45,7 +45,7 @@ def ellipse(result, J):
 
 
 def wished(target, lengths, *_):
-    """The reach and the target, or several points, with the direction of the hand if the target has one."""
+    """Return the reach and the target, or several points, with the direction of the hand if the target has one."""
     phi = target[2] if len(target) == 3 else None
     hand = [] if phi is None else [
         Arrow(target[:2], 0.5 * lengths[-1] * np.array([np.cos(phi), np.sin(phi)]), "direction φ of the target")]

@@ -200,7 +200,7 @@ def is_finite(mark):
 
 
 def picture(views, given, answer, expected):
-    """(figure, whether all of the answer is in it) of lists of marks in their roles."""
+    """Return (figure, whether all of the answer is in it) of lists of marks in their roles."""
     figure = Figure(figsize=(4.3 * len(views) + 0.6, 4.3), layout="constrained")
     legend, inside = {}, True
     labels = list(dict.fromkeys(mark.label for mark in given))

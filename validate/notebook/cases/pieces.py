@@ -21,7 +21,7 @@ class Picture(NamedTuple):
 # ---------------------------------------------------------------------------------------------- views
 
 def world_views(d):
-    """The plane as it is, or space from above and from the side."""
+    """Return the plane as it is, or space from above and from the side."""
     if d == 2:
         return [View("", np.eye(2), np.zeros(2), ("x [m]", "y [m]"))]
     return [View("from above", np.eye(3)[:2], np.zeros(3), ("x [m]", "y [m]")),
@@ -29,7 +29,7 @@ def world_views(d):
 
 
 def in_world(_, first, *__):
-    """The usual views of what has the dimension of the first argument."""
+    """Return the usual views of what has the dimension of the first argument."""
     return world_views(np.shape(first)[-1])
 
 
@@ -54,12 +54,12 @@ def axes_of(first, second):
 
 
 def across(n, near):
-    """A unit vector (d,) at right angles to n, in the plane of n and `near`."""
+    """Return a unit vector (d,) at right angles to n, in the plane of n and `near`."""
     return axes_of(n, near)[1]
 
 
 def plane_view(title, first, second, origin, labels):
-    """A view of the plane of two vectors (d,); of a scene in the plane the world's own."""
+    """Return a view of the plane of two vectors (d,); of a scene in the plane the world's own."""
     if len(first) == 2:
         return world_views(2)[0]
     return View(title, axes_of(first, second), np.asarray(origin, dtype=float), labels)
@@ -68,7 +68,7 @@ def plane_view(title, first, second, origin, labels):
 # ---------------------------------------------------------------------------------------------- results and marks
 
 def array(value, *shape):
-    """A value as an array of that shape.  Raises ValueError for another one."""
+    """Return a value as an array of that shape.  Raises ValueError for another one."""
     found = np.asarray(value, dtype=float)
     if found.shape != shape:
         raise ValueError(found.shape)
@@ -76,7 +76,7 @@ def array(value, *shape):
 
 
 def part(result, name, number):
-    """A field of a record, or the entry of a tuple; None where it is not known."""
+    """Return a field of a record, or the entry of a tuple; None where it is not known."""
     return getattr(result, name) if hasattr(result, name) else result[number]
 
 
@@ -98,11 +98,11 @@ def contact(result, *_):
 
 
 def scaled(vector, length, *others):
-    """A vector drawn so that the longest of all these has this length."""
+    """Return a vector drawn so that the longest of all these has this length."""
     longest = max(np.linalg.norm(one) for one in (vector, *others))
     return np.asarray(vector, dtype=float) * (length / longest if longest > 0.0 else 0.0)
 
 
 def size_of(*points):
-    """The greatest extent of points along an axis [m]; 1 where all are in one place."""
+    """Return the greatest extent of points along an axis [m]; 1 where all are in one place."""
     return np.ptp(np.concatenate([np.atleast_2d(one) for one in points]), axis=0).max() or 1.0
