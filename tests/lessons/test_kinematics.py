@@ -60,7 +60,7 @@ def reach(theta, target, arm):
 
 def three_points(theta, target, arm):
     """Task of the tests: the last two joints and the end of a planar arm at three points; target (6,), J (6, n)."""
-    n, phi, e = theta.size, 0.0, np.array(target, dtype=float)
+    n, phi, e = theta.size, 0.0, target.astype(np.float64)
     J = np.zeros((6, n))
     for k in range(n):
         phi += theta[k]
