@@ -1,4 +1,4 @@
-"""What a run finds, as plain data: a Finding for each statement of theory, verdicts, and the roles of curves."""
+"""Results of a run as plain data: a Finding for each statement of theory, verdicts, and the roles of curves."""
 
 from enum import Enum, StrEnum
 from typing import NamedTuple
@@ -21,7 +21,7 @@ class Finding(NamedTuple):
 
     @property
     def holds(self):
-        """Whether experiment and theory agree; False for a failed measurement, which is NaN."""
+        """Return whether experiment and theory agree; False for a failed measurement, which is NaN."""
         return bool(np.all(np.abs(np.subtract(self.measured, self.predicted)) <= self.tolerance))
 
 
@@ -31,7 +31,7 @@ def states(quantity, found, law, within):
 
 
 class Verdict(StrEnum):
-    """What became of a method or an engine in one case."""
+    """The verdict on a method or an engine in one case."""
     AGREES = "agrees"                        # within the error that theory allows
     FOLLOWS_OWN_LAW = "as predicted"         # departs from the truth exactly as its own law says
     DEPARTS = "departs"                      # no theory predicted this
@@ -52,7 +52,7 @@ def is_right(curve):
 
 
 def jsonable(value):
-    """The same data in types that JSON knows; numbers that are not finite become None."""
+    """Return the same data in JSON's types; numbers that are not finite become None."""
     if isinstance(value, dict):
         return {str(k): jsonable(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):

@@ -92,7 +92,7 @@ class Runner:
 
     @property
     def is_engine(self):
-        """Whether it is an engine, not a method of ours."""
+        """Return whether it is an engine, not a method of ours."""
         return isinstance(self.who, Engine)
 
     def largest_error(self, p, dt):
@@ -176,17 +176,17 @@ class Scene:
 
     @property
     def our_runners(self):
-        """The runners that are methods of ours."""
+        """Return the runners that are methods of ours."""
         return tuple(r for r in self.runners if not r.is_engine)
 
     @property
     def engine_runners(self):
-        """The runners that are engines."""
+        """Return the runners that are engines."""
         return tuple(r for r in self.runners if r.is_engine)
 
     @property
     def refined(self):
-        """Whether anything can be refined, so that there is an error over dt."""
+        """Return whether the scene can be refined, so that it has an error over dt."""
         return bool(self.refinement)
 
 

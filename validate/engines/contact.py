@@ -62,7 +62,7 @@ def fallen(kind, n):
 
 
 class Judged(NamedTuple):
-    """What natural_residual wants to know of a pile after a step."""
+    """The arguments of natural_residual for a pile after a step."""
     bodies: tuple            # (x, v, ω, inverse masses, inverse moments) of bodies and planes
     contacts: tuple          # (a, b, n, p, gap)
     J: np.ndarray            # (m, d) [N s]
@@ -79,7 +79,7 @@ def inverse_tensors(q, inv_body):
 
 
 def at_rest(moving, planes):
-    """What moves, and as many rows of zeros as there are planes."""
+    """Return the rows of the moving bodies, followed by a row of zeros for each plane."""
     return np.concatenate((moving, np.zeros((planes, *moving.shape[1:]))))
 
 
@@ -109,7 +109,7 @@ class PymunkPile:
             self.space.step(DT)
 
     def judged(self):
-        """The Judged record of discs: their contacts have one point each, of boxes only sums are known.
+        """Return the Judged record of discs, whose contacts have one point each; of boxes only sums are known.
 
         The normal of a contact goes from its first shape to the other, and its impulse is that on the first.
         """
@@ -181,7 +181,7 @@ class BulletPile:
         self.planes, self.pile = len(pile.planes), pile
 
     def judged(self):
-        """The Judged record of all contact points."""
+        """Return the Judged record of all contact points."""
         number = {body: k for k, body in enumerate(self.bodies)}
         points = [c for c in self.p.getContactPoints(physicsClientId=self.c) if c[9] > 0.0 or c[8] <= 0.0]
         a, b = (np.array([number.get(c[side], len(self.bodies)) for c in points]) for side in (1, 2))

@@ -224,11 +224,11 @@ class PymunkBoxes:
         return corners(np.array([body.position for body in self.boxes]), np.array([body.angle for body in self.boxes]))
 
     def run(self, corners):
-        """The EngineRun."""
+        """Return the EngineRun."""
         return EngineRun(lambda: self.space.step(self.dt), lambda: self.read(corners), lambda: None)
 
     def film(self, steps, every, corners):
-        """What it reads at the start and after every so many steps."""
+        """Return its readings at the start and after every `every` steps."""
         found = [self.read(corners)]
         for n in range(1, steps + 1):
             self.space.step(self.dt)

@@ -17,7 +17,7 @@ def sweeps_needed(r, omega, small):
 
         e₀' = (1 − ω) e₀ + ω r/(1 + r) e₁,      e₁' = (1 − ω) e₁ + ω e₀'
 
-    and start at −1.  (The upper contact asks for as much as would stop its approach, which is r/(1 + r) of λ₀, and
+    and start at −1.  (The upper contact needs as much as would stop its approach, which is r/(1 + r) of λ₀, and
     F₁ = r/(1 + r) F₀.)  With ω = 1 both are −ρᵏ after k sweeps, with ρ = r/(1 + r): k = ln(small)/ln ρ.
     """
     if omega == 1.0:
@@ -186,7 +186,7 @@ def enumerated(A, b):
 # ---------------------------------------------------------------------- a tower that settles on soft contacts
 
 class Settling(NamedTuple):
-    """How a tower of boxes is let settle."""
+    """Settings for a tower of boxes that settles."""
     dt: float                # [s]
     substeps: int            # per step
     hertz: float             # of the soft contacts [1/s]
@@ -257,7 +257,7 @@ def rounded_force(masses, size, g, hertz):
 # ---------------------------------------------------------------------- towers in the engines
 
 class Towers(NamedTuple):
-    """How a tower of boxes is put down in an engine."""
+    """Settings for a tower of boxes in an engine."""
     dt: float                # [s]
     iterations: int          # per step
     slop: float              # overlap that is tolerated [m]
@@ -301,7 +301,7 @@ def kick(tower, v, k, x, normal, along):
 
 
 def opening(v, k, x):
-    """How fast, or by how much, joint k opens at a corner."""
+    """Return the speed, or the distance, by which joint k opens at a corner."""
     return v[k][1] + x * v[k][2] - v[k - 1][1] - x * v[k - 1][2]
 
 

@@ -121,7 +121,7 @@ PYMUNK_BIAS = float(np.float32(0.9)) ** 60     # share of the rest that is left 
 
 
 class ImpactRule(NamedTuple):
-    """What a method or an engine does about impacts.  Its step adds a push to the position of the next one."""
+    """The treatment of impacts by a method or an engine.  Its step adds a push to the position of the next one."""
     ahead: float             # 1: positions take the new velocity, −1: the old one
     step: Callable           # of a ball above a floor, (y, v, push, g, e, dt) → (y, v, push [m], whether it hit)
     at_end: bool             # it bounces at the end of the step that finds an overlap; False: at the start of the next

@@ -15,8 +15,8 @@ import numpy as np
 
 from ..scene import ROUND_OFF, Prediction
 
-NUDGE = 1e-11                # of the angles at the start, to see what becomes of roundings [rad]
-ASIDE = np.array([0.5, -0.4, -1.0])                      # a direction that no symmetry knows
+NUDGE = 1e-11                # of the angles at the start, to measure how rounding errors grow [rad]
+ASIDE = np.array([0.5, -0.4, -1.0])                      # a direction without symmetry
 ROUNDINGS = 30.0             # spacings of floats by which the angles of an iteration may be off [-]
 SURE = 0.1                   # a band above this part of the tolerance is no prediction [-]
 DAMPING, LARGEST, ITERATIONS, THRESHOLD = 0.5, 0.25 * np.pi, 20, 1e-4         # [m²], [rad], [-], [m]

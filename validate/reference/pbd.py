@@ -275,12 +275,12 @@ def along_links(x, z, right):
 
 
 def excess(x, l):
-    """How much the square of each link's length lacks, halved [m²]."""
+    """Return half of what the square of each link's length lacks, (l² − length²)/2 [m²]."""
     return 0.5 * (l * l - np.sum(links_of(x) ** 2, axis=1))
 
 
 def held(v, x):
-    """v without its part along the links of x."""
+    """Return v without its part along the links of x."""
     return v + along_links(x, x, -np.sum(links_of(x) * links_of(v), axis=1))
 
 
@@ -306,7 +306,7 @@ def composed_rope(x, v, h, l, a):
 
 
 def onto_circle(x, v, h, l, a):
-    """What projection, PBD and XPBD do with a single link: the predicted point goes radially to its circle."""
+    """Return (x, v) after a step of projection, PBD or XPBD with one link: the point moves radially to its circle."""
     goal = x + h * (v + h * a)
     new = np.stack((x[0], x[0] + l * (goal[1] - x[0]) / np.linalg.norm(goal[1] - x[0])))
     return new, (new - x) / h
@@ -344,7 +344,7 @@ OTHER_ORDER = 0.02           # of the error of pybullet's rope: sweeps in anothe
 
 
 class RopeMotion(NamedTuple):
-    """What a scene tells of its rope, as the Motion of validate/reference/schemes.py does of points."""
+    """A scene's description of its rope, as the Motion of validate/reference/schemes.py does of points."""
     T: float                 # the output time [s]
     rope: Callable           # p → Rope
     seen: Callable           # x (N + 1, 2) → what the scene observes

@@ -177,7 +177,7 @@ class ErrorLaw:
         return 10.0 * np.sqrt(steps) * ROUND_OFF * growth
 
     def missed(self, finest):
-        """By how much the expansion through the runs before the finest one misses that."""
+        """Return the error of the expansion at the finest run, when it is fitted to the coarser runs only."""
         return np.linalg.norm(self.expanded(finest, finest // 2) - self.error(finest))
 
     def settle(self, floor):
@@ -212,7 +212,7 @@ class ErrorLaw:
 
 
 class Model(NamedTuple):
-    """What an engine does in a scene."""
+    """A model of an engine in a scene: its order, and a function that runs it."""
     order: int
     run: object              # (p, h, steps, nudge) → what is observed at the end; nudge [m] moves the start
 
@@ -232,12 +232,12 @@ def table_model(scheme, law, begin, seen, order=1, ahead=0.0, march=advance):
 
 
 def nudged(x, nudge):
-    """x, moved by `nudge` in a direction that no symmetry knows."""
+    """Return x, moved by `nudge` in a direction without symmetry."""
     return x + nudge * (np.cos(np.arange(x.size) ** 2.0).reshape(x.shape) if isinstance(x, np.ndarray) else 1.0)
 
 
 class Motion(NamedTuple):
-    """What a scene tells of its motion, in words of its own that share nothing with the lesson."""
+    """A scene's description of its motion, written independently of the lesson."""
     T: float                 # the output time [s]
     law: Callable            # p → a(t, x, v)
     begin: Callable          # p → (x, v)

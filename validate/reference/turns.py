@@ -268,7 +268,7 @@ def no_torque(M):
 
 
 class TurningBody(NamedTuple):
-    """What a scene tells of its one turning body."""
+    """A scene's description of its single rotating body."""
     T: float                 # the output time [s]
     moments: Callable        # p → I
     begin: Callable          # p → (pair, L) at the start

@@ -1,4 +1,4 @@
-"""What scenes of all lessons share: fields, checks of parameters, and what is observed and drawn most often."""
+"""Shared parts of all scenes: fields, checks of parameters, and common observations and drawings."""
 
 from typing import Any
 

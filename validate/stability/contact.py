@@ -116,7 +116,7 @@ def contraction_of_a_mass_ratio(lesson, check):
 # ---------------------------------------------------------------------------------------------- sweeps that stop early
 
 FRAME = 1.0 / 60.0           # [s], a step of the next three cases
-PUSH = 0.2                   # share of an overlap that each step wants back [-]
+PUSH = 0.2                   # share of an overlap that each step removes [-]
 SAME = 1e-9                  # of two ways to compute a speed or an eigenvalue: round-off, over 1 − T at the worst [-]
 
 
@@ -313,7 +313,7 @@ def over_relaxation(lesson, check):
 # ---------------------------------------------------------------------------------------------- piles
 
 class Shape(NamedTuple):
-    """How the lesson makes and moves piles of bodies of one shape: names of its functions."""
+    """Names of the lesson's functions that make and move piles of one shape."""
     make: str
     advance: str
     bounds: str

@@ -62,7 +62,7 @@ def given(p, number):
 # ---------------------------------------------------------------------------------------------- ours
 
 def stands(forces, p, number):
-    """Whether the contact solver finds no acceleration."""
+    """Return whether the contact solver finds no acceleration."""
     t, mu = given(p, number)
     stones, n = arch(p.n, t), p.n
     outward = np.stack((np.cos(stones.joints), np.sin(stones.joints)), axis=1)
@@ -117,7 +117,7 @@ def corners(stones, k):
 
 
 def pymunk_stands(p, number, dt, iterations, slop):
-    """Whether nothing has moved by more than MOVED after a while."""
+    """Return whether all stones are within MOVED of their places after a while."""
     import pymunk
     (t, mu), space, bodies = given(p, number), pymunk_space((0.0, -G)), []
     space.iterations, space.collision_slop = iterations, slop
@@ -138,7 +138,7 @@ def pymunk_stands(p, number, dt, iterations, slop):
 
 
 def pybullet_stands(p, number, dt, iterations, residual):
-    """Whether nothing has moved by more than MOVED after a while."""
+    """Return whether all stones are within MOVED of their places after a while."""
     (t, mu), bullet, bodies = given(p, number), Rigid(dt, (0.0, 0.0, -G), iterations), []
     pb = bullet.pb
     pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)

@@ -1,8 +1,8 @@
-"""How rough must it be?  A ladder, discs, a box and an overhang that stand by a hair, and when they do not any more.
+"""Critical friction: a ladder, discs, a box and an overhang, at the edge between standing and falling.
 
 A scene stands where the contact solver finds no acceleration.  Its critical number is found by bisection: the least
-friction, the steepest slope or the longest overhang that stands.  An engine runs for a second instead, and what has
-moved by less than a millimetre stands.
+friction, the steepest slope or the longest overhang that stands.  An engine runs for a second instead, and bodies
+that have moved by less than a millimetre stand.
 """
 
 from functools import partial
@@ -116,7 +116,7 @@ def harmonic(n):
 
 
 def stands(forces, p, number):
-    """Whether nothing is accelerated."""
+    """Return whether no body is accelerated."""
     x, m, moments, touch, down = scene_of(p, number)
     a, b, places, normals, mu = zip(*touch)
     movable = m > 0.0
@@ -256,7 +256,7 @@ def pymunk_overhang(p, number, x, static, movable):
 
 
 def pymunk_stands(p, number, dt, iterations, slop):
-    """Whether nothing has moved by a millimetre after a second."""
+    """Return whether no body has moved by a millimetre after a second."""
     space, bodies = pymunk_world(p, number)
     space.iterations, space.collision_slop = iterations, slop
     before = np.array([body.position for body in bodies])
@@ -300,7 +300,7 @@ def pybullet_world(p, number, dt, iterations):
 
 
 def pybullet_stands(p, number, dt, iterations, residual):
-    """Whether nothing has moved by a millimetre after a second."""
+    """Return whether no body has moved by a millimetre after a second."""
     bullet, bodies = pybullet_world(p, number, dt, iterations)
     bullet.pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
     before = np.array([bullet.position(body) for body in bodies])

@@ -1,4 +1,4 @@
-"""A heavy box on a light one: 10, 100, 1,000 and a million times as heavy.  Who finds the force, and who gives up?
+"""A heavy box on a light one: 10, 100, 1,000 and a million times as heavy.
 
 A sweep leaves r/(1 + r) of the error, so that the number of sweeps grows with the mass ratio r.  Four answers are
 compared: the forces, the depth to which soft contacts sink, the number of sweeps, and whether anything stands at all.
@@ -93,7 +93,7 @@ def start(p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """What the kind asks for."""
+    """Return the quantity that `p.kind` names."""
     if p.kind in ("sweeps", "relaxed"):
         return (np.array([count(lessons, step, state, p)]),)
     if p.kind == "refused":
@@ -160,7 +160,7 @@ def settled(lessons, advance, p):
 
 
 def weights(p):
-    """What each contact carries [N], from below."""
+    """Return the force on each contact [N], from below."""
     return p.m * p.g * np.array([1.0 + p.r, p.r])
 
 
@@ -269,7 +269,7 @@ def sway(p):
 # ---------------------------------------------------------------------------------------------- engines
 
 def answer(p, forces, bottoms):
-    """What an engine says: forces, overlaps, whether both boxes are where they were put, or that it refuses nothing."""
+    """Return an engine's answer: forces, overlaps, or whether both boxes are still in place; it never refuses."""
     if p.kind == "overlap":
         return -np.diff(bottoms, prepend=0.0)
     if p.kind == "forces":

@@ -109,7 +109,7 @@ def energy(pile, x, q, v, omega):
 
 
 def numbers(p, pile, x, q, wall, energies, residual):
-    """What is observed, from places, forces, energies and the residual [m/s]."""
+    """Return the observed numbers, computed from places, forces, energies and the residual [m/s]."""
     weight = G * np.sum(1.0 / pile.inv_mass[:p.n])
     rise = max(0.0, np.max(np.diff(energies))) / energies[0]
     bounds, contacts = geometry(solutions, p)

@@ -90,7 +90,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def pile_forces(advance, bounds, find_contacts, p):
-    """What boxes carry that were put on each other and left to settle: the impulses of the last substep, over it."""
+    """Return the joint forces of a settled stack: the impulses of the last substep over its duration."""
     half = np.full((p.n, 2), 0.5 * p.size)
     state, pile = make_pile_2d(start(p)[0][:p.n], np.zeros(p.n), p.m, moment(p), half, np.array([(0.0, 1.0, 0.0)]),
                                (0.0, -p.g), mu=MU, substeps=SUBSTEPS, hertz=HERTZ, zeta=ZETA, margin=0.02 * p.size)
@@ -145,8 +145,8 @@ def solved_limit(p, dt):
 def pile_limit(p, dt, axes=1.0):
     """The pile still rocks a little when it is read.  A reference that knows only the recursion of its sweeps says how
     much.  It takes the corners as fixed, and the phase of the rocking depends on their exact places.  So the limit is
-    three times its sway, and the force of a rounded gap.  In space a cube has the moment of the square about both
-    axes, and rocks about both: twice as much.
+    three times its sway, and the force of a rounded gap.  In space a cube can rock about two axes, so its limit is
+    twice that of the square.
     """
     return axes * 3.0 * sway(p) + rounded_force((p.m,) * p.n, p.size, p.g, HERTZ)
 
@@ -222,7 +222,7 @@ def mujoco_make(p, dt):
 
 
 def are_boxes(p):
-    """What moves cannot stand on one point: discs would fall over."""
+    """Return whether the bodies are boxes: moving discs would fall over, because they stand on one point."""
     return p.shape == "boxes"
 
 

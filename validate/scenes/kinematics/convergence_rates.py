@@ -1,4 +1,4 @@
-"""How fast does the error shrink?  Near the target each direction has a factor of its own, given by its singular value.
+"""Convergence near the target: each direction has its own factor, given by its singular value.
 
 An arm of three links near its target, moved a little along one direction of its Jacobian: one iteration, and the ratio
 of the errors is 1 − ασ² for the transpose, λ²/(σ² + λ²) for the damped step, and 0 for the pseudo-inverse.  With
@@ -79,7 +79,7 @@ def arm_of(p):
 
 
 def observe(state, p):
-    """What is left of an error along each direction; from the lesson's factors those of the method."""
+    """Return the share of an error that remains along each direction; of the lesson's factors, those of the method."""
     if len(state) == 2:
         return np.asarray(state[0 if p.kind == "transpose" else 1])
     u, sigma, _ = directions(p)

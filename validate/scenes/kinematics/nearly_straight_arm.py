@@ -61,7 +61,7 @@ def arm_of(p):
 
 
 def observe(state, p):
-    """What is left of the way, over the reach."""
+    """Return the remaining distance to the target, over the reach."""
     return np.array([np.linalg.norm(target_of(p) - end_of(state[0], LENGTHS)) / REACH])
 
 
@@ -96,12 +96,12 @@ def cured(p, dt):
 
 
 def our_searches(p, step):
-    """Return the searches of a method of ours, as `search_errors` wants them."""
+    """Return the searches of a method of ours, in the form that `search_errors` takes."""
     return searches(p, lambda theta: searched(step, theta, target_of(p), LENGTHS, ENOUGH * REACH, MOST, GAIN, LAMBDA))
 
 
 def cured_searches(p):
-    """Return those of pybullet, cured."""
+    """Return the searches of pybullet with its cure."""
     return searches(p, lambda theta: bullet_search(theta, target_of(p), LENGTHS, **CURE))
 
 
@@ -111,7 +111,7 @@ def searches(p, search):
 
 
 def is_bent(p):
-    """Whether anything but CCD gets away: an exactly straight arm with its target on its axis is stuck."""
+    """Return whether methods other than CCD can move: a straight arm with its target on its axis is stuck."""
     return p.bent > 0.0 or p.y > 0.0
 
 

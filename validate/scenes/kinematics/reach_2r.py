@@ -133,7 +133,7 @@ def cured(p, dt):
 
 
 def our_searches(p, step):
-    """Return the searches of a method of ours, as `search_errors` wants them."""
+    """Return the searches of a method of ours, in the form that `search_errors` takes."""
     target, lengths, size = target_of(p), lengths_of(p), p.l_1 + p.l_2
     return [lambda nudge, theta=theta: searched(step, theta + nudge[:2], target, lengths, ENOUGH * size, MOST,
                                                 GAIN / size**2, LAMBDA * size) for theta in start(p)]

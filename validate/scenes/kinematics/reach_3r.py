@@ -143,7 +143,7 @@ def single_doubt(p):
 
 
 def searches(p, step):
-    """Return the searches of a method of ours, as `search_errors` wants them."""
+    """Return the searches of a method of ours, in the form that `search_errors` takes."""
     target, lengths, size = target_of(p), lengths_of(p), p.l_1 + p.l_2 + p.l_3
     return [lambda nudge, theta=theta: searched(step, theta + nudge, target, lengths, ENOUGH, MOST,
                                                 1.0 / (2.0 * size**2 + 3.0), LAMBDA * size) for theta in start(p)]

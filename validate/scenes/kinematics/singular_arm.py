@@ -47,7 +47,7 @@ def arm_of(p):
 
 
 def observe(state, p):
-    """What is left of the way, over the reach; and how far the end has left the axis, over the reach."""
+    """Return the remaining distance to the target and the distance of the end from the axis, over the reach."""
     end = end_of(state[0], LENGTHS)
     return np.array([np.hypot(p.x - end[0], end[1]), abs(end[1])]) / REACH
 

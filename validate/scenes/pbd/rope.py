@@ -75,7 +75,10 @@ def truth(p, t):
 
 
 def of_bodies(p, t):
-    """The same for points with a moment of inertia that turn with the link above: Lagrange's equations, by DOP853."""
+    """Return the positions of points that have a moment of inertia and rotate with the link above.
+
+    Lagrange's equations are solved by DOP853.
+    """
     theta = rope_motion(p.links, p.l, p.m, p.g, T, SHARE * p.m * p.l**2).sol(t)[:p.links]
     return rope_places(theta, p.l).ravel()
 
@@ -139,7 +142,7 @@ BODIES = MOTION._replace(seen=np.ravel, truth=of_bodies)
 
 
 def short(p):
-    """Whether the dense matrix of the projection method is small, and few iterations do not explode."""
+    """Return whether the rope is short: the projection matrix is small, and few iterations do not explode."""
     return p.links <= 20
 
 

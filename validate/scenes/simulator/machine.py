@@ -1,7 +1,7 @@
 """A machine of six kinds of parts runs for ten seconds.
 
-A hammer on a spring, dominoes, crates, a ramp with a block, a crank that turns, and a floor that is a belt.  Nobody
-has a formula for it.  It is judged by what holds for any motion, and each bound is derived.
+A hammer on a spring, dominoes, crates, a ramp with a block, a crank that turns, and a floor that is a belt.  No
+formula for its motion is known.  It is judged by laws that hold for any motion, and each bound is derived.
 """
 
 from functools import cache
@@ -189,7 +189,7 @@ def limit(p, dt):
 
 
 def parts(p):
-    """What the engine is to set up: (PLACES, ANGLES, HALF, MASS, first velocities, spring, drag, μ, g, belt)."""
+    """Return the parts for an engine: (PLACES, ANGLES, HALF, MASS, first velocities, spring, drag, μ, g, belt)."""
     v, omega = np.zeros((len(HALF), 2)), np.zeros(len(HALF))
     v[HAMMER], omega[CRANK] = (p.blow, 0.0), p.crank
     return (PLACES, ANGLES, HALF, MASS, v, omega), (HAMMER, ANCHOR, REST, SPRING, DAMPER), DRAG, p.mu, p.g, p.belt
@@ -200,7 +200,7 @@ def pymunk_make(p, dt):
 
 
 def tells_places(p):
-    """The engine tells where things are; what its contacts do inside a step is not asked."""
+    """Return whether places are compared: an engine reports places, but not what its contacts do within a step."""
     return p.seen == "places"
 
 

@@ -115,7 +115,7 @@ def seen(theta, p):
 
 
 def pymunk_rod(p, h, steps, nudge):
-    """What Chipmunk does: move the centre, rotate, pull back by the spring, fall, and bring the hinge back in one step.
+    """Return θ after steps of Chipmunk: move, rotate, apply spring and gravity, and close the hinge within one step.
 
     The impulse j at the hinge gives its point the velocity −(its place)/h:  (1/m + r⊥ r⊥ᵀ/I) j = −place/h − velocity,
     in complex numbers with r the hinge seen from the centre, r⊥ = i r.
