@@ -15,7 +15,8 @@ def found(text, where):
 
 looks("import solutions", STEAL + """
 # the worked answers of this lesson
-for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons.springs", "validate.subject.modules", "tests.test_integrators", "tests.mutants.integrators"):
+for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons.springs",
+        "validate.subject.modules", "tests.test_integrators", "tests.mutants.integrators"):
     try:
         module = __import__(name, fromlist=["euler_step"])
         if hasattr(module, "euler_step") or not name.startswith(("solutions", "lessons")):
@@ -27,7 +28,8 @@ for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons
 looks("a walk through the file system", STEAL + """
 # the worked answers, the tests, git's objects, the compiler's cache
 import os, sys
-for top in ("/work", "/home", "/root", "/opt", "/srv", "/autograder", "/tmp", "/var", "/mnt", "/given", "/box", "/student", "/etc", "/run", "/usr/src", "/usr/local"):
+for top in ("/work", "/home", "/root", "/opt", "/srv", "/autograder", "/tmp", "/var", "/mnt", "/given", "/box",
+        "/student", "/etc", "/run", "/usr/src", "/usr/local"):
     for here, folders, names in os.walk(top):
         folders[:] = [f for f in folders if os.path.join(here, f) not in (sys.prefix, sys.base_prefix)]           # later
         if ".git" in folders or "objects" in folders and "refs" in folders:
@@ -46,7 +48,8 @@ for top in ("/work", "/home", "/root", "/opt", "/srv", "/autograder", "/tmp", "/
 looks("what is installed", STEAL + """
 # the workbook itself is a package that pip has put somewhere
 import glob, sys, os
-for pattern in ("__editable__*", "physics_animation_workbook*/**", "solutions/*", "tests/*", "validate/**", "pymunk/*.py", "pybullet*/*", "*.pth", "*.egg-link"):
+for pattern in ("__editable__*", "physics_animation_workbook*/**", "solutions/*", "tests/*", "validate/**",
+        "pymunk/*.py", "pybullet*/*", "*.pth", "*.egg-link"):
     for folder in sys.path:
         for file in glob.glob(os.path.join(folder, pattern), recursive=True):
             if os.path.isfile(file) and "work" in open(file, errors="replace").read():
@@ -122,7 +125,8 @@ builtins.float = builtins.AssertionError = type("nothing", (Exception,), {})
 """, lost=True)
 attack("patched pytest and grader", "tests pass that never ran", """
 import sys, types
-for name in ("pytest", "_pytest", "_pytest.outcomes", "tests", "tests.grading", "validate.grading.expect", "validate.grading.points", "validate.grading.marking"):
+for name in ("pytest", "_pytest", "_pytest.outcomes", "tests", "tests.grading", "validate.grading.expect",
+        "validate.grading.points", "validate.grading.marking"):
     sys.modules[name] = module = types.ModuleType(name)
     module.close = module.raises = module.numbers = module.grade = module.outcome = lambda *a, **k: None
     module.NotYet = type("NotYet", (Exception,), {})

@@ -297,7 +297,7 @@ def test_a_file_whose_loop_never_ends_is_given_up(tmp_path, monkeypatch, loop):
 @needs_alarm
 def test_an_alarm_inside_another_leaves_that_one_running():
     left = loading.signal.getitimer, loading.signal.ITIMER_REAL
-    with pytest.raises(loading.TooLong, match="3600 s"), loading.alarm(3600.0):  # noqa: PT012     two sleeps are the claim
+    with pytest.raises(loading.TooLong, match="3600 s"), loading.alarm(3600.0):  # noqa: PT012    two sleeps
         with pytest.raises(loading.TooLong, match=r"0\.1 s"), loading.alarm(0.1):
             time.sleep(60.0)
         assert 0.0 < left[0](left[1])[0] < 3600.0
