@@ -40,7 +40,8 @@ IMPORT_WITHIN = 10.0         # time to load a student's file [s of its own]
 CROWDED = 10.0               # ratio of elapsed to own time at which a call or a lesson is given up [-]
 QUIET = 2.0                  # … and below which own time does not depend on other processes, so one try will do [-]
 ENDED_WITHIN = 60.0          # [s]: the pipes of a sandbox close 0.01 after its end on an idle machine
-LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends in this time, or it still lives
+ASLEEP = 6.0                 # so long a worker that owes an answer may sleep or be stopped, in all calls together [s]
+LAST_WORD_WITHIN = 2.0       # [s]: a worker that has closed the wire ends in this time, or it still lives
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code passes to our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # printed text that is kept [bytes]
@@ -218,7 +219,7 @@ class Sandbox:
         if self.broken:
             raise self.broken
         remember(self.records, arguments)
-        if self.meter.used >= self.until or time.monotonic() >= self.patience:
+        if self.is_over():
             raise self.too_long()
         self.depth += 1
         try:
@@ -323,6 +324,7 @@ class Sandbox:
                 self.look(not ours and not from_it)
             try:
                 if frame := self.line.frame():
+                    self.meter.messages += 1
                     return frame
                 self.line.pump(LOOK)
             except Ended:
@@ -334,8 +336,12 @@ class Sandbox:
         """Measure the worker's time, and end the worker if it has taken too long."""
         self.charge()
         self.meter.look(owes)
-        if self.meter.used >= self.until or time.monotonic() >= self.patience:
+        if self.is_over():
             raise self.too_long()
+
+    def is_over(self):
+        """Return whether the worker's time is up: that of this test, or that of the whole submission."""
+        return self.meter.used >= self.until or self.meter.slept >= ASLEEP or time.monotonic() >= self.patience
 
     def too_long(self):
         """End the worker, and note whether other processes may be the reason why it took so long."""
@@ -343,6 +349,8 @@ class Sandbox:
         self.late |= now - began > QUIET * (self.meter.used - used)
         self.overdue = True
         self.seen.add("time")
+        if self.meter.slept >= ASLEEP:
+            return self.lost("the program waits and does not compute")
         if self.meter.used < self.budget and now < self.ends:
             return self.lost("it took too long")
         return self.lost("the time for the whole submission is used up")
@@ -352,12 +360,13 @@ class Sandbox:
         try:
             code = self.process.wait(timeout=LAST_WORD_WITHIN)
         except subprocess.TimeoutExpired:                              # it has closed the wire and still runs
-            self.meter.used += LAST_WORD_WITHIN
+            self.meter.sleep(LAST_WORD_WITHIN)
             self.seen.add("wire")
             return ""
         number = -code if code < 0 else code - 128                     # bwrap ends with 128 + the signal of the worker
         self.seen.add("refused" if number == signal.SIGSYS else "end")
-        self.late |= number == signal.SIGKILL                          # other processes may have used up the memory
+        # other processes may have used up the memory, and the system ended it for that
+        self.late |= number == signal.SIGKILL and "signal" not in self.seen
         if number == signal.SIGSYS:
             return ": it made a system call that no lesson needs"
         return f" ({signal.Signals(number).name})" if number in set(signal.Signals) else ""

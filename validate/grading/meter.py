@@ -6,6 +6,7 @@ Busy neighbours therefore cost nothing.  Without /proc, all time counts that pas
 import time
 from pathlib import Path
 
+WAKE = 1e-3                  # each message wakes one process and then the other, which takes up to so long [s]
 LOOK = 0.05                  # so often we look how a worker is that has not answered [s]
 MOST = 4.0 * LOOK            # most sleep counted per look, because this process may have waited for the processor [s]
 
@@ -14,19 +15,30 @@ class Meter:
     """Counts the seconds of one worker after the other."""
 
     def __init__(self):
-        self.used, self.process, self.looked, self.worked = 0.0, None, time.monotonic(), 0.0
+        self.used, self.slept, self.process, self.looked, self.worked = 0.0, 0.0, None, time.monotonic(), 0.0
+        self.messages, self.ours = 0, time.thread_time()
 
     def follow(self, process):
         """From now on count the worker that this process has started, which has just said that it is ready."""
         self.process, self.looked = worker_of(process), time.monotonic()
-        self.worked = self.processor()
+        self.worked, self.ours = self.processor(), time.thread_time()
 
     def look(self, owes):
-        """Count what has passed since the last look.  owes: it is the worker's turn."""
-        now, worked = time.monotonic(), self.processor()
+        """Count what has passed since the last look.  owes: it is the worker's turn.
+
+        A worker does not sleep while this process computes its answer, nor while a message wakes one of them.
+        """
+        now, worked, ours = time.monotonic(), self.processor(), time.thread_time()
         passed, busy = min(now - self.looked, MOST), max(0.0, worked - self.worked)
-        self.looked, self.worked = now, worked
-        self.used += busy + (max(0.0, passed - busy) if owes and self.sleeps() else 0.0)
+        awake = busy + ours - self.ours + WAKE * self.messages
+        self.looked, self.worked, self.ours, self.messages = now, worked, ours, 0
+        self.used += busy
+        if owes and self.sleeps():
+            self.sleep(max(0.0, passed - awake))
+
+    def sleep(self, seconds):
+        """Count seconds in which the worker neither computed nor waited for the processor."""
+        self.used, self.slept = self.used + seconds, self.slept + seconds
 
     def due(self):
         """Return whether it is time for another look."""
