@@ -40,7 +40,7 @@ class Page(HTMLParser):
 
 
 def outside_in_script(text):
-    """Addresses of other hosts that a script may load."""
+    """Return addresses of other hosts that a script may load."""
     return [address for address in SCRIPT.findall(text) if not address.startswith(NAMESPACE)]
 
 
@@ -80,5 +80,5 @@ def wrong_links(site):
 
 
 def size(folder):
-    """Size of a folder [MB]."""
+    """Return size of a folder [MB]."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6

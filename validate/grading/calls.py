@@ -62,7 +62,7 @@ class Comparison(ctypes.Structure):
 
 
 def refused(error):
-    """SCMP_ACT_ERRNO"""
+    """Return SCMP_ACT_ERRNO."""
     return 0x00050000 | error
 
 

@@ -64,7 +64,7 @@ def known(part, exercise):
 
 
 def in_words(numbers):
-    """Rising whole numbers as text: "1 to 11", or "1 to 11, 20"."""
+    """Return increasing whole numbers as text: "1 to 11", or "1 to 11, 20"."""
     runs = []
     for number in numbers:
         if runs and number == runs[-1][1] + 1:

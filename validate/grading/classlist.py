@@ -56,7 +56,10 @@ def roster(path, tell=print):
 
 
 def decoded(path, tell):
-    """The text of a class list: UTF-8, UTF-16 with its mark, else what Windows calls ANSI, which `tell` hears of."""
+    """Return the text of a class list in UTF-8, UTF-16 with its mark, or else the Windows code page.
+
+    The last case is reported by `tell`.
+    """
     try:
         data = path.read_bytes()
     except OSError as e:

@@ -79,7 +79,7 @@ def refusal(thing, unfit):
 
 
 def parcel(submission, settings, first=None):
-    """Pickle all that a worker needs.  first: the result of a first try, of which a part is done again."""
+    """Pickle everything that a worker needs.  first: the result of a first try, a part of which is repeated."""
     return pickle.dumps((submission, settings, makeup(settings.code), sandbox.private, first))
 
 

@@ -17,7 +17,7 @@ class Meter:
         self.used, self.process, self.looked, self.worked = 0.0, None, time.monotonic(), 0.0
 
     def follow(self, process):
-        """From now on count the worker that this process has started, which has just said that it is ready."""
+        """Count from now on the worker that this process has started, which has just reported that it is ready."""
         self.process, self.looked = worker_of(process), time.monotonic()
         self.worked = self.processor()
 

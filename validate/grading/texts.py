@@ -10,7 +10,10 @@ FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")     # at 
 
 
 def clean(value):
-    """Spell out control, format and undecodable characters of a text and limit its length; return others unchanged."""
+    """Replace control, format and undecodable characters by their names and limit the length.
+
+    Other texts stay unchanged.
+    """
     return marking.readable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 

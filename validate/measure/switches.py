@@ -11,10 +11,9 @@ LEAST = 50                   # steps of a run
 
 
 def engine_parts(selection, p):
-    """[{engine, product, part, steps, cost, change, observed, repeats}] of the first settings of each engine that runs.
+    """Return the cost of each part of the first settings of each engine that runs.
 
-    cost: time with the part over time without it;    change: relative change of what is observed without it, or None
-    where the run is lost.  Nothing is measured where an engine makes its worlds only while it answers.
+    [{engine, product, part, steps, cost, change, observed, repeats}]
     """
     scene = selection.scene
     if not (scene.moves and scene.refined):

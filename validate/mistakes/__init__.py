@@ -89,7 +89,7 @@ class Trace:
         self.results[self.calls], self.sorted_out[self.calls] = result, orderless
 
     def changed_input(self):
-        """The last call has changed an array that was handed in."""
+        """Note that the last call has changed an array among its arguments."""
         self.keep(CHANGED, CHANGED)
 
     def watching(self, function):
@@ -173,7 +173,7 @@ def kind(value):
 
 
 def leaves(value):
-    """All numbers of a result, in their order."""
+    """Return all numbers of a result, in their order."""
     if isinstance(value, np.ndarray):
         yield from value.astype(float).ravel()
     elif isinstance(value, (tuple, list)):
@@ -189,7 +189,10 @@ def leaves(value):
 
 
 def same(kept, stored):
-    """Whether a result is the stored one, up to round-off.  None is stored where round-off decides about the result."""
+    """Return whether a result is the stored one, up to round-off.
+
+    None is stored if round-off decides about the result.
+    """
     if stored is None:
         return True
     if stored == HUGE and not isinstance(kept, str):
@@ -223,11 +226,7 @@ def stored(results):
 
 
 def first_difference(trace, right, orderless):
-    """[number of the call, its result, the right one] where a trace first leaves the right one; None if nowhere.
-
-    Where all results are the same up to round-off, a small result that is wrong for its size: the last such one,
-    because a test ends with the call that fails.
-    """
+    """Return [number of the call, its result, the right one] where a trace first leaves the right one, or None."""
     found, expected = trace.of_calls(orderless), right.of_calls(orderless)
     both = [call for call in found if call in expected]
     calls = [call for call in both if not same(found[call], expected[call])]
@@ -238,10 +237,7 @@ def first_difference(trace, right, orderless):
 # ---------------------------------------------------------------------------------------------- looking up
 
 def matching(lesson, exercise, traces):
-    """Ideas of the wrong answers that return the same in all tests of the exercise.
-
-    traces: {test: Trace} of the answer.  An answer that returns in all tests what a right one returns has none.
-    """
+    """Return the ideas of the wrong answers that return the same in all tests of the exercise."""
     known = table(lesson).get(exercise)
     if not known or traces.keys() != known["right"].keys() or not is_telling(traces.values()):
         return []
@@ -258,7 +254,7 @@ def matching(lesson, exercise, traces):
 
 
 def misshapen(lesson, exercise, trace):
-    """(expected, got) where the last result is not the kind of thing that the exercise's function returns; or None."""
+    """Return (expected, got) if the last result is not of the kind that the exercise's function returns, or None."""
     expected = table(lesson).get(exercise, {}).get("returns", "")
     got = kind(trace.returned) if trace else ""
     return (expected, got) if expected and got and expected != got else None

@@ -24,10 +24,7 @@ class Case(NamedTuple):
 
 
 def expected_result(result, got, expected):
-    """The result that a test expects, if it compared all of a result, or parts of it, with numbers; None elsewhere.
-
-    got is what was compared with `expected`.  A part of a record or tuple is the one that is equal to `got`.
-    """
+    """Return the expected result if a test compared all of a result, or parts of it, with numbers; None otherwise."""
     if got is None or expected is None or result is None:
         return None
     if isinstance(result, tuple):

@@ -24,7 +24,7 @@ def script(result):
 
 
 def packed(frames):
-    """Frames of points (x, y) as base64 of float32: a difference of two runs may be looked at magnified."""
+    """Return frames of points (x, y) as base64 of float32: a difference of two runs may be magnified."""
     return base64.b64encode(np.asarray(frames, dtype="<f4").tobytes()).decode()
 
 

@@ -44,7 +44,7 @@ def rounded(x, digits=2):
 
 
 def number(x, digits=3):
-    """1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
+    """Return 1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
     if x is None:
         return "–"
     if x < 0:
@@ -131,7 +131,7 @@ def judge(curve):
 
 
 def verdicts(curves):
-    """[(text, kind, count)] of several curves at once."""
+    """Return [(text, kind, count)] of several curves at once."""
     count = Counter(Verdict(c["verdict"]) for c in curves)
     return [(one.value, KINDS[one], count[one]) for one in
             (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED)
@@ -150,13 +150,13 @@ def named(curve):
 
 
 def own_errors(curve):
-    """[(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
+    """Return [(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
     own = curve.get("own_law")
     return [(row, relative_to(row["observed"], own)) for row in curve["rows"] if own and row["observed"]]
 
 
 def relative_to(observed, law):
-    """|observed − law| / |law| of two lists."""
+    """Return |observed − law| / |law| of two lists."""
     return relative(np.array(observed), np.array(law))
 
 
@@ -185,10 +185,7 @@ def races(result):
 
 
 def race(advantage, result):
-    """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
-
-    To have no run that is as accurate as the engine's is a loss.
-    """
+    """Return a race with the range of its ratio and its outcome: faster, a tie, slower, or open with a reason."""
     a = advantage
     if why := why_open(a, result):
         return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
@@ -199,11 +196,7 @@ def race(advantage, result):
 
 
 def why_open(a, result):
-    """Why a race is not decided; nothing where it is.
-
-    Of runs that scatter, because no theory bounds their errors, the most accurate one was lucky.  The sweeps of a quick
-    validation end early, and it leaves most compiling to a full one.
-    """
+    """Return the reason why a race is not decided; nothing if it is."""
     theirs = next(c for c in next(iter(result["cases"].values()))["engines"] if c["label"] == a["engine"])
     if Verdict(theirs["verdict"]) is Verdict.UNDECIDED:
         return "no theory bounds its errors, and the smallest may be luck"
@@ -237,7 +230,7 @@ def tied(a, result):
 
 
 def accurate_enough(advantage, result):
-    """Our methods with a run, timed or not, whose error is not larger than the engine's."""
+    """Return our methods with a run, timed or not, whose error is not larger than the engine's."""
     ours = next(iter(result["cases"].values()))["ours"]
     return [c["label"] for c in ours if any(r["error"] is not None and r["error"] <= advantage["error"]
                                             for r in c["rows"])]
@@ -253,7 +246,7 @@ def busy(results):
 
 
 def busy_warning(results, cores):
-    """One sentence where times are doubtful, else nothing."""
+    """Return one sentence if times are doubtful, else nothing."""
     used, is_load = busy(results)
     if is_load and used >= BUSY_LOAD:
         return (f"The machine was busy while times were taken: its load was up to {used:.1f}, and this run needs 1. "
@@ -273,7 +266,7 @@ def products(results):
 
 
 def row(result, products):
-    """One scene on the front page, with these engines."""
+    """Return one scene on the front page, with these engines."""
     first = next(iter(result["cases"].values()))
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
@@ -291,7 +284,10 @@ def row(result, products):
 
 
 def left_out(results):
-    """Scenes of the lessons before the simulator, and what the whole loop costs there: [{scene, title, lesson, …}]."""
+    """Return scenes of the lessons before the simulator, and the cost of the whole loop there.
+
+    Each is {scene, title, lesson, …}.
+    """
     return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
              **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
             for r in results if r["lesson"] not in ("simulator", "kinematics")]
@@ -347,7 +343,7 @@ def best_order(curves):
 
 
 def seen_in_times(result):
-    """One sentence: what the plot of errors against run times shows."""
+    """Return one sentence: the result of the plot of errors against run times."""
     decided = [one for one in races(result).values() if one["ratio"]]
     if not decided:
         return ""
@@ -357,7 +353,7 @@ def seen_in_times(result):
 
 
 def seen_in_steps(result):
-    """One sentence: what the plot of errors against steps shows."""
+    """Return one sentence: the result of the plot of errors against steps."""
     best = best_order(next(iter(result["cases"].values()))["ours"])
     if best is None:
         return ""
@@ -379,10 +375,7 @@ SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,4})_([A-Za-zα-ω]{1,4})\b")
 
 
 def flowing(text):
-    """[(kind, content)] of a docstring, without the line breaks of its source.
-
-    text: a paragraph;    formula: indented lines, as they are;    terms: [(term, text)] of a list of definitions.
-    """
+    """Return [(kind, content)] of a docstring, without the line breaks of its source."""
     found = []
     for block in re.split(r"\n\s*\n", text.strip("\n")):
         lines = block.split("\n")
@@ -399,7 +392,7 @@ def flowing(text):
 
 
 def paragraphs(lines):
-    """Text and formulas: indented lines are a formula at the start or after a colon, else they go on with the text."""
+    """Return text and formulas: indented lines are a formula at the start or after a colon, else they are text."""
     found = []
     for deep, piece in runs_of(lines):
         if deep and (not found or found[-1][1].endswith(":")):
@@ -416,12 +409,12 @@ def defines(line):
 
 
 def runs_of(lines):
-    """[(indented, lines)] of neighbours that are all indented or all not."""
+    """Return [(indented, lines)] of neighbours that are all indented or all not."""
     return [(formula, list(piece)) for formula, piece in groupby(lines, key=indented)]
 
 
 def definitions(lines):
-    """[(term, text)]: an indented line goes on with the text before."""
+    """Return [(term, text)]: an indented line goes on with the text before."""
     found = []
     for line in lines:
         if defines(line):
@@ -443,14 +436,14 @@ def plain_words(text):
 
 
 def subscripts(text):
-    """v_n with a lowered n."""
+    """Return v_n with a lowered n."""
     return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 # ---------------------------------------------------------------------------------------------- findings
 
 def headline(result):
-    """One sentence: what became of this scene."""
+    """Return one sentence: the result of this scene."""
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
     engines = [c for one in cases for c in one["engines"]]
@@ -475,7 +468,7 @@ def findings(result):
 
 
 def leading(result):
-    """The findings without what was left out: departures first, then orders, times and what an omission saves."""
+    """Return the findings without those left out: departures first, then orders, times and savings by omission."""
     return [*_departures(result), *_ours(result), *_engines_of(result), *_times(result), *_ablations(result),
             *_parity(result)]
 

@@ -42,10 +42,7 @@ def run(names, plan, pool, out, console, measuring=None):
 
 
 def measure_errors(store, names, plan, pool, bars):
-    """Errors of every scene and the stability cases, several at a time: compiling is most of it.
-
-    A process stays with a lesson as long as it can.  Two processes at the same lesson would compile the same twice.
-    """
+    """Compute the errors of every scene and the stability cases, several at a time: most of it is compilation."""
     lessons = {("errors", name): modules.bind_scene(name).lesson for name in names}
     lessons |= {("stability", lesson): lesson for lesson in reversed(lessons_of(names))}     # the short ones come last
     todo = {(kind, name): ((measure.errors if kind == "errors" else stability_cases), name, plan)

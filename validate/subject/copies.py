@@ -21,16 +21,18 @@ def copy_around(place):
 
 
 def meant_here(of):
-    """The folder that a command means by `lessons`, where it is not that of this copy: that of the copy around the
-    working folder.  Everything else means what it says.
+    """Return the folder that a command means by `lessons` if it is that of the copy around the working folder.
+
+    Every other name is returned unchanged.
     """
     around = copy_around(Path.cwd())
     return str(around / "lessons") if of == "lessons" and around not in (None, ROOT) else of
 
 
 def doubtful(folder):
-    """The folder of some lessons, if one might take another for it: they are not those of the copy around the working
-    folder, and no option or variable names them.
+    """Return the folder of some lessons if it may be mistaken for another one, else "".
+
+    Such lessons are not those of the copy around the working folder, and no option or variable names them.
     """
     around = copy_around(Path.cwd())
     own = around and around == ROOT and Path(folder).resolve() == ROOT / "lessons"

@@ -19,7 +19,7 @@ FIND = "*Find*"              # in the docstring of an exercise whose formula is 
 
 @lru_cache(maxsize=1)
 def table():
-    """{exercise: {"lesson", "function", "needs"}} in the order of the course; empty where the file is missing."""
+    """Return {exercise: {"lesson", "function", "needs"}} in the order of the course; empty if the file is missing."""
     return json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
 
 
@@ -34,11 +34,7 @@ def of_lesson(lesson):
 
 
 def needed(exercise, folder=None):
-    """All exercises that this one calls, those that they call included, in the order of the course.
-
-    folder: where the answers are.  A lesson there may import another lesson from solutions, where it is worked.
-    Then nothing of that lesson is needed.
-    """
+    """Return all exercises that this one calls, directly or indirectly, in the order of the course."""
     found, waiting = set(), [exercise]
     while waiting:
         number = waiting.pop()
@@ -58,7 +54,7 @@ def siblings(folder, lesson):
 
 
 def states(outcomes):
-    """{exercise: passed, not yet or not attempted}, the worst of its tests, from (exercise, status) of each test."""
+    """Return {exercise: passed, not yet or not attempted}, the worst of (exercise, status) of its tests."""
     worst, found = ["passed", "not attempted", "not yet"], {}
     for number, status in outcomes:
         found[number] = max(found.get(number, "passed"), status, key=worst.index)

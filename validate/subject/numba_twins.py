@@ -156,7 +156,7 @@ def _shorten_broadcast_error():
     from numba.np import arrayobj
 
     def shapes_differ(src_shapes, index_shape):
-        """Stands in for numba's function of that purpose."""
+        """Replace numba's function of that purpose."""
 
     @overload(shapes_differ)
     def _(src_shapes, index_shape):

@@ -27,11 +27,11 @@ class View(NamedTuple):
     labels: tuple            # of both axes, with units
 
     def of(self, points):
-        """Points (n, d) as they are seen (n, 2)."""
+        """Return points (n, d) as they are seen (n, 2)."""
         return (np.atleast_2d(np.asarray(points, dtype=float)) - self.origin) @ self.basis.T
 
     def depth(self, points):
-        """Distances (n,) of points from the plane of the view through its origin."""
+        """Return distances (n,) of points from the plane of the view through its origin."""
         offset = np.atleast_2d(np.asarray(points, dtype=float)) - self.origin
         return np.linalg.norm(offset - offset @ self.basis.T @ self.basis, axis=1)
 
