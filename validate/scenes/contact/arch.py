@@ -173,7 +173,7 @@ def thick(p):
     return p.t >= 0.15 and p.n <= 10
 
 
-BISECTED = "its bisection and its sweeps stop at a width, and the limit bounds what is left"
+BISECTED = "its bisection and its sweeps stop at a given accuracy, and the limit bounds the remaining error"
 NUDGED = {"order": EXACT, "limit": unknown, "supports": thick,
           "predicted": "no theory says how much more thickness or friction a nudged arch needs"}
 RUNNERS = (
@@ -237,8 +237,8 @@ SCENE = Scene(
     published_states=((1.0, (0.100861,), 5e-7),),
     sanity_checks=sanity_checks,
     points=points, links=links,
-    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual vanishes"),
     full_loop="nothing moves here, so there is no loop",
-    ablations={"motion": "what stands does not move; what falls is not followed",
+    ablations={"motion": "a standing arch does not move; a falling one is not followed",
                "curved stones": "only the ends of the joints touch, and the centre of mass is that of a sector"},
 )

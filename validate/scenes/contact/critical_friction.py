@@ -329,9 +329,9 @@ def low_boards(p):
     return boards(p) and (p.kind != "overhang" or p.blocks <= 3)
 
 
-BISECTED = "its bisection and its sweeps stop at a width, and the limit bounds what is left"
-WATCHING = "what moves by less than a millimetre in a second stands, and the limit bounds what that hides"
-LEANING = "what moves by less than a millimetre stands, and no theory says how far an overhang sinks before it carries"
+BISECTED = "its bisection and its sweeps stop at a given accuracy, and the limit bounds the remaining error"
+WATCHING = "a body that moves by less than a millimetre in a second stands, and the limit bounds the error of that"
+LEANING = "a body that moves by less than a millimetre stands, and no theory says how far an overhang sinks at first"
 COARSE = "no theory says how coarse its default settings are"
 RUNNERS = (
     ours(SWEEPS, limit=limit, predicted=BISECTED, order=EXACT),
@@ -413,8 +413,8 @@ SCENE = Scene(
     published_states=((1.0, (0.288675,), 5e-7),),
     sanity_checks=sanity_checks,
     points=points, links=links,
-    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual vanishes"),
     full_loop="forces of bodies at rest: nothing moves, so there is no loop",
-    ablations={"motion": "what stands does not move; what falls is not followed",
-               "the stiffness of the bodies": "it decides who carries what on four legs, and nothing here"},
+    ablations={"motion": "standing bodies do not move; falling ones are not followed",
+               "the stiffness of the bodies": "it decides how four legs share a load, and has no effect here"},
 )

@@ -216,7 +216,7 @@ SCENE = Scene(
     points=points, links=links,
     uses=("one number for each velocity", "one impulse at a time"),
     full_loop="impacts are counted without places and times, so there is no loop",
-    ablations={"time and place": "who meets whom next follows from the velocities alone",
+    ablations={"time and place": "the next impact follows from the velocities alone",
                "restitution below 1": "the number of impacts then has nothing to do with π",
                "rotation": "impacts through the centres turn nothing"},
 )

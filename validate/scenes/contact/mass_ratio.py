@@ -337,7 +337,7 @@ RUNNERS = (
     ours(DIRECT, limit=solved_limit, order=EXACT, supports=up_to(forces=ANY),
          predicted="it solves a linear system: only round-off is left, and the limit bounds it"),
     ours(SWEEPS, limit=swept_limit, order=EXACT, supports=up_to(forces=1e3, refused=ANY),
-         predicted="its sweeps stop at a residual, and the limit bounds what is left"),
+         predicted="its sweeps stop at a residual, and the limit bounds the remaining error"),
     ours(PILE, limit=pile_limit, order=EXACT, predicted=PHASE,
          supports=up_to(forces=1e3, overlap=ANY, stands=ANY, refused=ANY)),
     ours(COUNTED_SWEEPS, limit=count_limit, order=EXACT, supports=up_to(sweeps=ANY, relaxed=ANY),

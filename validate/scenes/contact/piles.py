@@ -194,7 +194,7 @@ def few_in_space(p):
     return solid(p) and p.n <= (12 if p.judged else 200)
 
 
-CREEPS = "where each body ends is unknown, and so is how it creeps there: the limit bounds how much"
+CREEPS = "the final place of each body and its creep there are unknown; the limit bounds the creep"
 NO_LAW = "no theory says how much its iterations leave"
 RUNNERS = (
     ours(PILE_IN_SPACE, limit=limit, predicted=CREEPS, order=EXACT, supports=solid),

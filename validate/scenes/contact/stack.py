@@ -255,7 +255,7 @@ RUNNERS = (
     ours(DIRECT, limit=solved_limit, order=EXACT, supports=are_flat,
          predicted="it solves a linear system: only round-off is left, and the limit bounds it"),
     ours(SWEEPS, limit=swept_limit, order=EXACT, supports=settle_soon,
-         predicted="its sweeps stop at a residual, and the limit bounds what is left"),
+         predicted="its sweeps stop at a residual, and the limit bounds the remaining error"),
     ours(PILE, limit=pile_limit, predicted=PHASE, order=EXACT, supports=are_boxes),
     ours(PILE_IN_SPACE, limit=partial(pile_limit, axes=2.0), predicted=PHASE, order=EXACT, supports=are_cubes),
     engine(PYMUNK, "", partial(pymunk_make, **FINE), "100 iterations, collision_slop 1e-4; 3 s of 1/240 s",

@@ -56,7 +56,7 @@ PUSHED = ", the force applied each step"
 RUNNERS = (
     ours(SLIDING, limit=slip_limits, predicted=slip_error),
     ours(EVENT, limit=slip_limits,
-         predicted="it cuts its steps where slips begin and end, so that its error is no smooth function of dt"),
+         predicted="it cuts its steps where slips begin and end, so its error is not a smooth function of dt"),
     engine(PYMUNK, "", pymunk_make, slab_on_line(after=PUSHED),
            order=1, limit=slip_limits, predicted=old_velocity_slip_error),
     engine(PYBULLET, "", pybullet_make, slab_on_box(after=PUSHED),

@@ -163,7 +163,7 @@ def several_points(p):
     return p.lands != "corner"
 
 
-UNTIL_SETTLED = "its sweeps stop at a change of 1e-14 of the speed, and the limit bounds what is left"
+UNTIL_SETTLED = "its sweeps stop at a change of 1e-14 of the speed, and the limit bounds the remaining error"
 SMALL_OVERLAP = "its error is what 2,000 iterations and an overlap of 1e-12 m leave, and the limit bounds it"
 RUNNERS = (
     ours(TOGETHER, limit=sweeps_left, predicted=UNTIL_SETTLED, order=EXACT),

@@ -160,7 +160,7 @@ def as_pybullet(p):
 
 RUNNERS = (
     ours(FACTORS, order=EXACT, limit=formula_limit, supports=has_factors,
-         predicted="a formula: it leaves nothing but roundings"),
+         predicted="a formula: only round-off is left"),
     *(ours(m, order=EXACT, limit=limit, supports=of_kind(kind), predicted=partial(our_error, step=m.table))
       for m, kind in ((TRANSPOSE, "transpose"), (DAMPED, "damped"), (PSEUDO_INVERSE, "pseudo-inverse"))),
     engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics, maxNumIterations 1",

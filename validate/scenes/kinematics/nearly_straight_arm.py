@@ -131,7 +131,7 @@ RUNNERS = (
            predicted=search_errors(cured_searches, observe, truth, limit)),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
            order=EXACT, limit=default_limit, supports=is_bent,
-           predicted="its own law is its search, which leaves nothing but roundings",
+           predicted="its own law is its search, which leaves only round-off",
            departure=Departure("its 20 iterations with a damping of ½ m² are too few for so small a bend",
                                default_law)),
 )

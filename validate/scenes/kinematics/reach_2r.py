@@ -159,15 +159,15 @@ def far_from_the_hole(p):
 
 
 RUNNERS = (
-    ours(CLOSED_2R, order=EXACT, limit=formula_limit, predicted="a formula: it leaves nothing but roundings"),
+    ours(CLOSED_2R, order=EXACT, limit=formula_limit, predicted="a formula: only round-off is left"),
     *(ours(m, order=EXACT, limit=limit, supports=far_from_the_hole if m is PSEUDO_INVERSE else None,
            predicted=search_errors(partial(our_searches, step=m.table), turned_by, truth, limit))
       for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)),
     engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 100 iterations, residualThreshold 1e-9 reach",
            order=EXACT, limit=cured_limit, predicted=search_errors(cured_searches, turned_by, truth, cured_limit)),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
-           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or "
+           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves only round-off",
+           departure=Departure("its damping is ½ m² for any size of the arm, and it stops after 20 iterations or "
                                "at 0.1 mm", default_law)),
 )
 
@@ -199,6 +199,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(2),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
-    ablations={"masses": "inverse kinematics asks where, not how fast",
+    ablations={"masses": "inverse kinematics asks for a position, not for a velocity",
                "limits of the joints": "they would choose one of the two answers, or none"},
 )

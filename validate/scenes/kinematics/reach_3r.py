@@ -170,17 +170,17 @@ def default_law(p, t):
 
 
 RUNNERS = (
-    ours(CLOSED_3R, order=EXACT, limit=formula_limit, predicted="a formula: it leaves nothing but roundings"),
+    ours(CLOSED_3R, order=EXACT, limit=formula_limit, predicted="a formula: only round-off is left"),
     *(ours(m, order=EXACT, limit=limit,
            predicted=search_errors(partial(searches, step=m.table), turned_by, truth, limit))
       for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
     engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 200 iterations, residualThreshold 1e-12",
            order=EXACT, limit=cured_limit,
-           predicted="it ends where it sees no missing rotation any more, and that moment depends on roundings"),
+           predicted="it ends when it detects no missing rotation, and round-off decides when that is"),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
-           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and "
-                               "its damping is ½ whatever the size of the arm", default_law)),
+           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves only round-off",
+           departure=Departure("it stops at 0.1 mm from the place, for any direction, or after 20 iterations, and "
+                               "its damping is ½ for any size of the arm", default_law)),
 )
 
 
@@ -214,5 +214,5 @@ SCENE = Scene(
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, and of the direction: a row of ones"),
     ablations={"a fourth joint": "it would leave one freedom, and a whole curve of answers",
-               "masses": "inverse kinematics asks where, not how fast"},
+               "masses": "inverse kinematics asks for a position, not for a velocity"},
 )

@@ -102,7 +102,7 @@ def beyond_the_last_joint(p):
 STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays)
 POINTING = Departure("every joint points at the target already", stays)
 ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line)
-JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves nothing but roundings"}
+JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves only round-off"}
 
 RUNNERS = (
     *(ours(m, departure=STUCK, **JUDGED) for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),

@@ -122,7 +122,7 @@ def in_time(p):
     return p in (CASES["far outside"], CASES["10 cm each"])
 
 
-AT_REST = {"order": EXACT, "limit": limit, "predicted": "it is at rest, and nothing but roundings is left"}
+AT_REST = {"order": EXACT, "limit": limit, "predicted": "it is at rest, and only round-off is left"}
 NO_THEORY = {"order": EXACT, "limit": measured_limit, "predicted": "no theory says how soon it comes to rest here"}
 
 RUNNERS = (
@@ -133,8 +133,8 @@ RUNNERS = (
     engine(PYBULLET, "", as_our_damping, "jointDamping as our λ², 3,000 iterations", **AT_REST),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
            order=EXACT, limit=measured_limit,
-           predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("its damping is ½ m² whatever the size of the arm and the distance, and it stops after "
+           predicted="its own law is its search, which leaves only round-off",
+           departure=Departure("its damping is ½ m² for any size of the arm and any distance, and it stops after "
                                "20 iterations", default_law)),
 )
 

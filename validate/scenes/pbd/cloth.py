@@ -109,7 +109,7 @@ def limit(p, dt):
 # its springs pull, it does not converge to the reference solution: 5 × 5 points on 20 N/m are off by 1.2, 0.48 and
 # 0.37 % after 0.3 s with steps of 1/240, 1/1000 and 1/4000 s.  None of its settings reaches the rest state, and no law
 # explains its result, so it cannot be compared with anything.
-SWEPT = "one sweep stops before all links are in balance, and what it leaves is bounded, but not modelled"
+SWEPT = "one sweep stops before all links are in balance, and the remaining error is bounded, but not modelled"
 RUNNERS = (ours(XPBD, limit=limit, predicted=SWEPT, compiled_in_quick=True),)
 
 

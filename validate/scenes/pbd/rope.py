@@ -154,8 +154,8 @@ def pybullet_make(p, dt):
     return bullet_rope(straight(p), p.m, p.g, SHARE * p.m * p.l**2, dt, np.ravel)
 
 
-IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
-SWEPT = "its sweeps stop before all links have their length, and what they leave is bounded, but not modelled"
+IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit contains it"
+SWEPT = "its sweeps stop before all links have their length, and the remaining error is bounded, but not modelled"
 FINER = (10_000, 20_000, 50_000)
 RUNNERS = (
     ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum shows it

@@ -155,7 +155,7 @@ def pymunk_make(p, dt):
     return PymunkBoxes(parts(p), dt, 100, 1e-5).run(corners)
 
 
-UNPREDICTED = "a house that stands leaves what its sweeps leave, and of one that falls no theory knows the motion"
+UNPREDICTED = "a standing house has the error of its sweeps, and no theory predicts the motion of a falling one"
 RUNNERS = (
     # a house that falls needs short steps, and is not judged
     ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("too smooth",), most_in_quick=60),
@@ -212,5 +212,5 @@ SCENE = Scene(
     points=points, links=links,
     uses=("boxes in the plane", "friction that holds", "sweeps with memory"),
     ablations={"bending of the cards": "rigid cards stand or slide",
-               "pushing out what overlaps": "the soft contacts of lesson 9 do it"},
+               "pushing overlapping bodies apart": "the soft contacts of lesson 9 do it"},
 )

@@ -205,8 +205,8 @@ def pybullet_make(p, dt, iterations, residual):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-BY_CHANCE = "where in its step an impact falls is chance, and each impact passes that on"
-LONG_LIVED = "its contact points live longer than a step, so that it does not converge to this motion"
+BY_CHANCE = "the phase of an impact in its step is random, and each impact passes this error on"
+LONG_LIVED = "its contact points persist over several steps, so it does not converge to this motion"
 RUNNERS = (
     ours(PILE, order=ABOUT_1, limit=limit, predicted=BY_CHANCE),
     ours(SETTLED_LOOP, order=ABOUT_1, limit=limit, predicted=BY_CHANCE, most_in_quick=200,

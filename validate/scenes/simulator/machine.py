@@ -204,7 +204,7 @@ def tells_places(p):
     return p.seen == "places"
 
 
-UNPREDICTED = "the order in which dominoes and crates come to rest decides, and no theory knows it"
+UNPREDICTED = "it depends on the order in which dominoes and crates come to rest, and no theory predicts that"
 RUNNERS = (
     # the positions need shorter steps than a quick run has, and are not judged
     ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("places",), most_in_quick=120),
@@ -254,6 +254,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("boxes in the plane", "springs with dampers, air", "supports that move", "sweeps with memory"),
-    ablations={"pushing out what overlaps": "the soft contacts of lesson 9 do it; here overlaps stay and are judged",
+    ablations={"pushing overlaps apart": "the soft contacts of lesson 9 do it; here overlaps stay and are judged",
                "restitution": "several impacts at once have no law"},
 )

@@ -142,7 +142,7 @@ def pybullet_make(p, dt):
 # pybullet: 2.8 to 2.9 and 0.66 % in reduced coordinates, with 10 or 1,000 iterations, with erp 0.2 or 0.8, a breaking
 # threshold of 1e-4 or 0.1, or split impulses; 3.2 and 0.66 % with erp 0; 6 and 0.9 % with slop 1e-4 or more.  Four
 # substeps err as four times as many steps do, 0.68 and 0.22 %.  The direct solver (Dantzig) gives 2.9 and 0.66 %.
-BY_CHANCE = "where in its step the impact falls decides by how much it is late"
+BY_CHANCE = "the delay of the impact depends on its phase in the step"
 RUNNERS = (
     ours(LOOP_2D, order=BY_PHASE, limit=late_limit, predicted=BY_CHANCE, in_quick=False),
     ours(ROCKING, limit=cut_limit, predicted="the leading term of its error is not derived, only its bound"),

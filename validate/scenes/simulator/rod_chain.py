@@ -199,7 +199,7 @@ def mujoco_make(p, dt):
     return mujoco_chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
 
 
-LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which its limit has"
+LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which is in its limit"
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
 FINER = (2000, 5000, 10_000, 20_000)
 RUNNERS = (

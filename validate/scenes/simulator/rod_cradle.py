@@ -156,7 +156,7 @@ def pybullet_make(p, dt):
     return pybullet_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
 
 
-JUDGED = {"order": BY_PHASE, "limit": limit, "predicted": "where in their steps the impacts fall decides"}
+JUDGED = {"order": BY_PHASE, "limit": limit, "predicted": "the delays of its impacts depend on their phases in a step"}
 RUNNERS = (
     ours(JOINTED_LOOP, **JUDGED),
     engine(PYMUNK, "", pymunk_make, f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations",
@@ -223,5 +223,5 @@ SCENE = Scene(
     bodies=bodies, poses=poses,
     uses=("hinges", "one contact at a time, with restitution", "the plane"),
     ablations={"friction": "neighbours slide on each other while they touch, for no time",
-               "several impacts at once": "touching balls: no law decides who leaves, only how fast all together are"},
+               "several impacts at once": "touching balls: no law decides which leave, only the sums of all velocities"},
 )

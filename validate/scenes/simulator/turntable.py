@@ -163,7 +163,7 @@ RUNNERS = (
     engine(PYBULLET, "", pybullet_make, "a box of 10⁹ ball masses that rotates freely, because in maximal coordinates "
            "bodies without mass carry nothing along; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=bullet_limit,
-           predicted="it keeps its contact point for some steps, and that law is not derived here"),
+           predicted="it keeps its contact point for some steps, and the law of this is not derived here"),
 )
 
 
