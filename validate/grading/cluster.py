@@ -95,7 +95,7 @@ def makeup(code):
 
 
 def graded(client, address, todo, settings):
-    """Grade all submissions.  One that timed out or failed is tried once more at the end, alone on a machine."""
+    """Grade all submissions.  One that timed out or failed is tried again at the end, alone on a machine."""
     again = []
     first_tries = [(submission, None) for submission in todo]
     try:

@@ -9,7 +9,7 @@ from math import floor, log10
 import numpy as np
 
 DIGITS, MOST_DIGITS = 4, 7   # of a number, where four tell it apart, and at most
-FEW = 4                      # so many numbers are shown whole; of more the first that differs
+FEW = 4                      # up to this many numbers are all shown; of more only the first that differs
 MOST_NUMBERS = (12, 6, 3)    # of one array among the inputs; the later ones where the text is still too long
 LONGEST = 300                # of a text [characters]
 MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumPy prints arrays: [ 1.   -0.25]
@@ -134,7 +134,7 @@ def how_far(off, size):
 # ---------------------------------------------------------------------------------------------- what is read
 
 def number(x, digits=DIGITS):
-    """Return a number in so many digits, or in as many as it has before its point; a whole one as it is."""
+    """Return a number in this many digits, or in as many as it has before its point; a whole one unchanged."""
     x = float(x)
     if not np.isfinite(x) or x == 0.0:
         return f"{abs(x) if x == 0.0 else x:g}"
@@ -199,7 +199,7 @@ def tidy(text, digits=DIGITS):
 
 
 def _shortened(x, digits):
-    """Return a number in so many digits; one that is almost as short as 0.5 was made so, and says so: 0.5 - 1e-11."""
+    """Return a number in this many digits; one that is nearly a short one shows the difference: 0.5 - 1e-11."""
     text = number(x, digits)
     rest, short = x - float(text), len(text.partition("e")[0].replace(".", "").strip("-0")) <= 2
     return plus(text, rest) if short and ROUNDING * abs(x) < abs(rest) < NEARLY * abs(x) else text

@@ -96,7 +96,7 @@ def run_to_end(scene, step, p, steps, asked=False):
 
 
 def run_engine_to_end(scene, engine, p, steps):
-    """Return the Outcome of an engine after so many steps."""
+    """Return the Outcome of an engine after this number of steps."""
     world = engine.make(p, scene.duration / steps)
     try:
         for _ in range(steps):

@@ -18,13 +18,13 @@ from pathlib import Path
 import numpy as np
 
 FIRST = 64                   # of the calls in a test these are kept, and after them number 128, 256, …
-EVERY = 4096                 # so many are kept while a table is written
+EVERY = 4096                 # number of calls that are kept while a table is written
 SAME, ROUND_OFF = 1e-6, 1e-9   # two sums are the same within this part of their terms, or within this
 VISIBLE = 1e-3               # a result that is off by this part of its own terms is wrong, however small it is
 HUGE, LARGE = "huge", 1e6    # is stored in place of a sum that is above this, and about which round-off decides
 DIGITS = 8                   # of a stored sum
 GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and no two differences are the same
-MOST = 2                     # so many ideas are named where several give the same numbers
+MOST = 2                     # number of ideas that are named if several give the same numbers
 NOTHING = object()           # the last result where there is none
 CHANGED = "has changed its input"
 ONE, TWO = "a one-dimensional array", "a two-dimensional array"

@@ -133,7 +133,7 @@ def spatial_end(theta, axes, offsets):
     return x, R
 
 
-# ---------------------------------------------------------------------------------------------- every search once more
+# ---------------------------------------------------------------------------------------------- independent searches
 
 def chain(theta, lengths):
     """Return the joints and the end [complex numbers] of a planar arm."""

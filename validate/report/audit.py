@@ -2,7 +2,7 @@
 
 Raw are, in report.json: the truth of each case; of each run what it observed at the end, its steps, the error that
 theory allows, or why it failed; of each time all its repeats; of each finding the predicted and the measured number and
-the tolerance.  Everything else is derived from these and is derived here once more, by other code where that is short.
+the tolerance.  Everything else is derived from these and is derived here again, by other code where that is short.
 The pages must be what the same data give when they are rendered again, and each picture names the data that it shows.
 """
 

@@ -9,7 +9,7 @@ from ..check import Role
 
 WIDTH, HEIGHT, MARGIN = 132.0, 84.0, 7.0         # of a still picture [px]
 STILL = 0.62                 # the moment of the film that a still picture shows, as a share of its frames
-FEW = 3                      # runs with up to so many points leave a trail
+FEW = 3                      # runs with at most this many points leave a trail
 
 
 def script(result):

@@ -49,7 +49,7 @@ def rows_of(report):
 
 
 def share(ratios, percent):
-    """Return the value that so many percent of the ratios do not exceed."""
+    """Return the value that this percentage of the ratios does not exceed."""
     if len(ratios) == 1 or math.isinf(max(ratios)):                    # quantiles() cannot interpolate to infinity
         return sorted(ratios)[math.ceil(percent / 100.0 * len(ratios)) - 1]
     return quantiles(ratios, n=100, method="inclusive")[percent - 1]

@@ -37,7 +37,7 @@ BUSY_LOAD = 1.5              # the same where only the load of the machine is kn
 # ---------------------------------------------------------------------------------------------- numbers
 
 def rounded(x, digits=2):
-    """Return a number with so many digits that count, written out: 270, 3.8, 0.042."""
+    """Return a number with this number of significant digits, written out: 270, 3.8, 0.042."""
     x = float(f"{x:.{digits}g}")
     decimals = max(0, digits - 1 - floor(log10(abs(x)))) if x else 0
     return f"{x:,.{decimals}f}"

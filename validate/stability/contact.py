@@ -386,7 +386,7 @@ def sag_of_a_soft_contact(lesson, check):
         for dt, substeps in ((1.0 / 60.0, 4), (1.0 / 240.0, 1), (1.0 / 240.0, 4), (1.0 / 1000.0, 1)):
             worst = max(abs(sag(lesson, shape, hertz, dt, substeps) / (times * G / (2.0 * np.pi * hertz) ** 2) - 1.0)
                         for hertz in (40.0, 80.0))
-            check("A soft contact sinks by k_n F/(2π hertz)², whatever the step.",
+            check("A soft contact sinks by k_n F/(2π hertz)² for any step.",
                   f"relative error of the depth of {name}, 1/{1.0 / dt:.0f} s in {substeps} [-]",
                   law=0.0, found=worst, within=2e-11,
                   saw=f"1/{1.0 / dt:.0f} s in {substeps} substeps: {name} sinks as predicted, to {worst:.0e}.")

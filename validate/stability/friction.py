@@ -442,7 +442,7 @@ def static_forces(lesson, rng):
     return F, -min(pull, c.mu_s * c.F_N) * c.t_1
 
 
-@random_law("Kinetic friction is μ_k F_N against the slip, whatever its speed.",
+@random_law("Kinetic friction is μ_k F_N against the slip, at any speed.",
             "largest error of the kinetic friction [N]", 1e-10)
 def kinetic_forces(lesson, rng):
     c = random_contact(rng)

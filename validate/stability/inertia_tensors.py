@@ -9,7 +9,7 @@ import numpy as np
 from validate.stability.case import DOTS, LINE, Picture, case, log_series, log_slope, random_law, refuses, relative
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
-PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
+PLACES = 64  # directions in which the body is moved: the mean square of this number of errors is known to 18 %
 # of a box whose corner is cut off [m]
 CORNER = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.6]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])

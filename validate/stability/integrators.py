@@ -792,7 +792,7 @@ def what_measures_methods(lesson, check):
 
 DYADIC = 1.0 / 64.0          # a step [s] whose products with ½ and with itself are exact: a sum is all that is rounded
 CIRCLES = 16                 # planets on the same circle, at other places
-SPREAD = 3.0 / np.sqrt(2.0 * CIRCLES)   # three standard deviations of the root mean square of so many, over its mean
+SPREAD = 3.0 / np.sqrt(2.0 * CIRCLES)   # three standard deviations of the root mean square of these, over its mean
 MANY, FEW = 10**6, 10**4     # steps of a run: compiled, and in plain Python
 
 
@@ -895,7 +895,7 @@ def first_beyond(ts, sizes, limit=HORIZON):
 
 
 def sampled(lesson, starts, steps):
-    """Return the angles (n, k, 2) of runs from these starts, with so many steps per second, at the times ts."""
+    """Return the angles (n, k, 2) of runs from these starts, with this number of steps per second, at the times ts."""
     run = lesson.trajectory(lesson.rk4_step, double_pendulum, 0.0, starts, 0.0 * starts, 1.0 / steps,
                             round(AHEAD * steps), None)
     return run[1][::steps // SLICES]

@@ -344,7 +344,7 @@ def substeps_vs_iterations(lesson, check):
     for way, run in runs.items():
         for n in (10, 300):
             got = run(n)
-            check("n substeps are n² times as stiff as one step with one sweep, and n sweeps are not, unless they are "
+            check("n substeps are n² times as stiff as one step with one sweep, but n sweeps are not, unless they are "
                   "so many that they have converged.", f"{n} {way} per frame: end of {N} links too low by [mm]",
                   **millimetres(theory[way](n), got, SETTLED),
                   saw=f"With {n} {way} per frame a chain of {N} m hangs {MILLIMETRES * got:.2g} mm too low.")

@@ -287,7 +287,7 @@ def needle_stays_finite(check, runs, bounds):
           saw=f"Of {len(runs)} steps {len(refused)} refused: {', '.join(refused)}.")
     least, most = (1.0 - 1e-9) * bounds[0], (1.0 + 1e-9) * bounds[1]
     inside = sum(runs[m] is None or least <= runs[m][2] <= most for m in KEEP_L)
-    check("Where L is kept the energy stays between L²/2I₁ and L²/2I₃, whatever the error of the orientation.",
+    check("If L is kept the energy stays between L²/2I₁ and L²/2I₃, for any error of the orientation.",
           f"steps that stay inside [of {len(KEEP_L)}]", law=len(KEEP_L), found=inside, within=0.0,
           saw=f"{inside} of {len(KEEP_L)} steps stay between {bounds[0]:.2f} and {bounds[1]:,.0f} times the "
               "initial energy.")

@@ -40,7 +40,7 @@ def doubtful(folder):
 
 
 def use_the_one_of_this_notebook():
-    """Import `validate` once more, from the copy of the workbook whose folder of notebooks is the working folder."""
+    """Import `validate` again, from the copy of the workbook whose folder of notebooks is the working folder."""
     here = Path.cwd()
     other = copy_around(here)
     if here.name != "notebooks" or other is None or other in (ROOT, here):

@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 GIVEN = (("#0072B2", "s"), ("#8C6D31", "^"), ("#6A51A3", "D"), ("#5A5A5A", "v"))
 ANSWER, EXPECTED = ("#D55E00", "X"), ("#009E73", "o")
-FARTHEST = 3.0               # an answer is shown up to so many spans of the rest beyond it [-]
+FARTHEST = 3.0               # an answer is shown up to this many spans of the rest beyond it [-]
 
 
 class View(NamedTuple):

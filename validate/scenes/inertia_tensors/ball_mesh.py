@@ -127,7 +127,7 @@ def of_points(n, p):
 
 
 def from_ball(moment, p, many):
-    """Return the Prediction of a body with this moment about each axis [kg m²], summed from so many terms."""
+    """Return the Prediction of a body with this moment about each axis [kg m²], summed from this number of terms."""
     return Prediction(np.ravel(moment * np.eye(3)) - truth(p, T), (many + 30) * ROUND_OFF)
 
 

@@ -223,5 +223,5 @@ SCENE = Scene(
     bodies=bodies, poses=poses,
     uses=("hinges", "one contact at a time, with restitution", "the plane"),
     ablations={"friction": "neighbours slide on each other while they touch, for no time",
-               "several impacts at once": "touching balls: no law decides which leave, only the sums of all velocities"},
+               "several impacts at once": "touching balls: no law decides which leave, but only sums of velocities"},
 )
