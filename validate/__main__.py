@@ -244,7 +244,10 @@ def loadable_scenes():
 
 
 def select_scenes(scenes, lessons):
-    """Return (names, {name: BadInput}): the requested scenes, or all of them, and those that do not load."""
+    """Return (names, {name: BadInput}): the requested scenes, or all of them, and those that do not load.
+
+    Raises BadInput for an unknown name, and for a requested scene that does not load.
+    """
     for name in lessons:
         modules.bind(name)
     for name in scenes:

@@ -76,7 +76,12 @@ def with_pages_for_sources(page):
 # ---------------------------------------------------------------------------------------------- notebooks
 
 def prepared(book, stem, folder, alts, report=False):
-    """Return an executed notebook as the book shows it."""
+    """Return an executed notebook as the book shows it.
+
+    Sliders, which need a kernel, are removed, and the figure that they drew stays.  Long code is folded.  A player's
+    script, which every film repeats, becomes a file that the page loads once.  `alts` collects {file of a figure:
+    description}.
+    """
     players = set()
     for cell in book.cells:
         if cell.cell_type == "markdown":

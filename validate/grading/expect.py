@@ -100,6 +100,7 @@ def raises(quantity, error, function, *arguments, naming=(), thing=""):
     """Require the call to raise an error of that class, or of one with its name.
 
     Compiled and sandboxed code have classes of their own.
+    naming: values of which the error's sentence must name one, to 1e-6 of it.  thing: how the sentence must begin.
     """
     try:
         function(*arguments)
@@ -124,7 +125,10 @@ OFF = ("slightly off", "clearly off", "grossly off")
 
 
 def how_far(off, size):
-    """Return one of three words for an error: below a hundredth of the expected size, below all of it, beyond."""
+    """Return one of three words for an error: below a hundredth of the expected size, below all of it, beyond.
+
+    If zero is expected, the size is one unit.  A number here would leak a digit of a secret input with each attempt.
+    """
     if not np.isfinite(off):
         return OFF[2]
     part = off / (size or 1.0)

@@ -38,7 +38,7 @@ MOST = 12                    # imports and words of one file that are told [-]
 
 
 def in_text(text):
-    """Return Imports and words in a lesson file that no lesson needs: ["import os", "use eval"]."""
+    """Return imports and words in a lesson file that no lesson needs: ["import os", "use eval"]."""
     lines = b"\n".join(line for line in text.splitlines() if not line.lstrip().startswith(b"#"))
     names = [name for name in dict.fromkeys(modules_in(lines)) if name not in NEEDED and name.isidentifier()]
     found = [f"import {name[:LONGEST]}" for name in names]

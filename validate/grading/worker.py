@@ -181,7 +181,11 @@ def kept(descriptor):
 
 
 def watcher():
-    """Return an audit hook that reports operations which no lesson needs, in a pipe to the parent."""
+    """Return an audit hook that reports operations which no lesson needs, in a pipe to the parent.
+
+    A report cannot be taken back.  The student's code may reach the hook's variables by an error or a signal inside it:
+    none of them can be changed, and no method of the student's objects is called.
+    """
     notes = kept(int(sys.argv[2]))
     code = {kind: bytes([k]) for k, kind in enumerate(config["noted"])}
     events = tuple((event, code[kind]) for kind, names in NOTED.items() for event in names.split())

@@ -103,7 +103,10 @@ def sprung_floor(lessons):
 def stopped_ball(lessons):
     """Make the whole loop in place of discrete_step of lesson 6.
 
-    It has a ball that stops on a plane or, seen along its axis, on a cylinder.
+    It has a ball that stops on a plane or, seen along its axis, on a cylinder.  The loop finds at the beginning of
+    a step what the lesson finds at the end of the one before; between the two nothing moves.  A ball whose speed is
+    round-off has
+    stopped: the lesson takes no more steps of it.
     """
     whole = []
 
@@ -255,9 +258,9 @@ def steps_that_fail(result, label):
 
 
 def left_out(name, plan, result):
-    """Return what a scene saves: {method, steps, ratio, same, observed, repeats, note}.
+    """Return what a scene saves: {method, steps, ratio, same, observed, repeats, note}; note: why there is no number.
 
-    A note if there is no number.
+    result: the errors of the scene.  A method that departs there is not compared.
     """
     selection = select(name, plan)
     scene, (_, p) = selection.scene, selection.first

@@ -14,6 +14,8 @@ def engine_parts(selection, p):
     """Return the cost of each part of the first settings of each engine that runs.
 
     [{engine, product, part, steps, cost, change, observed, repeats}]
+    cost: time with the part over time without it;    change: relative change of the observed quantities without it, or
+    None if the run is lost.  Nothing is measured if an engine makes its worlds only when it is read.
     """
     scene = selection.scene
     if not (scene.moves and scene.refined):

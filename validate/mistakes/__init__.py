@@ -226,7 +226,11 @@ def stored(results):
 
 
 def first_difference(trace, right, orderless):
-    """Return [number of the call, its result, the right one] where a trace first leaves the right one, or None."""
+    """Return [number of the call, its result, the right one] where a trace first leaves the right one, or None.
+
+    If all results are the same up to round-off, it is a small result that is wrong for its size: the last such one,
+    because a test ends with the call that fails.
+    """
     found, expected = trace.of_calls(orderless), right.of_calls(orderless)
     both = [call for call in found if call in expected]
     calls = [call for call in both if not same(found[call], expected[call])]
@@ -237,7 +241,10 @@ def first_difference(trace, right, orderless):
 # ---------------------------------------------------------------------------------------------- looking up
 
 def matching(lesson, exercise, traces):
-    """Return the ideas of the wrong answers that return the same in all tests of the exercise."""
+    """Return the ideas of the wrong answers that return the same in all tests of the exercise.
+
+    traces: {test: Trace} of the answer.  An answer that returns in all tests what a right one returns has none.
+    """
     known = table(lesson).get(exercise)
     if not known or traces.keys() != known["right"].keys() or not is_telling(traces.values()):
         return []

@@ -24,7 +24,10 @@ class Case(NamedTuple):
 
 
 def expected_result(result, got, expected):
-    """Return the expected result if a test compared all of a result, or parts of it, with numbers; None otherwise."""
+    """Return the expected result if a test compared all of a result, or parts of it, with numbers; None otherwise.
+
+    got was compared with `expected`.  A part of a record or tuple is the one that is equal to `got`.
+    """
     if got is None or expected is None or result is None:
         return None
     if isinstance(result, tuple):

@@ -71,7 +71,10 @@ latest: dict = {}                  # {lesson: what `mine` gave last}
 
 
 def mine(lesson):
-    """Return your lesson, as saved just now."""
+    """Return your lesson, as saved just now.
+
+    A file that cannot be loaded is reported in one sentence, and nothing else breaks.
+    """
     try:
         latest[lesson] = modules.bind(lesson, folder())
     except Exception as e:
@@ -324,7 +327,7 @@ def _lesson_of(exercise):
 # ---------------------------------------------------------------------------------------------- how far
 
 def progress(lesson):
-    """Return Your points in a lesson so far, and the next exercise of which everything that it calls passes."""
+    """Show your points in a lesson so far, and the next exercise whose called exercises all pass."""
     try:
         own = modules.subject_folder(folder())
         if not needs.of_lesson(lesson):
@@ -463,7 +466,10 @@ def look(method, **changes):
 
 
 def play(frames, seconds, links=(), height=260, shown_as=None):
-    """Show a film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
+    """Show a film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour.
+
+    shown_as = {label: Method of validate/methods.py}: these have the colour and the marker of their method.
+    """
     _display(_plane(frames, seconds, links, shown_as or {}), height)
 
 

@@ -61,6 +61,7 @@ def drawn_aside(step, law, network, spreads):
     """Return pictures (n, 3) of a curtain in space.
 
     In picture k its rings are spreads[k] times as far apart as in `points`.
+    step is one of lesson 8, for a network whose immovable points are the rings: they keep the velocity that they get.
     """
     x, rings, frames = folded(spreads[0]), list(RINGS), []
     v = np.zeros_like(x)

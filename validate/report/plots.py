@@ -96,7 +96,10 @@ def convergence(path, result):
 
 
 def work_precision(path, result):
-    """Plot error against run time: compiled solid, plain faint, engines dark."""
+    """Plot error against run time: compiled solid, plain faint, engines dark.
+
+    If more steps took less time, the machine was not quiet.  A line would run backwards, so none is drawn.
+    """
     figure, axes = plt.subplots()
     bottom, look = floor(result), looks(result)
     rows = [{**r, "error": max(r["error"], bottom)} for r in result["times"]["rows"] if r["error"] < TOP]

@@ -185,7 +185,10 @@ def races(result):
 
 
 def race(advantage, result):
-    """Return a race with the range of its ratio and its outcome: faster, a tie, slower, or open with a reason."""
+    """Return a race with the range of its ratio and its outcome: faster, a tie, slower, or open with a reason.
+
+    If no run is as accurate as the engine's, the race is lost.
+    """
     a = advantage
     if why := why_open(a, result):
         return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
@@ -196,7 +199,11 @@ def race(advantage, result):
 
 
 def why_open(a, result):
-    """Return the reason why a race is not decided; nothing if it is."""
+    """Return the reason why a race is not decided; nothing if it is.
+
+    Of runs that scatter, because no theory bounds their errors, the most accurate one was lucky.  The sweeps of a quick
+    validation end early, and it leaves most compiling to a full one.
+    """
     theirs = next(c for c in next(iter(result["cases"].values()))["engines"] if c["label"] == a["engine"])
     if Verdict(theirs["verdict"]) is Verdict.UNDECIDED:
         return "no theory bounds its errors, and the smallest may be luck"
@@ -375,7 +382,10 @@ SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,4})_([A-Za-zα-ω]{1,4})\b")
 
 
 def flowing(text):
-    """Return [(kind, content)] of a docstring, without the line breaks of its source."""
+    """Return [(kind, content)] of a docstring, without the line breaks of its source.
+
+    text: a paragraph;    formula: indented lines, as they are;    terms: [(term, text)] of a list of definitions.
+    """
     found = []
     for block in re.split(r"\n\s*\n", text.strip("\n")):
         lines = block.split("\n")

@@ -42,7 +42,10 @@ def run(names, plan, pool, out, console, measuring=None):
 
 
 def measure_errors(store, names, plan, pool, bars):
-    """Compute the errors of every scene and the stability cases, several at a time: most of it is compilation."""
+    """Compute the errors of every scene and the stability cases, several at a time: most of it is compilation.
+
+    A process stays with a lesson as long as it can.  Two processes at the same lesson would compile the same twice.
+    """
     lessons = {("errors", name): modules.bind_scene(name).lesson for name in names}
     lessons |= {("stability", lesson): lesson for lesson in reversed(lessons_of(names))}     # the short ones come last
     todo = {(kind, name): ((measure.errors if kind == "errors" else stability_cases), name, plan)

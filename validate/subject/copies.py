@@ -21,9 +21,9 @@ def copy_around(place):
 
 
 def meant_here(of):
-    """Return the folder that a command means by `lessons` if it is that of the copy around the working folder.
+    """Return the folder that a command means by `lessons` if it is not that of this copy.
 
-    Every other name is returned unchanged.
+    It is that of the copy around the working folder.  Every other name is returned unchanged.
     """
     around = copy_around(Path.cwd())
     return str(around / "lessons") if of == "lessons" and around not in (None, ROOT) else of

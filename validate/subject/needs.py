@@ -34,7 +34,11 @@ def of_lesson(lesson):
 
 
 def needed(exercise, folder=None):
-    """Return all exercises that this one calls, directly or indirectly, in the order of the course."""
+    """Return all exercises that this one calls, directly or indirectly, in the order of the course.
+
+    folder: where the answers are.  A lesson there may import another lesson from solutions, where it is worked.
+    Then nothing of that lesson is needed.
+    """
     found, waiting = set(), [exercise]
     while waiting:
         number = waiting.pop()
