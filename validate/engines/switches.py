@@ -28,7 +28,7 @@ def worlds_made():
 
 
 def made(world):
-    """Add this world to the lists of all listening blocks, and return it."""
+    """Add this world to the list of the innermost block that listens, if there is one, and return the world."""
     for worlds in _listening[-1:]:
         worlds.append(world)
     return world

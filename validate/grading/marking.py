@@ -250,6 +250,6 @@ def in_a_word(error):
 
 
 def readable(text):
-    """Replace control and format characters in the text of a student's program by their names, and limit its length."""
+    """Spell out control and format characters in the text of a student's program, and limit its length."""
     shown = "\n".join(map(spelt_out, text[:PRINTED].split("\n")))
     return shown + (" …" if len(text) > PRINTED else "")

@@ -10,10 +10,7 @@ FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")     # at 
 
 
 def clean(value):
-    """Replace control, format and undecodable characters by their names and limit the length.
-
-    Other texts stay unchanged.
-    """
+    """Spell out control, format and undecodable characters of a text and limit its length; return others unchanged."""
     return marking.readable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
