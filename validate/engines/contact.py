@@ -70,9 +70,9 @@ class Judged(NamedTuple):
 
 
 def inverse_tensors(q, inv_body):
-    """Return I⁻¹ (n + p, 3, 3) in the world.
+    """Return I⁻¹ (n + p, 3, 3) in the world, from quaternions (n + p, 4), w first.
 
-    q: quaternions (n + p, 4), w first.  The inverse moments (n + p, 3) are those of the bodies.
+    inv_body: inverse moments (n + p, 3).
     """
     w, xyz = q[:, 0], q[:, 1:]
     cross = np.zeros((len(q), 3, 3))

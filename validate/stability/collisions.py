@@ -647,7 +647,7 @@ def swept_boxes(lesson, rng):
 def past_a_disc(rng, share, aside):
     """Return (x, v, centre, radius, ahead, τ) of a body and a disc: after τ the body is abreast of the centre.
 
-    τ is a random fraction of `ahead`, and the body passes the centre at a random offset.
+    τ is the fraction `share` of `ahead`, and the body passes the centre at `aside` radii.
     """
     x, v = rng.normal(size=(2, 2))
     ahead, radius = rng.uniform((1.0, 0.5), (5.0, 2.0))
@@ -701,7 +701,7 @@ def nearest_on_triangles(lesson, check):
 
 
 def place_at_a_box(lesson, rng, most):
-    """Return a random box, and y (3,): coordinates along its axes, up to a given multiple of its half edges."""
+    """Return a random box, and y (3,): coordinates along its axes, up to `most` half edges."""
     half = rng.uniform(0.5, 2.0, 3)
     box = lesson.make_box(rng.normal(size=3), np.linalg.qr(rng.normal(size=(3, 3)))[0], half)
     return box, rng.uniform(-most, most, 3) * half
