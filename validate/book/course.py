@@ -1,4 +1,4 @@
-"""Facts about the lessons, read from their files: exercises, points, hours, what a lesson needs.
+"""Facts about the lessons, read from their files: exercises, points, hours, and the lessons before.
 
 The head of a notebook is the source of a lesson's hours, of the mathematics that it takes for granted, and of the
 lessons that it builds on.  The tests compare the hours with an estimate, and the lessons with the calls.

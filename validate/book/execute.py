@@ -1,4 +1,4 @@
-"""Run the notebooks with the worked answers, and keep them with their outputs.
+"""Notebooks executed with the worked answers, and the store of their outputs.
 
 A kept notebook is used again until its text, an answer or a tool changes.
 """

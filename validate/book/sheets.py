@@ -1,4 +1,4 @@
-"""One sheet per lesson for those who teach it: hours, needs, exercises, what to show, and the commands."""
+"""One sheet per lesson for instructors: hours, needs, exercises, demonstrations, and the commands."""
 
 import html
 import re

@@ -1,4 +1,4 @@
-"""What must hold of a static site: its files ask no other host, and its links lead somewhere."""
+"""Checks of a static site: its files request nothing from other hosts, and its links lead somewhere."""
 
 import re
 from html.parser import HTMLParser

@@ -1,4 +1,4 @@
-"""How a lesson is divided into lectures, labs and exercises: a week, or two where its hours need them."""
+"""Division of a lesson into lectures, labs and exercises: one week, or two if its hours require it."""
 
 import re
 from typing import NamedTuple

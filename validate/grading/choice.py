@@ -1,4 +1,4 @@
-"""Which lessons and exercises are graded, and for how many points: `--lesson friction`, `--exercises 3.1-3.4,3.6=2`."""
+"""Choice of the graded lessons, exercises and their points: `--lesson friction`, `--exercises 3.1-3.4,3.6=2`."""
 
 import math
 import re

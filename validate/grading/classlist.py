@@ -1,4 +1,4 @@
-"""The class list: who is in the class, with what a student's work is found, dated and handed back by."""
+"""The class list: the students, and the names by which their work is found, dated and handed back."""
 
 import csv
 import io

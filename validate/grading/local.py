@@ -1,4 +1,4 @@
-"""Grade on this machine, several submissions at a time, each in a process of its own while it lasts."""
+"""Grading on this machine: several submissions at a time, each in a process of its own."""
 
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, wait

@@ -1,4 +1,4 @@
-"""Measure the time of a worker: on the processor, asleep or waiting for a disk.  Waiting for the processor is free.
+"""The time of a worker: on the processor, asleep or waiting for a disk.  Waiting for the processor is free.
 
 Busy neighbours therefore cost nothing.  Without /proc, all time counts that passes while we wait for the worker.
 """

@@ -1,4 +1,4 @@
-"""To which student a file or folder belongs, by its name.  Students, Moodle, Canvas and Gradescope write names.
+"""Owners of files and folders, by their names.  Students, Moodle, Canvas and Gradescope write names.
 
 *Source:* moodle/moodle, `mod/assign/classes/downloader.php` (full name, number of the participant, plugin; a group's
 name in place of a person's).  instructure/canvas-lms, `lib/content_zipper.rb` (sortable name in small letters without

@@ -1,4 +1,4 @@
-"""From test outcomes to points.  An exercise's points are the sum over its tests; what did not pass earns nothing."""
+"""Points from test outcomes.  An exercise's points are the sum over its tests; a test that fails earns nothing."""
 
 import contextlib
 import io

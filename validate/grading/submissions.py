@@ -1,4 +1,4 @@
-"""What students handed in: a folder, a zip or bare lesson files each.
+"""Submissions of students: a folder, a zip or bare lesson files each.
 
 Nothing is unpacked, followed or executed; only the lesson files' bytes are read.  What lies in the class folder
 becomes a submission or a sentence: nothing is overlooked in silence.  A zip is read in a child of little memory and

@@ -1,4 +1,4 @@
-"""What may tell that a submission did more than answer: for the instructor to look into, never for points.
+"""Signs that a submission did more than answer: for the instructor to look into, never for points.
 
 The worker notes what a program tries, by Python's audit events, and the parent notes how it ended.  A program that
 goes past Python (native code) is noted when it begins to.  What a file imports is read in its text.  None of this

@@ -1,4 +1,4 @@
-"""Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
+"""The program inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
 
 Usage: worker.py CONFIG NOTES.  CONFIG is a JSON object: limits; lesson; student, the folder of the student's file;
 given, the folder of the lessons as handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the

@@ -1,4 +1,4 @@
-"""The gain of leaving parts out: the whole loop of lesson 10 against the scene's own method.
+"""The gain of leaving parts out: the whole loop of lesson 10 compared with the scene's own method.
 
 The whole loop rotates bodies whose rotation is not observed, searches for contacts that cannot occur, and sweeps over
 what it finds.  Put in place of a step that it contains, it must give the same motion to round-off.

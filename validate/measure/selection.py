@@ -1,5 +1,6 @@
-"""What a run does of a scene: its cases, methods, speeds, engines and steps,
-and the notes on what it leaves to `--full`.
+"""The part of a scene that a run measures: its cases, methods, speeds, engines and steps.
+
+Notes say what it leaves to `--full`.
 """
 
 import warnings

@@ -1,4 +1,4 @@
-"""What an engine's own parts cost in a scene, and what they change: each is switched off in turn."""
+"""Cost and effect of an engine's own parts in a scene: each is switched off in turn."""
 
 import numpy as np
 

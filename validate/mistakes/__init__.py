@@ -1,4 +1,4 @@
-"""Name the mistake in an answer: compare what it returns in the grading tests with what known wrong answers return.
+"""The name of the mistake in an answer: its results in the grading tests are compared with those of wrong answers.
 
 The grading tests draw the same public inputs for everyone, so the same mistake gives the same numbers.  While a test
 runs, a Trace keeps one number for each of the first results of the exercise's function, and for some later ones:

@@ -1,4 +1,4 @@
-"""The case in which a check failed, as data: what a function was given, what it returned, and what was expected.
+"""The case in which a check failed, as data: a function's arguments, its result, and the expected result.
 
 pytest writes it for a notebook, which draws it (`notebook/cases.py`).  It is kept for public inputs only, where the
 message of the check names them, too: nothing is traced with a secret seed, nor in the grader's sandbox.

@@ -1,4 +1,4 @@
-"""What a notebook needs beside the lesson itself: the learner's code as saved just now, the check, pictures.
+"""Tools of a notebook beside the lesson itself: the learner's code as saved just now, the check, pictures.
 
 The learner's folder is `lessons/`, or the one that the environment variable WORKBOOK_LESSONS names.
 """

@@ -1,4 +1,4 @@
-"""What a figure shows, in words, for readers who cannot see it: every figure that a notebook shows carries them.
+"""Descriptions of figures in words, for readers who cannot see them: every figure of a notebook has one.
 
 JupyterLab shows a PNG without a description, even if its metadata has one; of HTML it keeps the description.  So
 a figure is sent as HTML with the PNG in it, and as the PNG, whose metadata the book reads.

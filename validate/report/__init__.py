@@ -1,4 +1,4 @@
-"""Write the report: one folder of static pages that need no network, and the same content as JSON."""
+"""The report: one folder of static pages that need no network, and the same content as JSON."""
 
 import json
 from functools import cache

@@ -1,4 +1,4 @@
-"""Check a report against its own raw rows: recompute every derived figure and verdict, and render every page again.
+"""Audit of a report by its own raw rows: every derived figure and verdict is recomputed, every page rendered again.
 
 Raw are, in report.json: the truth of each case; of each run what it observed at the end, its steps, the error that
 theory allows, or why it failed; of each time all its repeats; of each finding the predicted and the measured number and

@@ -1,4 +1,4 @@
-"""How sharp the limits of a report are: `validate limits [REPORT]`.
+"""Sharpness of the limits of a report: `validate limits [REPORT]`.
 
 A limit is the largest error that theory allows a run.  Limit over error says how much larger the error could have been
 without a change of the verdict.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left

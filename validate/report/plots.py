@@ -1,6 +1,6 @@
-"""The still pictures.
+"""The still pictures of a report.
 
-Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too.
+Colours: Okabe and Ito 2008, which colour-blind readers can distinguish; every curve has a marker too.
 """
 
 import json

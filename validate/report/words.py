@@ -1,4 +1,4 @@
-"""What the numbers say, in words."""
+"""Sentences about the numbers of a report."""
 
 import re
 from collections import Counter

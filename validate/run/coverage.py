@@ -1,4 +1,4 @@
-"""Which exercise is run by which scene or stability case, read from their source.
+"""Coverage of the exercises by scenes and stability cases, read from their source.
 
 A scene runs its methods and what it names of a lesson; a case runs what it names of the lesson that it is given.
 Both run all functions that these call in turn.  The table says where a wrong answer can show, and that no exercise is

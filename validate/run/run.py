@@ -1,4 +1,4 @@
-"""A run: measure what is not measured yet, write the report, and say how it went."""
+"""A run: it measures what is not measured yet, writes the report, and prints a summary."""
 
 import os
 import platform

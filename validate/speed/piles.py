@@ -1,4 +1,4 @@
-"""Piles of lesson 9 against engines, as ratios measured in one run: `validate piles [KIND …]`.
+"""Piles of lesson 9 compared with engines, as ratios measured in one run: `validate piles [KIND …]`.
 
 Kinds: discs, boxes (in the plane, against pymunk), spheres, bricks (in space, against pybullet).  Both run the same
 bodies from the same settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping.  Times are CPU times of

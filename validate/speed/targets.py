@@ -1,4 +1,4 @@
-"""Inverse kinematics of lesson 11 against pybullet, as ratios measured in one run: `validate targets [ARM …]`.
+"""Inverse kinematics of lesson 11 compared with pybullet, as ratios of one run: `validate targets [ARM …]`.
 
 Arms: planar (three joints, in the plane), spatial (six joints, a place in space).  Both solve the same targets, drawn
 from angles and so within reach, all from the same start, in turn.  Times are CPU times of one thread; of pybullet only

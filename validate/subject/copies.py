@@ -1,4 +1,4 @@
-"""Which copy of the workbook is used, where there are several and one environment.
+"""Choice of the copy of the workbook if there are several in one environment.
 
 An environment is installed from one copy.  A notebook belongs to the copy in whose folder `notebooks` it lies, and uses
 that one.  A copy that stands on Python's path is used as it is.

@@ -1,4 +1,4 @@
-"""Make lessons/ from solutions/: the same modules with the answers taken out; and needs.json, which calls which.
+"""Generation of lessons/ from solutions/, the same modules without answers, and of needs.json, the calls in them.
 
 `python -m validate.subject.generate` writes them, `--check` only says whether they are what it would write.
 """

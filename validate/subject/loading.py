@@ -1,4 +1,4 @@
-"""A subject's file that does not load, or that lacks a function: what is said about it, and what stands in for it.
+"""Files of a subject that do not load or lack a function: the message about them, and their stand-ins.
 
 A student's file may hold anything.  Every fault ends in an Unloadable that names file, line, reason and remedy.
 """

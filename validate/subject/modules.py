@@ -1,4 +1,4 @@
-"""Load any lesson, plain or compiled, from a chosen subject, and bind scenes to it.
+"""Lessons of a chosen subject, plain or compiled, and the scenes bound to them.
 
 A *module set* is one consistent set of modules: the lessons of a subject (`solutions`, `lessons` or a folder) and the
 given modules that call them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh

@@ -1,4 +1,4 @@
-"""Which exercise calls which others: read from the worked answers, and looked up where there are none.
+"""Calls between exercises: read from the worked answers, or looked up if there are none.
 
 `needs.json` has {exercise: its lesson, its function, whether it is a formula to find, the exercises that it calls}.
 An exercise also calls another one through a given function, or if it passes the other one on as an argument.

@@ -1,4 +1,4 @@
-"""How a plain function is compiled with numba: the compiled twins, their cache, and four changes to numba itself.
+"""Compilation of plain functions with numba: the compiled twins, their cache, and four changes to numba itself.
 
 A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
 looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.

@@ -1,4 +1,4 @@
-"""Marks in a plane or in space, and how views of them are drawn: what the pictures of failing checks consist of.
+"""Marks in a plane or in space, and views of them: the parts of the pictures of failing checks.
 
 A mark is data.  A view projects it at right angles onto two unit vectors.  What is given is filled and solid, the
 answer is dashed with crosses, and what the test expects has wide lines and rings: colours are not needed to tell them

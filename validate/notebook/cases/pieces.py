@@ -1,4 +1,4 @@
-"""What pictures of several exercises consist of, and how they are looked at."""
+"""Parts and views that the pictures of several exercises share."""
 
 from collections.abc import Callable
 from typing import NamedTuple
