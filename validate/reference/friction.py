@@ -62,7 +62,7 @@ def travelled(p, slip, t):
 
 
 def slip_position(p, t):
-    """Return x(t): during a slip from t₁  ẍ = A cos ωt ∓ μg, integrated twice; constant between slips.
+    """x(t): during a slip from t₁  ẍ = A cos ωt ∓ μg, integrated twice; constant between slips.
 
     A slip begins where |A cos ωt| = μg, and ends where  ± A/ω (sin ωt − sin ωt₁) = μg (t − t₁);  A = F/m.
     Source: Den Hartog 1931, forced vibrations with friction; the second equation solved by Brent's method.
