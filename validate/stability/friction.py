@@ -426,7 +426,7 @@ def nearest_in_disc(y, radius):
     return y if length(y) <= radius else radius / length(y) * y
 
 
-@random_law("A support pushes against a load, and does not hold what is pulled away.",
+@random_law("A support pushes against a load, and does not hold a body that is pulled away.",
             "largest error of the normal force [N]", 1e-10)
 def normal_forces(lesson, rng):
     c = random_contact(rng)

@@ -644,7 +644,7 @@ def needed(stick, n):
     return np.linalg.norm(along(stick, n)) / (stick @ n)
 
 
-@random_law("A rough impact ends with the normal velocity that restitution asks for.",
+@random_law("A rough impact ends with the normal velocity that restitution requires.",
             "largest error of the normal velocity [m/s]", 1e-9)
 def normal_velocities(lesson, rng):
     u, n, K, u_sep, stick = rough_impact(rng)

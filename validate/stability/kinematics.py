@@ -419,7 +419,7 @@ def extremes(lesson, check):
           law=0.0, found=centre, within=1e-15, saw=f"Folded, the end is {centre:.0e} m from the base.")
     turns = np.array([0.4, 0.9, 0.7]) + 2.0 * np.pi * np.array([1e6, -1e6, 1e6])
     off = np.linalg.norm(lesson.joint_positions(turns, THREE)[-1] - end_of((0.4, 0.9, 0.7), THREE))
-    check("A million turns change nothing but the rounding of the angle, 1e-9 rad.",
+    check("A million turns change only the rounding of the angle, 1e-9 rad.",
           "distance of the end from where it is without the turns [m]", law=0.0, found=off, within=5e-9,
           saw=f"After a million turns the end is {off:.0e} m aside.")
     refusals(lesson, check)

@@ -168,7 +168,7 @@ SMALL_OVERLAP = "its error is what 2,000 iterations and an overlap of 1e-12 m le
 RUNNERS = (
     ours(TOGETHER, limit=sweeps_left, predicted=UNTIL_SETTLED, order=EXACT),
     ours(IN_TURN, limit=sweeps_left, predicted=ONLY_ROUND_OFF, order=EXACT, supports=several_points,
-         departure=Departure("each point sees the body as the previous one left it, so that the order of the points "
+         departure=Departure("each point acts on the body as the previous one left it, so the order of the points "
                              "counts", in_turn)),
     engine(PYMUNK, "", pymunk_make, "a Poly on a thick Segment, 2,000 iterations",
            order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=flat),

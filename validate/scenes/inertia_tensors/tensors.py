@@ -423,7 +423,7 @@ RUNNERS = (
     ours(TRIANGLES, supports=only(*FLAT_FACES), **EXACTLY),
     engine(PYBULLET, "", bullet_make, "createMultiBody with the shape and a mass; read by getDynamicsInfo",
            supports=only("ball", "box", "cylinder"), **EXACTLY),
-    engine(PYBULLET, "automatic", bullet_make, "createMultiBody as it comes", supports=only(*BOXED), **EXACTLY,
+    engine(PYBULLET, "automatic", bullet_make, "createMultiBody with its defaults", supports=only(*BOXED), **EXACTLY,
            departure=Departure("it uses the box around the shape, along the axes of the shape, instead of the shape",
                                by_bounding_box)),
     engine(PYBULLET, "hull", bullet_make, "GEOM_MESH from corners", supports=only("corner"), **EXACTLY,
@@ -431,7 +431,7 @@ RUNNERS = (
                                by_fat_box)),
     engine(PYBULLET, "concave mesh", partial(bullet_make, concave=True), "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH",
            supports=only("corner"), **EXACTLY,
-           departure=Departure("it gives triangle meshes no inertia, so that no torque rotates them", by_nothing)),
+           departure=Departure("it gives triangle meshes no inertia, so no torque rotates them", by_nothing)),
     engine(PYBULLET, "told", partial(bullet_make, told=True),
            "localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre "
            "and principal axes",

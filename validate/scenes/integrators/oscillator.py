@@ -134,7 +134,7 @@ RUNNERS = (
     engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5),
            "first velocity + ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
+    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
            order=1, limit=limits, departure=DAMPED,
            predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped(law), follows=DAMPED.own_law)),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",

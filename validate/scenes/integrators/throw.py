@@ -122,7 +122,7 @@ RUNNERS = (
     ours(IMPLICIT_MIDPOINT, in_quick=False, **EXACTLY),
     engine(PYMUNK, "", pymunk_make, "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
     engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
+    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",

@@ -129,7 +129,7 @@ RUNNERS = (
     engine(PYBULLET, "", cured, "jointDamping as our λ², at most 4,000 iterations, residualThreshold 1e-8",
            order=EXACT, limit=limit, supports=is_bent,
            predicted=search_errors(cured_searches, observe, truth, limit)),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with its defaults",
            order=EXACT, limit=default_limit, supports=is_bent,
            predicted="its own law is its search, which leaves only round-off",
            departure=Departure("its 20 iterations with a damping of ½ m² are too few for so small a bend",

@@ -165,7 +165,7 @@ RUNNERS = (
       for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)),
     engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 100 iterations, residualThreshold 1e-9 reach",
            order=EXACT, limit=cured_limit, predicted=search_errors(cured_searches, turned_by, truth, cured_limit)),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with its defaults",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves only round-off",
            departure=Departure("its damping is ½ m² for any size of the arm, and it stops after 20 iterations or "
                                "at 0.1 mm", default_law)),

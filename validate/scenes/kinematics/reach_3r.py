@@ -177,7 +177,7 @@ RUNNERS = (
     engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 200 iterations, residualThreshold 1e-12",
            order=EXACT, limit=cured_limit,
            predicted="it ends when it detects no missing rotation, and round-off decides when that is"),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation and its defaults",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves only round-off",
            departure=Departure("it stops at 0.1 mm from the place, for any direction, or after 20 iterations, and "
                                "its damping is ½ for any size of the arm", default_law)),

@@ -108,7 +108,7 @@ RUNNERS = (
     *(ours(m, departure=STUCK, **JUDGED) for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
     ours(CCD, departure=POINTING, supports=beyond_the_last_joint, **JUDGED),
     ours(FABRIK, departure=ON_THE_LINE, **JUDGED),
-    engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics as it is", departure=STUCK, **JUDGED),
+    engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics with its defaults", departure=STUCK, **JUDGED),
 )
 
 

@@ -131,7 +131,7 @@ RUNNERS = (
     ours(FABRIK, **NO_THEORY),
     ours(TRANSPOSE, supports=in_time, **AT_REST),
     engine(PYBULLET, "", as_our_damping, "jointDamping as our λ², 3,000 iterations", **AT_REST),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with its defaults",
            order=EXACT, limit=measured_limit,
            predicted="its own law is its search, which leaves only round-off",
            departure=Departure("its damping is ½ m² for any size of the arm and any distance, and it stops after "

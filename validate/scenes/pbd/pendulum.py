@@ -143,7 +143,7 @@ RUNNERS = (
            order=1, limit=limits, predicted=bullet_error,
            departure=Departure(
                f"its solver, which sweeps over three axes, needs a bob with a moment of inertia. It has {SHARE} mL² "
-               f"and turns with the string, so that it falls as if gravity were g/{1.0 + SHARE:g}", with_inertia)),
+               f"and rotates with the string, so it falls as if gravity were g/{1.0 + SHARE:g}", with_inertia)),
     engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
     engine(MUJOCO, "default", partial(mujoco_make, integrator="Euler"), "hinge; the semi-implicit Euler step",

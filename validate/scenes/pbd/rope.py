@@ -178,7 +178,7 @@ RUNNERS = (
            order=1, limit=bodies_limit, predicted=BODIES.predict_bullet(SHARE, bullet_sweeps), most_steps=5000,
            departure=Departure(
                "its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
-               f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly",
+               f"{SHARE} m l² and rotates with the link above it, so the rope falls slightly more slowly",
                of_bodies)),
 )
 

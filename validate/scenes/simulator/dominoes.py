@@ -279,7 +279,7 @@ SCENE = Scene(
     uses=("contact points of boxes", "soft contacts and memory", "one substep per step"),
     full_loop="its method is a whole loop itself, with soft contacts in place of rigid ones: the motions "
               "are not the same",
-    ablations={"restitution": "dominoes of wood bounce a little; no law says how several impacts at once do",
+    ablations={"restitution": "wooden dominoes bounce slightly; no law says how several impacts at once do",
                "substeps": "two or four per step take two or four times as long, and come no nearer to the limit",
                "sweeps that change nothing": "the loop ends its sweeps when they hardly change an impulse any more; "
                                              "with 100 in each step it errs by as much and takes longer"},
