@@ -88,7 +88,7 @@ def validate(
 
 @contextmanager
 def on_cluster(executor, of):
-    """A Cluster for the length of the block; None without an address."""
+    """Yield a Cluster for the duration of the block; None without an address."""
     if executor is None:
         yield None
         return
@@ -244,10 +244,9 @@ def loadable_scenes():
 
 
 def select_scenes(scenes, lessons):
-    """(names, {name: BadInput}): the scenes that were asked for, all of them when nothing was, and those that do not
-    load.
+    """Return (names, {name: BadInput}): the requested scenes, or all of them, and those that do not load.
 
-    Raises BadInput for a name that is none, and for a named scene that does not load.
+    Raises BadInput for an unknown name, and for a requested scene that does not load.
     """
     for name in lessons:
         modules.bind(name)
@@ -260,7 +259,7 @@ def select_scenes(scenes, lessons):
 
 
 def require_answers(of, names):
-    """Raises BadInput when answers are asked for that are not there."""
+    """Raise BadInput if the requested answers do not exist."""
     folder = modules.subject_folder(of)
     lessons = {r.who.lesson for n in names for r in modules.bind_scene(n).our_runners} | set(lessons_of(names))
     if missing := sorted(f"{lesson}.py" for lesson in lessons if not (folder / f"{lesson}.py").is_file()):
@@ -316,7 +315,10 @@ def overrides(pairs, names):
 
 
 def value_of(name, text, known):
-    """The value of a parameter, of the type of its known values; a word must be one of them.  Raises BadInput."""
+    """Return the value of a parameter, of the type of its known values.
+
+    A word must be one of them.  Raises BadInput.
+    """
     kind = type(known[0])
     try:
         value = kind(text)

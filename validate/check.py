@@ -47,7 +47,7 @@ class Role(StrEnum):
 
 
 def is_right(curve):
-    """True, False, or None where nothing can be said, for the stored record of a curve."""
+    """Return True, False, or None if undecided, for the stored record of a curve."""
     return {Verdict.AGREES: True, Verdict.FOLLOWS_OWN_LAW: True, Verdict.DEPARTS: False}.get(Verdict(curve["verdict"]))
 
 

@@ -128,7 +128,7 @@ OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"))  # line, mar
 
 
 def engine_look(engine, engines):
-    """(colour, marker, line) of one of a scene's engines; curves of several variants may lie on each other."""
+    """Return (colour, marker, line) of one of a scene's engines; curves of several variants may coincide."""
     colour, marker = engine.product.colour, engine.product.marker
     if engine.variant in VARIANT_LINES:
         return colour, marker, VARIANT_LINES[engine.variant]

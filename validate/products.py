@@ -25,7 +25,7 @@ class Product:
 
     @property
     def adapter(self):
-        """Its module in validate/engines."""
+        """Return its module in validate/engines."""
         return importlib.import_module(f"validate.engines.{self.file}")
 
     def installed(self):

@@ -40,7 +40,7 @@ class Engine(NamedTuple):
 
     @property
     def label(self):
-        """Its name for people."""
+        """Return its name for readers."""
         return f"{self.product}, {self.variant}" if self.variant else self.product.name
 
 
@@ -87,7 +87,7 @@ class Runner:
 
     @property
     def label(self):
-        """Its name for people."""
+        """Return its name for readers."""
         return self.who.label
 
     @property
@@ -171,7 +171,7 @@ class Scene:
 
     @property
     def parameters(self):
-        """p of the first case."""
+        """Return p of the first case."""
         return next(iter(self.cases.values()))
 
     @property
@@ -213,7 +213,7 @@ def check_type(thing, value, kind):
 
 
 def field_names(required=False):
-    """Names of the fields of a Scene."""
+    """Return names of the fields of a Scene."""
     return [f.name for f in fields(Scene)
             if not required or (f.default is MISSING and f.default_factory is MISSING)]
 
@@ -224,7 +224,7 @@ def no_limit(p, dt):
 
 
 def by_order(rate, T, dt):
-    """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ per step.
+    """Return {order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ per step.
 
     rate [1/s] is the fastest rate at which anything in the scene changes.  T/dt steps add up to  rate T (rate dt)ᵏ.
     Round-off adds up to T/dt spacings at worst.  Newton's method stops at 1e-12.
@@ -234,7 +234,7 @@ def by_order(rate, T, dt):
 
 
 def parameter_table(p):
-    """[(name, value, meaning)] of the parameters of a case; the meaning is the text in the annotation of the field."""
+    """Return [(name, value, meaning)] of the parameters of a case; the meaning is the annotation of the field."""
     hints = get_type_hints(type(p), include_extras=True)
     return [(name, value, getattr(hints[name], "__metadata__", ("",))[0])
             for name, value in p._asdict().items() if isinstance(value, (int, float, str))]

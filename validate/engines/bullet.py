@@ -67,21 +67,21 @@ class Bullet:
         self.pb.stepSimulation()
 
     def close(self):
-        """Empty the world and keep its client, with its own settings, for the next run: connecting takes 20 ms."""
+        """Empty the world and keep its client, with its own settings, for the next run; connecting takes 20 ms."""
         self.pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, warmStartingFactor=WARM)
         self.pb.resetSimulation()
         _idle.append(self.client)
 
 
 class Rigid(Bullet):
-    """pybullet with bodies that have moments of inertia, in `maximal` or reduced coordinates.
+    """pybullet with bodies that have moments of inertia, in `maximal` or in reduced coordinates.
 
-    No damping, no clamp of velocity.
+    Bodies have no damping, and their velocity is not clamped.
     """
 
     def __init__(self, dt, gravity=(0.0, 0.0, 0.0), iterations=50, erp=0.2):
         super().__init__(dt, gravity)
-        # the slop is the depth at which a contact begins: a fall of 1e-5 m takes 1.4 ms, without friction
+        # a contact begins at the depth of the slop; until then a body falls, 1e-5 m in 1.4 ms, without friction
         self.pb.setPhysicsEngineParameter(numSolverIterations=iterations, erp=erp, contactSlop=0)
 
     def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=UPRIGHT, shape=-1, mu=0.0):
@@ -200,9 +200,9 @@ def hidden_damping(acceleration, start):
     """Return the Departure of pybullet's default reduced-coordinate body, which adds −0.04 v (1 + |v|) to a.
 
     |v| is the length of the vector.  The damping of 0.04 is documented: it is the default of linearDamping in the
-    guide's table of changeDynamics.  Hidden is only the factor 1 + |v|: btMultiBody takes the same number for a linear
+    guide's table of changeDynamics.  Only the factor 1 + |v| is hidden: btMultiBody uses the same number for a linear
     and for a quadratic term.
-    start(p) → (x, v), each (d,); the law is solved by DOP853.
+    start(p) → (x, v), each (d,); DOP853 solves the law.
     *Source:* PyBullet Quickstart Guide, changeDynamics; Bullet's btMultiBody.cpp, DAMPING_K1_LINEAR and
     DAMPING_K2_LINEAR; measured.
     """
@@ -230,9 +230,9 @@ def empty_world():
 # ---------------------------------------------------------------------------------------------- switches
 
 def parts(bullet):
-    """[(body, link)] of everything in pybullet; empty where nothing has a shape.
+    """Return [(body, link)] of everything in pybullet; the list is empty if nothing has a shape.
 
-    pybullet does not tell whether a body in maximal coordinates has one.  But its client remembers what was called.
+    pybullet does not report whether a body in maximal coordinates has a shape, but its client remembers the calls.
     """
     pb = bullet.pb
     if "createCollisionShape" not in vars(pb):
@@ -242,7 +242,7 @@ def parts(bullet):
 
 
 def let_all_pass(bullet):
-    """Let no shape collide with another."""
+    """Disable the collisions of all shapes."""
     for body, link in parts(bullet):
         bullet.pb.setCollisionFilterGroupMask(body, link, 0, 0)
     return len(parts(bullet)) > 1
@@ -256,7 +256,7 @@ def rub_nothing(bullet):
 
 
 def forget_contacts(bullet):
-    """Begin the sweeps of each step from nothing."""
+    """Begin the sweeps of each step from zero impulses."""
     bullet.pb.setPhysicsEngineParameter(warmStartingFactor=0)
     return len(parts(bullet)) > 1
 

@@ -18,7 +18,7 @@ def across(x):
 
 
 def target(bullet, p, grown=0.0):
-    """Make the static obstacle of a scene: the plane z = 0, or the cylinder about x, its radius larger by `grown`."""
+    """Make the static obstacle of a scene: the plane z = 0, or the cylinder about x with a radius larger by `grown`."""
     pb = bullet.pb
     if p.R == 0.0:
         shape, turn = pb.createCollisionShape(pb.GEOM_PLANE), [0.0, 0.0, 0.0, 1.0]
@@ -85,10 +85,10 @@ def bullet_swept(p, dt, place):
 
 
 def swept_radius(p, dt):
-    """Return the radius [m] of the sphere that bullet_swept sweeps in a step; None for steps that are not swept.
+    """Return the radius [m] of the sphere that bullet_swept sweeps in a step, or None if the step is not swept.
 
-    Those are shorter than half of it.  *Source:* Bullet: changeDynamics sets the threshold of motion to half the
-    radius; btDiscreteDynamicsWorld::integrateTransforms.
+    A step shorter than half of the radius is not swept.  *Source:* Bullet: changeDynamics sets the threshold of
+    motion to half the radius; btDiscreteDynamicsWorld::integrateTransforms.
     """
     return SWEPT * p.r if p.speed * dt >= 0.5 * SWEPT * p.r else None
 
@@ -112,7 +112,7 @@ def bullet_closest_pairs(low, high):
 
 
 def bullet_query_pairs(low, high):
-    """Return the pairs (m, 2) of pybullet's broad phase: for every box those whose enlarged boxes overlap it.
+    """Return the pairs (m, 2) of pybullet's broad phase: each box, and those whose enlarged bounds overlap it.
 
     A step is needed to register the boxes.
     """

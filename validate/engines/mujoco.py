@@ -1,8 +1,8 @@
-"""MuJoCo, a witness where pybullet has no wheel: joints by angles and soft contacts, in double precision.
+"""MuJoCo: a witness where pybullet has no wheel, with joints in angles and soft contacts, in double precision.
 
 Bodies on joints and free bodies have no constraint here that a step could violate.  Runge–Kutta 4 turns a body by
-the method of Munthe-Kaas, and what is left of its error is of order 4; MuJoCo's own default is the semi-implicit Euler
-step.  A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
+the method of Munthe-Kaas, so its error is of order 4.  MuJoCo's default is the semi-implicit Euler step.
+A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
 """
 
 from functools import cache
@@ -21,14 +21,14 @@ SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 @cache
 def module():
-    """MuJoCo itself.  What it would write into a file MUJOCO_LOG.TXT of the working folder is dropped."""
+    """Return MuJoCo's module, and suppress its log file MUJOCO_LOG.TXT in the working folder."""
     mujoco = quiet_import("mujoco")
     mujoco.set_mju_user_warning(lambda text: None)
     return mujoco
 
 
 def text(values):
-    """Numbers as MuJoCo's XML has them, with all their digits."""
+    """Return numbers as MuJoCo's XML writes them, with all their digits."""
     return " ".join(repr(float(value)) for value in np.ravel(values))
 
 
@@ -54,14 +54,14 @@ def empty_world():
 
 
 def inertial(m, moments, place=(0.0, 0.0, 0.0)):
-    """The mass [kg] of a body, its moments about its centre [kg m²], and where that is in the body [m]."""
+    """Return the XML of a mass [kg], its moments about its centre [kg m²], and the place of the centre [m]."""
     return f'<inertial mass="{text(m)}" pos="{text(place)}" diaginertia="{text(moments)}"/>'
 
 
 # ---------------------------------------------------------------------------------------------- bodies that turn
 
 def rotation_of(q):
-    """R (3, 3) of the quaternion at the beginning of q."""
+    """Return R (3, 3) of the quaternion in the first four entries of q."""
     R = np.empty(9)
     module().mju_quat2Mat(R, q)
     return R.reshape(3, 3)
@@ -88,9 +88,9 @@ def top(m, moments, length, R, spin, g, dt):
 # ---------------------------------------------------------------------------------------------- bodies on hinges
 
 def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4"):
-    """Make the EngineRun of rods between neighbouring ends (n + 1, 2), the first end in its place.
+    """Make the EngineRun of rods between neighbouring ends (n + 1, 2); the first end is fixed.
 
-    m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
+    m [kg]; inertia [kg m²] about the centre of mass, which lies at the fraction `centre` of the length.
     read(angles (n,) of the rods from x).
     """
     body, angles = "", np.unwrap([np.arctan2(*(end - begin)[::-1]) for begin, end in pairwise(ends)])
@@ -107,7 +107,7 @@ def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4"):
 # ---------------------------------------------------------------------------------------------- contacts
 
 def contacts(mu):
-    """The default of all shapes: friction, and a contact that is damped critically."""
+    """Return the XML of the default of all shapes: friction, and a critically damped contact."""
     return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
             f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
 
@@ -120,12 +120,12 @@ def block(gravity, mu, v, dt, read):
     slides = "".join(f'<joint type="slide" axis="{text(axis)}"/>' for axis in np.eye(3))
     model, data = world(dt, f'<geom type="plane" size="0 0 1"/><body>{slides}<geom size="0.1" pos="0 0 0.1" mass="1"/>'
                         "</body>", (gravity[0], 0.0, gravity[1]), "Euler", contacts(mu))
-    data.qpos[2], data.qvel[0] = -1e-9, v                # inside, so that the first step has a contact
+    data.qpos[2], data.qvel[0] = -1e-9, v                # below the plane, so that the first step has a contact
     return running(model, data, lambda: read(data.qpos))
 
 
 def tower(cubes, dt):
-    """Build a Tower of cubes; return a function that waits and returns (force under each cube [N], its sinking [m])."""
+    """Build a Tower of cubes; return a function that runs it and returns (force under each cube [N], its depth [m])."""
     half, bodies = np.full(3, 0.5 * cubes.size), ""
     for m, y in zip(cubes.masses, cubes.heights()):
         bodies += (f'<body pos="0 0 {text(y)}"><freejoint/><geom type="box" size="{text(half)}" mass="{text(m)}"/>'
@@ -146,9 +146,9 @@ def tower(cubes, dt):
 
 
 def sag(load, m, below):
-    """The depth [m] of each of the four contacts under a cube: a load of a quarter, F (1 − d) τ² (1/m + 1/m')/4.
+    """Return the depth [m] of each of the four contacts under a cube that carry F/4: F (1 − d) τ² (1/m + 1/m')/4.
 
-    m: mass of the cube [kg];    below: of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
+    m: mass of the cube [kg];    below: mass of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
     k = 1/(d τ²) and the regularisation R = (1 − d)/d (1/m + 1/m').
     *Source:* the documentation of MuJoCo, chapter Computation.
     """

@@ -8,7 +8,7 @@ from validate.scene import EngineRun
 
 # of the engines' solvers for each link: an impulse travels one link per sweep, in both directions
 ITERATIONS = 10
-FEWER = 3                    # sweeps with which pymunk's rope errs as much, but for 1 %, and is three times as fast
+FEWER = 3                    # sweeps with which pymunk's rope errs the same to 1 %, and is three times as fast
 # moment of inertia of a bob in pybullet over m l²: its solver sweeps over three axes, and a point has none
 SHARE = 0.1
 
@@ -16,7 +16,7 @@ SHARE = 0.1
 def pymunk_rope(x, l, m, g, dt, read, iterations):
     """Make an EngineRun of point masses on PinJoints, held in the origin; x (n, 2) are the initial positions.
 
-    The next step corrects the error that a step leaves in a link.
+    The error that a step leaves in a link is corrected in the next step.
     """
     import pymunk
     space = pymunk_space((0.0, -g))
@@ -40,10 +40,10 @@ def bullet_sweeps(links):
 
 
 def bullet_rope(x, m, g, inertia, dt, read):
-    """Make the same of bodies with a moment of inertia that turn with the link above, by point-to-point constraints.
+    """Make the same of bodies with inertia, which rotate with the link above, on point-to-point constraints.
 
-    z is up.  In maximal coordinates a moment of inertia counts from the second step on, and a body without shape could
-    not turn in the first one: that is done beforehand, without gravity.
+    z is up.  In maximal coordinates a moment of inertia has no effect before the second step, and a body without shape
+    could not rotate in the first one.  A first step without gravity is therefore made beforehand.
     """
     bullet = Rigid(dt, iterations=bullet_sweeps(len(x)), erp=1.0)
     pb = bullet.pb

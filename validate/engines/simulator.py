@@ -9,7 +9,7 @@ from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.reference.orientation import about
 from validate.scene import EngineRun
 
-OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: it sees a contact when there is one
+OVERLAP = 1e-6               # with which pymunk's bodies begin [m], because it detects a contact only if bodies overlap
 HEAVY = 1e9                  # mass of pybullet's turntable over that of the ball [-]: it falls by 1e-7 m in 5 s
 WIDE = 1e12                  # moment of inertia of pybullet's wedge, which cannot turn [kg m²]
 ITERATIONS = 100             # of both engines' contact solvers
@@ -70,15 +70,15 @@ def pybullet_slab(bullet):
 
 
 def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
-    """Make an EngineRun of a wedge that cannot turn and a block on it, both boxes; nothing rubs.
+    """Make an EngineRun of a wedge that cannot rotate and a block on it, both boxes, without friction.
 
     x (2, 2) centres, m (2,), half: half size of the block, which is a cube, thick (2,): half sizes of the wedge.
     read: x of the wedge, x and y of the block, and their velocities.  The block leaves a contact point behind by its
-    way in a step, and loses it where that is more than the breaking threshold.
+    displacement in a step, and loses the point if that exceeds the breaking threshold.
 
-    Each begins a micrometre inside what carries it: without, a rounding decides which contacts the first step has.
-    In maximal coordinates a moment of inertia counts from the second step on, so that the first one is done far from
-    everything and without gravity.
+    Each body begins a micrometre inside what supports it.  Otherwise round-off would decide which contacts the
+    first step has.  In maximal coordinates a moment of inertia has no effect before the second step.  The first
+    step is therefore made without gravity, with the bodies far from each other.
     """
     bullet = Rigid(dt, iterations=ITERATIONS)
     pb, R, down = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle), np.array([0.0, -OVERLAP])
@@ -108,9 +108,9 @@ def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
 # ---------------------------------------------------------------------------------------------- bodies on joints
 
 def pymunk_chain(ends, m, inertia, g, iterations, bias, dt, read):
-    """Make an EngineRun of rods between neighbouring ends (n + 1, 2), on PivotJoints, the first one in its place.
+    """Make an EngineRun of rods between neighbouring ends (n + 1, 2), on PivotJoints; the first end is fixed.
 
-    read(centres (n, 2), angles (n,)).  bias: the part of a joint's gap that is left after a second.
+    read(centres (n, 2), angles (n,)).  bias: the fraction of a joint's gap that remains after a second.
     """
     import pymunk
     space = pymunk_space((0.0, -g))

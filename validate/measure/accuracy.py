@@ -53,7 +53,7 @@ def theory(scene):
 
 
 def case_errors(selection, case, p, with_engines):
-    """One case: its truth, and the curves of our methods and the engines."""
+    """Return the errors of one case: its truth, and the curves of our methods and the engines."""
     scene = selection.scene
     truth = np.array(scene.truth(p, scene.duration), dtype=float)
     engines_here = selection.engines_for(p) if with_engines else ()
@@ -96,7 +96,7 @@ def run_to_end(scene, step, p, steps, asked=False):
 
 
 def run_engine_to_end(scene, engine, p, steps):
-    """Return the Outcome of an engine after so many steps."""
+    """Return the Outcome of an engine after this number of steps."""
     world = engine.make(p, scene.duration / steps)
     try:
         for _ in range(steps):
@@ -113,12 +113,15 @@ def finite(observed):
 
 
 def relative(observed, truth):
-    """|observed − truth| / |truth|, Euclidean norms over everything observed; absolute where the truth is zero."""
+    """Return |observed − truth| / |truth|, Euclidean norms over everything observed.
+
+    Absolute where the truth is zero.
+    """
     return relative_to(truth, observed, truth)
 
 
 def relative_to(truth, a, b):
-    """|a − b| / |truth|; absolute where the truth is zero."""
+    """Return |a − b| / |truth|; absolute where the truth is zero."""
     size = np.linalg.norm(truth)
     return float(np.linalg.norm(a - b) / (size if size > 0.0 else 1.0))
 
@@ -134,7 +137,7 @@ def our_curve(selection, runner, p, truth):
 
 
 def engine_curve(selection, case, runner, p, truth):
-    """An engine's errors: live where it is installed, recorded where it is not."""
+    """Return an engine's errors: live if it is installed, recorded otherwise."""
     scene, engine = selection.scene, runner.who
     colour, marker, line = engine_look(engine, [r.who for r in scene.engine_runners])
     about = {"role": Role.ENGINE, "product": engine.product.name, "variant": engine.variant,
@@ -158,7 +161,7 @@ def engine_curve(selection, case, runner, p, truth):
 
 
 def reason(runner):
-    """Why no theory predicts the error of a runner; empty where one does."""
+    """Return the reason why no theory predicts the error of a runner; empty if one does."""
     return "" if callable(runner.predicted) else runner.predicted
 
 
@@ -231,7 +234,7 @@ def verdict_on(rows, law, finest, order, order_shown):
 
 
 def surprise_in(row, law):
-    """A sentence without its subject where a run errs by something else than theory predicts for it; None otherwise."""
+    """Return a sentence without its subject if the error of a run differs from its prediction; None otherwise."""
     if row["predicted"] is None or row["error"] is None:
         return None
     off, size = relative_to(law, row["observed"], row["predicted"]), relative(row["predicted"], law)
@@ -275,7 +278,7 @@ def parity(selection, p):
 
 
 def labels_that_agree(result):
-    """Labels of our methods that agree with the truth in the first case."""
+    """Return labels of our methods that agree with the truth in the first case."""
     first = next(iter(result["cases"].values()))
     return {c["label"] for c in first["ours"] if Verdict(c["verdict"]) is Verdict.AGREES}
 

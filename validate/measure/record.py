@@ -1,4 +1,4 @@
-"""Record what pybullet does: its readings at T for every case, setting and step, its run times and its film.
+"""Recorded runs of pybullet: its readings at T for every case, setting and step, its run times and its film.
 
 A record also has the numbers of the reference that take seconds.
 """

@@ -1,5 +1,6 @@
-"""What a run does of a scene: its cases, methods, speeds, engines and steps,
-and the notes on what it leaves to `--full`.
+"""The part of a scene that a run measures: its cases, methods, speeds, engines and steps.
+
+Notes say what it leaves to `--full`.
 """
 
 import warnings
@@ -60,7 +61,7 @@ class Selection(NamedTuple):
 
     @property
     def first(self):
-        """(name, p) of the case that is timed and drawn."""
+        """Return (name, p) of the case that is timed and drawn."""
         return next(iter(self.cases.items()))
 
     def ours_for(self, p):
@@ -146,7 +147,7 @@ def speeds_of(scene, plan, runner):
 
 
 def sweep(scene, plan):
-    """The scene's numbers of steps, and before them three that are too coarse: they show where a method gives up."""
+    """Return the scene's numbers of steps after three that are too coarse, which show where a method fails."""
     first = scene.steps[0]
     coarse = tuple(n for n in (first // 10, first // 5, first // 2) if n >= 2)
     return tuple(n for n in coarse + tuple(scene.steps) if n <= (plan.most_steps or n))
@@ -199,7 +200,7 @@ def load(name, of):
 
 @contextmanager
 def changed(name, changes):
-    """With changed parameters, do not warn of overflow, and raise BadInput for what the scene cannot compute."""
+    """Suppress overflow warnings for changed parameters, and raise BadInput if the scene cannot compute them."""
     if not changes:
         yield
         return

@@ -100,13 +100,13 @@ def engine_items(selection, p, found):
 
 
 def recorded_times(selection, case, p):
-    """[(label, "recorded", steps, times)] of the engines that are not installed."""
+    """Return [(label, "recorded", steps, times)] of the engines that are not installed."""
     return [(r.label, "recorded", row["steps"], row) for r in selection.engines_for(p) if not selection.is_live(r)
             for row in (traces.recorded(selection.name, case, r.who) or {}).get("seconds") or []]
 
 
 def time_ours(scene, step, p, state=None):
-    """prepare(steps, dt) for one of our methods."""
+    """Return prepare(steps, dt) for one of our methods."""
     state = state or scene.start(p)
 
     def prepare(steps, dt):
@@ -116,7 +116,7 @@ def time_ours(scene, step, p, state=None):
 
 
 def time_engine(engine, p):
-    """prepare(steps, dt) for an engine."""
+    """Return prepare(steps, dt) for an engine."""
     def prepare(steps, dt):
         world = engine.make(p, dt)
 
@@ -131,7 +131,10 @@ def time_engine(engine, p):
 # ---------------------------------------------------------------------------------------------- a busy machine
 
 def cpu_seconds():
-    """(clock, seconds of all cores at work, seconds of this process) [s]; None where the system does not tell."""
+    """Return (clock, busy seconds of all cores, seconds of this process) [s].
+
+    None if the system does not report them.
+    """
     try:
         counts = list(map(int, Path("/proc/stat").read_text(encoding="utf-8").splitlines()[0].split()[1:]))
     except (OSError, ValueError):
@@ -151,7 +154,7 @@ def used_by_others(before, after):
 # ---------------------------------------------------------------------------------------------- the clock
 
 def interleaved(items, time_limits, repeats=REPEATS):
-    """[(item, {seconds, low, high, repeats})]: medians of interleaved repeats, and all of them.
+    """Return [(item, {seconds, low, high, repeats})]: medians of interleaved repeats, and all of them.
 
     Runs longer than `time_limits[speed]` are left out.
     """
@@ -174,7 +177,7 @@ def interleaved(items, time_limits, repeats=REPEATS):
 
 
 def short_enough(items, time_limits):
-    """[(item, repeats inside the clock, seconds)] of what does not take too long, warmed up."""
+    """Return [(item, repeats inside the clock, seconds)] of the items that do not take too long, warmed up."""
     chosen, pace = [], {}                                            # pace: {(label, speed): seconds per step}
     for item in items:
         key = item.label, item.speed
@@ -215,7 +218,10 @@ def clock(item, inner, steps=None):
 
 @cache
 def baseline(live):
-    """Cost of one step of an empty world [s], the Python call included, for each engine.  It is measured once."""
+    """Return the cost of one step of an empty world [s], including the Python call, for each engine.
+
+    Measure it once.
+    """
     costs = {}
     for product in live:
         world = product.adapter.empty_world()
@@ -225,7 +231,7 @@ def baseline(live):
 
 
 def empty_step(step):
-    """Median seconds per call."""
+    """Return median seconds per call."""
     laps = []
     for _ in range(REPEATS):
         begin = time.perf_counter()
@@ -238,7 +244,7 @@ def empty_step(step):
 # ---------------------------------------------------------------------------------------------- ablations
 
 def ablations(selection, p, agreeing):
-    """[{what, cost: times longer with it put in, same: the motion is unchanged, note}] for what the scene omits."""
+    """Return [{what, cost: ratio of times with it included, same: the motion is unchanged, note}] for omitted parts."""
     scene = selection.scene
     runner = min((r for r in scene.our_runners if r.label in agreeing), key=selection.rank, default=None)
     if runner is None:
@@ -270,7 +276,7 @@ def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full)
 # ---------------------------------------------------------------------------------------------- reading the diagram
 
 def times_to_error(rows):
-    """{label (speed): {target error: seconds, or None where the sweep does not get there}}, log-log between points."""
+    """Return {label (speed): {target error: seconds, or None if no run reaches it}}, log-log between points."""
     table = {}
     for key in dict.fromkeys((r["label"], r["speed"]) for r in rows):
         points = sorted((r["error"], r["seconds"]) for r in rows if (r["label"], r["speed"]) == key)
@@ -279,8 +285,9 @@ def times_to_error(rows):
 
 
 def time_to_error(points, target):
-    """Least time for that error from (error, seconds) points:
-    the cheapest point that is good enough, or between it and the next.
+    """Return the shortest time for that error from (error, seconds) points.
+
+    It is that of the cheapest accurate point, or between it and the next.
     """
     good = [(s, e) for e, s in points if e <= target]
     if not good:
@@ -295,8 +302,9 @@ def time_to_error(points, target):
 
 
 def advantage(rows, case):
-    """For each engine that errs: its smallest error, its time for that, our shortest time to get there,
-    and the ratio.  There is no race where none of our methods was run.
+    """Return the smallest error of each engine, its time for that, our shortest time for it, and the ratio.
+
+    There is no race if none of our methods was run.
     """
     if not case["ours"]:
         return []

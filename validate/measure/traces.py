@@ -1,4 +1,4 @@
-"""Read the recorded runs of pybullet, for machines without it; `record.py` writes them."""
+"""Reader of the recorded runs of pybullet, for machines without it; `record.py` writes them."""
 
 from solutions.checks import BadInput
 

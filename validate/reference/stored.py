@@ -1,4 +1,4 @@
-"""Numbers of the reference that take seconds: `validate record` computes them once, and keeps them with a scene."""
+"""Numbers of the reference solutions that take seconds to compute: `validate record` stores them with a scene."""
 
 import json
 from contextlib import contextmanager
@@ -11,7 +11,7 @@ _computing: list[dict] = []  # [{key: number}] of the block `computed_anew`
 
 @cache
 def numbers(scene):
-    """{key: number} that were stored for a scene."""
+    """Return {key: number} that were stored for a scene."""
     try:
         return json.loads((RECORDED / f"{scene}.json").read_text(encoding="utf-8")).get("numbers", {})
     except (OSError, ValueError):        # measure/traces.py names a damaged file, when it reads the engine's runs
@@ -19,7 +19,7 @@ def numbers(scene):
 
 
 def stored(scene, function, *arguments):
-    """Return the number function(*arguments), stored where these are the arguments of a case of the scene.
+    """Return the number function(*arguments): the stored one if a case of the scene has these arguments.
 
     Arguments are numbers, texts, and tuples of them.
     """
@@ -33,7 +33,7 @@ def stored(scene, function, *arguments):
 
 @contextmanager
 def computed_anew():
-    """Give {key: number} of all that `stored` returns during the block, and let it compute each of them."""
+    """Yield {key: number} of all that `stored` returns during the block, in which it computes every number."""
     _computing.append({})
     try:
         yield _computing[-1]

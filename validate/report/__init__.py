@@ -1,4 +1,4 @@
-"""Write the report: one folder of static pages that need no network, and the same content as JSON."""
+"""The report: one folder of static pages that need no network, and the same content as JSON."""
 
 import json
 from functools import cache
@@ -32,7 +32,7 @@ def pictures(results, stability):
 
 
 def copied(results):
-    """Files that come with the pages as they are."""
+    """Return the files that come with the pages unchanged."""
     return ("style.css", "dark.css", "report.css", "report.js", "player.js",
             *(["player3d.js"] if any(r["picture"]["space"] for r in results) else []))
 

@@ -15,12 +15,12 @@ def answers(results, stability, cores=None):
 
 
 def curves_of(results, role):
-    """[(result, name of the case, curve)] of all scenes; role is ours or engines."""
+    """Return [(result, name of the case, curve)] of all scenes; role is ours or engines."""
     return [(r, name, c) for r in results for name, case in r["cases"].items() for c in case[role]]
 
 
 def right(results):
-    """Counts of the verdicts on our methods, and how many orders are as high as theory says."""
+    """Return counts of the verdicts on our methods, and the number of orders that are as high as theory says."""
     every = curves_of(results, "ours")
     count = Counter(Verdict(c["verdict"]) for _, _, c in every)
     ordered = [c for _, _, c in every if c["order"] is not None and c["expected"] in (1, 2, 4)]
@@ -41,7 +41,7 @@ def right(results):
 
 
 def faster(results, cores=None):
-    """All races of the report, each with its scene; those that we do not win are listed by name."""
+    """Return all races of the report, each with its scene; those that we do not win are listed by name."""
     every = [{**race, "scene": r["scene"], "title": r["title"], "lesson": r["lesson"]}
              for r in results for race in words.races(r).values()]
     decided = [race for race in every if race["ratio"]]
@@ -53,7 +53,10 @@ def faster(results, cores=None):
 
 
 def departures(results):
-    """One line for each engine and reason: {engine, kind, reason, low, high, places}, unpredicted ones first."""
+    """Return one line for each engine and reason, unpredicted ones first.
+
+    Each line is {engine, kind, reason, low, high, places}.
+    """
     groups, undecided = {}, {}
     for r, name, c in curves_of(results, "engines"):
         verdict = Verdict(c["verdict"])

@@ -1,8 +1,8 @@
-"""Check a report against its own raw rows: recompute every derived figure and verdict, and render every page again.
+"""Audit of a report by its own raw rows: every derived figure and verdict is recomputed, every page rendered again.
 
 Raw are, in report.json: the truth of each case; of each run what it observed at the end, its steps, the error that
 theory allows, or why it failed; of each time all its repeats; of each finding the predicted and the measured number and
-the tolerance.  Everything else is derived from these and is derived here once more, by other code where that is short.
+the tolerance.  Everything else is derived from these and is derived here again, by other code where that is short.
 The pages must be what the same data give when they are rendered again, and each picture names the data that it shows.
 """
 
@@ -92,7 +92,7 @@ def of_curve(curve, case, result):
 
 
 def distance(observed, truth):
-    """|observed − truth| over |truth|, or over 1 where the truth is zero."""
+    """Return |observed − truth| over |truth|, or over 1 where the truth is zero."""
     size = sum(x * x for x in truth) ** 0.5
     return sum((x - y) ** 2 for x, y in zip(observed, truth, strict=True)) ** 0.5 / (size or 1.0)
 
@@ -199,7 +199,7 @@ def follows(row, key):
 
 
 def least_time(points, target):
-    """The least time for an error: that of the cheapest run that is good enough, or between it and the next coarser."""
+    """Return the shortest time for an error: that of the cheapest accurate run, or between it and a coarser one."""
     good = min(((seconds, error) for error, seconds in points if error <= target), default=None)
     if good is None:
         return None
@@ -244,7 +244,10 @@ def of_case(case, counts):
 
 
 def of_limits(data, counts):
-    """Limits that are not those of the scenes.  Other code than that of the report cannot tell: then it checks none."""
+    """Return limits that differ from those of the scenes.
+
+    None if the report comes from other code, which cannot tell.
+    """
     run = data["run"]
     if run.get("code") != code_of(run["of"]) or run.get("overrides"):
         return
@@ -277,7 +280,7 @@ def code_of(subject):
 
 
 def of_pages(folder, data, counts):
-    """Pages and pictures that do not show these data."""
+    """Return pages and pictures that do not show these data."""
     for name, text in report.texts(data["scenes"], data["stability"], data["run"]).items():
         counts["pages"] += 1
         there = folder / name

@@ -35,7 +35,7 @@ def curves(report):
 
 
 def verdicts(old, new):
-    """Verdicts that differ, and curves that only one report has."""
+    """Yield verdicts that differ, and curves that only one report has."""
     before, after = curves(old), curves(new)
     for key in dict.fromkeys([*before, *after]):
         was, now = before.get(key), after.get(key)
@@ -58,7 +58,7 @@ def because(curve):
 
 
 def findings(old, new):
-    """Findings of the stability cases that hold in one report only, and cases or findings that only one report has."""
+    """Yield findings that hold in one report only, and stability cases or findings that only one report has."""
     before, after = by_case(old), by_case(new)
     for place in dict.fromkeys([*before, *after]):
         was, now = before.get(place, {}), after.get(place, {})
@@ -89,7 +89,7 @@ def by_case(report):
 
 
 def orders_and_errors(old, new):
-    """Orders that differ, and for each curve the largest change of an error at one number of steps."""
+    """Yield orders that differ, and for each curve the largest change of an error at one number of steps."""
     after = curves(new)
     for key, was in curves(old).items():
         now = after.get(key)
@@ -111,10 +111,11 @@ def is_good(curve):
 
 
 def times(old, new):
-    """Methods whose ranges of times lie apart, by more than SLOWER, at one pace of the machine.
+    """Yield methods whose ranges of times lie apart, by more than SLOWER, at one pace of the machine.
 
-    The pace is the ratio of the engines' times in the same scene, which were measured in turn with ours, with its
-    range; where no engine is timed, that of all scenes.  Only what becomes slower beside the engines is worse.
+    The pace is the ratio of the engines' times in the same scene, which were measured alternately with ours, with
+    its range.  If no engine is timed, it is that of all scenes.  Only a method that becomes slower relative to the
+    engines is worse.
     """
     before, after = timed(old), timed(new)
     both = [key for key in before if key in after]

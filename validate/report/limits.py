@@ -1,4 +1,4 @@
-"""How sharp the limits of a report are: `validate limits [REPORT]`.
+"""Sharpness of the limits of a report: `validate limits [REPORT]`.
 
 A limit is the largest error that theory allows a run.  Limit over error says how much larger the error could have been
 without a change of the verdict.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left
@@ -49,7 +49,7 @@ def rows_of(report):
 
 
 def share(ratios, percent):
-    """Return the value that so many percent of the ratios do not exceed."""
+    """Return the value that this percentage of the ratios does not exceed."""
     if len(ratios) == 1 or math.isinf(max(ratios)):                    # quantiles() cannot interpolate to infinity
         return sorted(ratios)[math.ceil(percent / 100.0 * len(ratios)) - 1]
     return quantiles(ratios, n=100, method="inclusive")[percent - 1]

@@ -85,7 +85,7 @@ def by_lesson(report):
 
 
 def advantages(result):
-    """Our advantages over each engine, as ratios of run times at equal error."""
+    """Return our advantages over each engine, as ratios of run times at equal error."""
     return [a["ratio"] for a in words.races(result).values() if a["ratio"]]
 
 
@@ -97,7 +97,7 @@ def plain_signs(results, kind):
 
 
 def spread(ratios):
-    """Median and range of ratios, such as 62× (2.1× to 440×)."""
+    """Return median and range of ratios, such as 62× (2.1× to 440×)."""
     if not ratios:
         return "–"
     middle, low, high = (words.factor(r) for r in (median(ratios), min(ratios), max(ratios)))

@@ -1,4 +1,4 @@
-"""What the numbers say, in words."""
+"""Sentences about the numbers of a report."""
 
 import re
 from collections import Counter
@@ -37,14 +37,14 @@ BUSY_LOAD = 1.5              # the same where only the load of the machine is kn
 # ---------------------------------------------------------------------------------------------- numbers
 
 def rounded(x, digits=2):
-    """Return a number with so many digits that count, written out: 270, 3.8, 0.042."""
+    """Return a number with this number of significant digits, written out: 270, 3.8, 0.042."""
     x = float(f"{x:.{digits}g}")
     decimals = max(0, digits - 1 - floor(log10(abs(x)))) if x else 0
     return f"{x:,.{decimals}f}"
 
 
 def number(x, digits=3):
-    """1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
+    """Return 1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
     if x is None:
         return "–"
     if x < 0:
@@ -131,7 +131,7 @@ def judge(curve):
 
 
 def verdicts(curves):
-    """[(text, kind, count)] of several curves at once."""
+    """Return [(text, kind, count)] of several curves at once."""
     count = Counter(Verdict(c["verdict"]) for c in curves)
     return [(one.value, KINDS[one], count[one]) for one in
             (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED)
@@ -150,13 +150,13 @@ def named(curve):
 
 
 def own_errors(curve):
-    """[(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
+    """Return [(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
     own = curve.get("own_law")
     return [(row, relative_to(row["observed"], own)) for row in curve["rows"] if own and row["observed"]]
 
 
 def relative_to(observed, law):
-    """|observed − law| / |law| of two lists."""
+    """Return |observed − law| / |law| of two lists."""
     return relative(np.array(observed), np.array(law))
 
 
@@ -185,9 +185,9 @@ def races(result):
 
 
 def race(advantage, result):
-    """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
+    """Return a race with the range of its ratio and its outcome: faster, a tie, slower, or open with a reason.
 
-    To have no run that is as accurate as the engine's is a loss.
+    If no run is as accurate as the engine's, the race is lost.
     """
     a = advantage
     if why := why_open(a, result):
@@ -199,7 +199,7 @@ def race(advantage, result):
 
 
 def why_open(a, result):
-    """Why a race is not decided; nothing where it is.
+    """Return the reason why a race is not decided; nothing if it is.
 
     Of runs that scatter, because no theory bounds their errors, the most accurate one was lucky.  The sweeps of a quick
     validation end early, and it leaves most compiling to a full one.
@@ -237,7 +237,7 @@ def tied(a, result):
 
 
 def accurate_enough(advantage, result):
-    """Our methods with a run, timed or not, whose error is not larger than the engine's."""
+    """Return our methods with a run, timed or not, whose error is not larger than the engine's."""
     ours = next(iter(result["cases"].values()))["ours"]
     return [c["label"] for c in ours if any(r["error"] is not None and r["error"] <= advantage["error"]
                                             for r in c["rows"])]
@@ -253,7 +253,7 @@ def busy(results):
 
 
 def busy_warning(results, cores):
-    """One sentence where times are doubtful, else nothing."""
+    """Return one sentence if times are doubtful, else nothing."""
     used, is_load = busy(results)
     if is_load and used >= BUSY_LOAD:
         return (f"The machine was busy while times were taken: its load was up to {used:.1f}, and this run needs 1. "
@@ -273,7 +273,7 @@ def products(results):
 
 
 def row(result, products):
-    """One scene on the front page, with these engines."""
+    """Return one scene on the front page, with these engines."""
     first = next(iter(result["cases"].values()))
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
@@ -291,7 +291,10 @@ def row(result, products):
 
 
 def left_out(results):
-    """Scenes of the lessons before the simulator, and what the whole loop costs there: [{scene, title, lesson, …}]."""
+    """Return scenes of the lessons before the simulator, and the cost of the whole loop there.
+
+    Each is {scene, title, lesson, …}.
+    """
     return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
              **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
             for r in results if r["lesson"] not in ("simulator", "kinematics")]
@@ -347,7 +350,7 @@ def best_order(curves):
 
 
 def seen_in_times(result):
-    """One sentence: what the plot of errors against run times shows."""
+    """Return one sentence: the result of the plot of errors against run times."""
     decided = [one for one in races(result).values() if one["ratio"]]
     if not decided:
         return ""
@@ -357,7 +360,7 @@ def seen_in_times(result):
 
 
 def seen_in_steps(result):
-    """One sentence: what the plot of errors against steps shows."""
+    """Return one sentence: the result of the plot of errors against steps."""
     best = best_order(next(iter(result["cases"].values()))["ours"])
     if best is None:
         return ""
@@ -379,7 +382,7 @@ SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,4})_([A-Za-zα-ω]{1,4})\b")
 
 
 def flowing(text):
-    """[(kind, content)] of a docstring, without the line breaks of its source.
+    """Return [(kind, content)] of a docstring, without the line breaks of its source.
 
     text: a paragraph;    formula: indented lines, as they are;    terms: [(term, text)] of a list of definitions.
     """
@@ -399,7 +402,7 @@ def flowing(text):
 
 
 def paragraphs(lines):
-    """Text and formulas: indented lines are a formula at the start or after a colon, else they go on with the text."""
+    """Return text and formulas: indented lines are a formula at the start or after a colon, else they are text."""
     found = []
     for deep, piece in runs_of(lines):
         if deep and (not found or found[-1][1].endswith(":")):
@@ -416,12 +419,12 @@ def defines(line):
 
 
 def runs_of(lines):
-    """[(indented, lines)] of neighbours that are all indented or all not."""
+    """Return [(indented, lines)] of neighbours that are all indented or all not."""
     return [(formula, list(piece)) for formula, piece in groupby(lines, key=indented)]
 
 
 def definitions(lines):
-    """[(term, text)]: an indented line goes on with the text before."""
+    """Return [(term, text)]: an indented line goes on with the text before."""
     found = []
     for line in lines:
         if defines(line):
@@ -443,14 +446,14 @@ def plain_words(text):
 
 
 def subscripts(text):
-    """v_n with a lowered n."""
+    """Return v_n with a lowered n."""
     return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 # ---------------------------------------------------------------------------------------------- findings
 
 def headline(result):
-    """One sentence: what became of this scene."""
+    """Return one sentence: the result of this scene."""
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
     engines = [c for one in cases for c in one["engines"]]
@@ -475,7 +478,7 @@ def findings(result):
 
 
 def leading(result):
-    """The findings without what was left out: departures first, then orders, times and what an omission saves."""
+    """Return the findings without those left out: departures first, then orders, times and savings by omission."""
     return [*_departures(result), *_ours(result), *_engines_of(result), *_times(result), *_ablations(result),
             *_parity(result)]
 

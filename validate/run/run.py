@@ -1,4 +1,4 @@
-"""A run: measure what is not measured yet, write the report, and say how it went."""
+"""A run: it measures what is not measured yet, writes the report, and prints a summary."""
 
 import os
 import platform
@@ -42,7 +42,7 @@ def run(names, plan, pool, out, console, measuring=None):
 
 
 def measure_errors(store, names, plan, pool, bars):
-    """Errors of every scene and the stability cases, several at a time: compiling is most of it.
+    """Compute the errors of every scene and the stability cases, several at a time: most of it is compilation.
 
     A process stays with a lesson as long as it can.  Two processes at the same lesson would compile the same twice.
     """

@@ -51,7 +51,7 @@ def read_whole(path, kind, remedy):
 
 
 def code_digest(of):
-    """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
+    """Return a fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
     return modules.fingerprint(sources(of), f"{sys.version} {installed_versions()}")
 
 

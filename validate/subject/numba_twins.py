@@ -1,4 +1,4 @@
-"""How a plain function is compiled with numba: the compiled twins, their cache, and four changes to numba itself.
+"""Compilation of plain functions with numba: the compiled twins, their cache, and four changes to numba itself.
 
 A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
 looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
@@ -156,7 +156,7 @@ def _shorten_broadcast_error():
     from numba.np import arrayobj
 
     def shapes_differ(src_shapes, index_shape):
-        """Stands in for numba's function of that purpose."""
+        """Replace numba's function of that purpose."""
 
     @overload(shapes_differ)
     def _(src_shapes, index_shape):

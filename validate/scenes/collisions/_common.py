@@ -1,4 +1,4 @@
-"""Balls that stop where they touch an obstacle: how they start, how far they may be off, and the runners."""
+"""Balls that stop when they touch an obstacle: initial states, limits, and runners."""
 
 from collections.abc import Callable
 from functools import partial
@@ -17,32 +17,32 @@ from validate.scenes._common import check_positives
 PLACE_APART = 1.0            # metre between two copies along the x axis
 ENGINE_SPEEDS = (1.0, 1e2, 1e4)  # of the balls in an engine [m/s]: the lowest, the middle, the highest
 
-# how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  Rays approach from outside;
+# pybullet's rays may end this far in front of a round shape [m], measured, not derived.  Rays come from outside;
 # twenty tested beforehand ended up to 1.2 mm early, and this permits eight times that
 RAY_ENDS = 1e-2
 
 
 class Flight(NamedTuple):
-    """Balls that stop at an obstacle, and the relative errors of where they are."""
+    """Balls that stop at an obstacle, and the relative errors of their positions."""
     T: float                 # [s]
-    place: Callable          # p → (x, v), each (n, 3)
-    truth: Callable          # (p, t) → where they are
-    steep: float             # cosine of the angle between their path and the normal, at the least [-]
+    place: Callable          # p → (x, v), each (n, 3): initial state
+    truth: Callable          # (p, t) → their positions
+    steep: float             # smallest cosine of the angle between their path and the normal [-]
 
     def per_ball(self, p, metres):
-        """Return the relative error if every ball is off by so many metres."""
+        """Return the relative error if every ball is off by this distance [m]."""
         return np.sqrt(COPIES) * metres / np.linalg.norm(self.truth(p, self.T))
 
     def rounding(self, p, dt):
-        """Return the largest relative error by round-off."""
+        """Return the largest relative error caused by round-off."""
         x, v = self.place(p)
         way = np.linalg.norm(rounded_way(x[:, 1:], v[:, 1:], impact_times(self.T), dt))
         few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * self.T
         return (way + few) / self.steep / np.linalg.norm(self.truth(p, self.T))
 
     def swept_limit(self, p, dt):
-        """A swept ball ends where its smaller sphere touches, with the ball a fifth of its radius deep, or earlier.  A
-        step that is too short to be swept finds it at most one step late.
+        """A swept ball ends where its smaller sphere touches, when the ball is a fifth of its radius deep, or
+        earlier.  If a step is too short to be swept, the ball is detected at most one step late.
         """
         return self.per_ball(p, deepest(p, dt) / self.steep) + self.rounding(p, dt)
 
@@ -56,14 +56,14 @@ def start_balls(place, positive):
 
 
 def observe_balls(state, p):
-    """Return the places of the balls that may hit, in one row."""
+    """Return the positions of the balls that may hit, in one row."""
     return across(state[0][:COPIES])
 
 
 def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
     """Return the runners of a scene of balls that stop at an obstacle: our methods, and pybullet's two ways.
 
-    place(p) → (x, v), each (n, 3)       fastest [m/s] with which the discrete test can deal
+    place(p) → (x, v), each (n, 3)       fastest [m/s] that the discrete test can handle
     limits, late    of our methods: limits, and the field `predicted` of the discrete test
     obstacle        of the rays, in words
     rays, swept     {field: its value} of the Runner of each way of pybullet
@@ -86,7 +86,7 @@ def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
 def deepest(p, dt):
     """Return the largest distance [m] between the position of bullet_swept and the place of impact.
 
-    Without a sweep a ball is at most v dt deep.  With one it ends where the swept sphere touches, with the ball
-    (1 − SWEPT) r deep, or earlier, where the ball itself is found less deep.
+    Without a sweep a ball is at most v dt deep.  With a sweep it ends where the swept sphere touches, with the ball
+    (1 − SWEPT) r deep, or earlier, where the ball itself is detected less deep.
     """
     return p.speed * dt if swept_radius(p, dt) is None else (1.0 - SWEPT) * p.r

@@ -1,7 +1,7 @@
 """Balls fly at an infinite cylinder, across its axis, at 1 to 10⁴ m/s: the discrete and the continuous test.
 
-This is the worked question of the second lecture deck.  The discrete test runs after each step.  It finds a ball up to
-v dt inside, or misses it, because a step longer than the path through the cylinder can pass it.  The continuous test
+This is the worked question of the second lecture deck.  The discrete test runs after each step.  It detects a ball up
+to v dt inside, or misses it, because a step can be longer than the path through the cylinder.  The continuous test
 solves for the first root and works with any step.
 """
 
@@ -22,7 +22,7 @@ CASES = balls.at_speeds(R=0.5)
 
 
 def place(p):
-    """Return (x, v), each (COPIES, 3): balls that come down, tilted by 0.3 rad towards y, each with its own offset."""
+    """Return (x, v), each (COPIES, 3), of balls that come down, tilted by 0.3 rad towards y, at different offsets."""
     e, across = np.array([0.0, np.sin(0.3), -np.cos(0.3)]), np.array([0.0, np.cos(0.3), np.sin(0.3)])
     k = np.arange(balls.COPIES)
     beside = WIDEST * (p.R + p.r) * np.sin(1.0 + 2.0 * k)
@@ -56,13 +56,13 @@ per_ball, rounding = FLIGHT.per_ball, FLIGHT.rounding
 
 
 def nearest(p):
-    """Return the times (COPIES,) at which the balls would be nearest to the axis."""
+    """Return the times (COPIES,) at which the balls would be closest to the axis."""
     x, v = place(p)
     return -np.sum(x[:, 1:] * v[:, 1:], axis=1) / np.sum(v[:, 1:] ** 2, axis=1)
 
 
 def when(p, r):
-    """Return the times at which balls of radius r enter and leave the cylinder: never, if they pass beside it."""
+    """Return the times at which balls of radius r enter and leave the cylinder; balls that pass it never do."""
     (x, v), middle, gap = place(p), nearest(p), lambda y: np.hypot(y[1], y[2]) - p.R - r
     meets = gap((x + middle[:, None] * v).T) < 0.0
     enters = balls.moments(x, v, gap, np.where(meets, middle, 0.0))
@@ -70,18 +70,18 @@ def when(p, r):
 
 
 def swept_band(p, dt):
-    """Return how far a swept ball may end from its prediction: as far as a ray does, by round-off without a sweep."""
+    """Return the band of a swept ball's prediction: that of a ray, or round-off without a sweep."""
     return rounding(p, dt) if swept_radius(p, dt) is None else ray_limit(p, dt)
 
 
 def limits(p, dt):
-    """Limits relative to the root of the sum of all squares.
+    """The limits are relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of itself at each step until the impact; for the path that passes
-    farthest from the axis, at b (R + r), the root is 1/√(1 − b²) times as uncertain as the position.  The time of
-    impact adds a dozen roundings of the whole way, here and in the truth.
-    discrete: detected at most one step late, at a moment that is predicted.  A step longer than the shortest path
-    through the cylinder, 2 √(1 − b²)(R + r), can pass it.
+    continuous: a position is rounded by half a spacing of floats at each step until the impact.  On the path that
+    passes farthest from the axis, at b (R + r), the root is 1/√(1 − b²) times as uncertain as the position.  The
+    time of impact adds a dozen rounding errors of the whole path, here and in the truth.
+    discrete: contact is detected at most one step late, at a predicted time.  A step longer than the shortest path
+    through the cylinder, 2 √(1 − b²)(R + r), can miss it.
     """
     late = per_ball(p, p.speed * dt) if p.speed * dt < 2.0 * STEEP * (p.R + p.r) else np.inf
     rounded = rounding(p, dt)
@@ -89,7 +89,7 @@ def limits(p, dt):
 
 
 def ray_limit(p, dt):
-    """A ray may end up to 1 cm in front of a round shape: where it ends is measured and not derived."""
+    """A ray may end up to 1 cm in front of a round shape.  This distance is measured and not derived."""
     return per_ball(p, common.RAY_ENDS / STEEP) + rounding(p, dt)
 
 

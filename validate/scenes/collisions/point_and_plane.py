@@ -1,7 +1,8 @@
-"""Balls fall on a plane at 1 to 10⁴ m/s, and stop where they are found to touch it.
+"""Balls fall on a plane at 1 to 10⁴ m/s, and stop where contact is detected.
 
-The test of the first lecture deck, E(p) < 0 after each step, finds them up to v dt below the plane.  Its formula
-t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight.  No ball passes a plane: it has no far side.
+The test of the first lecture deck, E(p) < 0 after each step, detects them up to v dt below the plane.  Its formula
+t + dt d₁/(d₁ + d₂) corrects their position exactly, because the path is straight.  No ball can pass a plane, because
+a plane has no far side.
 """
 
 import numpy as np
@@ -50,19 +51,20 @@ per_ball, rounding = FLIGHT.per_ball, FLIGHT.rounding
 
 
 def limits(p, dt):
-    """Limits relative to the root of the sum of all squares.
+    """The limits are relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of itself at each step until the impact, and 1/cos 0.3 rad
-    times as much on a tilted path; a dozen roundings of the whole way for the time of impact, here and in the truth.
-    discrete: detected at most one step late, at a moment that is predicted.  pybullet's rays are exact here, because a
-    plane is not rounded.
+    continuous: a position is rounded by half a spacing of floats at each step until the impact, and 1/cos 0.3 rad
+    times as much on a tilted path; the time of impact adds a dozen rounding errors of the whole path, here and in the
+    truth.
+    discrete: contact is detected at most one step late, at a predicted time.  pybullet's rays are exact here, because a
+    plane is not round.
     """
     rounded = rounding(p, dt)
     return {EXACT: rounded, 1: per_ball(p, p.speed * dt) + rounded}
 
 
 def when(p, r):
-    """Return the times at which balls of radius r reach the plane; nothing leaves it again."""
+    """Return the times at which balls of radius r reach the plane; they never leave it again."""
     return balls.moments(*place(p), lambda y: y[2] - r, np.full(balls.COPIES, 2.0 * T)), np.inf
 
 

@@ -1,4 +1,4 @@
-"""Planets, and points in a field of forces: how they start and are drawn, and the runners that move them."""
+"""Planets, and points in a field of forces: initial states, drawings, and the runners that move them."""
 
 from collections.abc import Callable
 from functools import partial
@@ -57,7 +57,7 @@ class Point(NamedTuple):
         return start
 
     def in_space(self, p):
-        """The same motion with unused coordinates."""
+        """Return the same motion with unused coordinates."""
         return (np.zeros(3), np.array([*self.velocity(p), 0.0])), p
 
     def read(self, x):
@@ -65,12 +65,12 @@ class Point(NamedTuple):
         return np.array(x[:self.d])
 
     def pymunk(self, p, dt, **damping):
-        """Apply the force before each step, or let the space damp."""
+        """Make pymunk's world: apply the force before each step, or let the space damp."""
         push = {} if damping else {"force": self.force(p)}
         return pymunk_point(self.gravity(p), self.mass(p), self.velocity(p), self.read, dt, **push, **damping)
 
     def pybullet(self, p, dt, default=False, **damping):
-        """Apply the force before each step, or let the body damp."""
+        """Make pybullet's world: apply the force before each step, or let the body damp."""
         push = {} if damping else {"force": self.force(p)}
         return bullet_point((*self.gravity(p), 0.0), self.mass(p), (0.0,) * 3, (*self.velocity(p), 0.0), self.read,
                             dt, default=default, **push, **damping)
@@ -86,7 +86,7 @@ class Point(NamedTuple):
                       order=1, limit=limits, predicted=motion.predict(NEW_VELOCITY_OLD_FORCE))
 
     def in_default_pybullet(self, motion, limits, departure):
-        """Return the runner of pybullet's default body, which its own damping slows."""
+        """Return the runner of pybullet's default body, which is slowed by its own damping."""
         return engine(PYBULLET, "default", partial(self.pybullet, default=True),
                       "createMultiBody with its defaults; force applied each step",
                       order=1, limit=limits, departure=departure,
@@ -106,7 +106,7 @@ def as_pair(x, p):
 # ---------------------------------------------------------------------------------------------- planets
 
 def planet(p):
-    """Return (x, v) of the planet at its perihelion.  Raises BadInput for what is no ellipse."""
+    """Return (x, v) of the planet at its perihelion.  Raises BadInput if the path is not an ellipse."""
     check_positives(p, "mu", "a")
     if not 0.0 <= p.e < 1.0:
         raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
@@ -114,7 +114,7 @@ def planet(p):
 
 
 def planet_in_space(p):
-    """The same motion with an unused z coordinate."""
+    """Return the same motion with an unused z coordinate."""
     x, v = planet(p)
     return (np.append(x, 0.0), np.append(v, 0.0)), p
 

@@ -67,22 +67,22 @@ def limits(p, dt):
     """The error of order 1 is exact: ½ g dt T ẑ upwards with the old velocity, downwards with the new.
 
     With the old velocity x ends at  Σ dt v(n dt) = x(T) + ½ g dt T ẑ.  pymunk moves with the old velocity and errs
-    upwards, pybullet with the new and errs downwards: their mean is exact.  Half a step of gravity in the first
+    upwards, pybullet with the new one and errs downwards: their mean is exact.  Half a step of gravity in the first
     velocity removes the error.
     """
     return {1: 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
 def damped_limit(p, dt):
-    """With damping the fastest rate is that of 0.04 v (1 + |v|) at the greater of the initial speed and the terminal
-    one, where 0.04 v (1 + v) = g.
+    """With damping the fastest rate is that of 0.04 v (1 + |v|) at the larger of the initial speed and the terminal
+    speed, where 0.04 v (1 + v) = g.
     """
     fastest = max(np.linalg.norm(start(p)[1]), 0.5 * (np.sqrt(1.0 + 100.0 * p.g) - 1.0))
     return by_order(0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
 
 
 def old_velocity(p, dt, side=1.0):
-    """+½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and zero for all others, to round-off."""
+    """The error is +½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and round-off for all others."""
     return Prediction(np.array([0.0, 0.0, 0.5 * side * p.g * dt * T]), rounded(p, dt))
 
 
@@ -106,7 +106,7 @@ def pymunk_make(p, dt, ahead=0.0):
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
-    """A free body under the engine's own gravity."""
+    """Make a free body under the engine's own gravity."""
     v = (p.vx, p.vy, p.vz + ahead * dt * p.g)
     return bullet_point((0.0, 0.0, -p.g), 1.0, (0.0, 0.0, 0.0), v, np.array, dt, default=default)
 
@@ -117,12 +117,12 @@ RUNNERS = (
     *(ours(m, **EXACTLY) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
     ours(SYMPLECTIC_EULER, limit=limits, predicted=new_velocity),
     ours(VERLET, **EXACTLY),
-    # the implicit ones take half of the scene's time to compile, and say nothing here
+    # the implicit methods take half of the scene's time to compile, and add no information here
     ours(IMPLICIT_EULER, limit=limits, predicted=new_velocity, in_quick=False),
     ours(IMPLICIT_MIDPOINT, in_quick=False, **EXACTLY),
     engine(PYMUNK, "", pymunk_make, "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
     engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
+    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",

@@ -1,8 +1,8 @@
-"""The target is out of reach: how near do they come?  To the nearest point of a ring, and no search can do better.
+"""The target is out of reach: the best answer is the nearest point of a ring.
 
-An arm reaches a ring around its base: as far out as all links together, and as far in as its longest link is longer
-than the others.  At both edges it is straight, which is where its Jacobian is singular.  Small damping then makes a
-search tremble, and the pseudo-inverse never comes to rest.
+An arm reaches a ring around its base.  The outer radius is the length of all links together; the inner radius is the
+excess of the longest link over the others.  At both edges the arm is straight, so its Jacobian is singular.  Small
+damping then makes a search oscillate, and the pseudo-inverse never comes to rest.
 """
 
 from typing import Annotated, NamedTuple
@@ -45,7 +45,7 @@ def target_of(p):
 
 
 def missing(p):
-    """Distance [m] from the target to the ring."""
+    """Return the distance [m] from the target to the ring."""
     return np.linalg.norm(nearest_reachable(target_of(p), lengths_of(p)) - target_of(p))
 
 
@@ -67,21 +67,21 @@ def arm_of(p):
 
 
 def settings(p):
-    """(gain [1/m²], damping [m]) with which both come to rest: see `limit`."""
+    """Return (gain [1/m²], damping [m]) with which both methods come to rest: see `limit`."""
     size, left = sum(lengths_of(p)), missing(p)
     return 1.0 / (3.0 * size * (size + left)), np.sqrt(1.5 * size * left)
 
 
 def observe(state, p):
-    """Distance from the end to the target, and the end [m]."""
+    """Return the distance from the end to the target, and the end [m]."""
     end = end_of(state[0], lengths_of(p))
     return np.append(np.linalg.norm(target_of(p) - end), end)
 
 
 def truth(p, t):
-    """The ring is  l_long − the others ≤ r ≤ Σ l.  Its point nearest to the target lies on the ray through it.
+    """The ring is  l_long − the others ≤ r ≤ Σ l.  Its point nearest to the target lies on the ray through the target.
 
-    Source: the triangle's inequality.
+    Source: the triangle inequality.
     """
     end = nearest_reachable(target_of(p), lengths_of(p))
     return np.append(np.linalg.norm(target_of(p) - end), end)
@@ -91,14 +91,14 @@ def limit(p, dt):
     """½|e|² has the second derivatives  H = JᵀJ + S,  S_ik = −e · ∂²x/∂θ_i∂θ_k,  and |S| ≤ 3 |e| reach.  The gain is
     below 1/|H|.  A damped step multiplies small errors by  1 − (JᵀJ + λ²)⁻¹ H,  whose size is below 1 for λ² > ½|S|,
     and here λ² = ½ · 3 |e| reach.  So both come to rest, and after 3,000 iterations only round-off is left: some dozen
-    roundings of the angles, which move the end.
+    rounding errors of the angles, which move the end.
     """
     return 50.0 * ROUND_OFF
 
 
 def measured_limit(p, dt):
-    """CCD and FABRIK have no such theory here, and by default pybullet follows its own law: ten times what was
-    measured.
+    """CCD and FABRIK have no such theory here, and by default pybullet follows its own law.  The limit is ten times the
+    measured error.
     """
     return 2e-14
 
@@ -118,11 +118,11 @@ def default_law(p, t):
 
 
 def in_time(p):
-    """The transpose goes down valleys too slowly for the hole and for what is just outside."""
+    """Return whether the transpose arrives in time: it is too slow for targets in the hole and just outside."""
     return p in (CASES["far outside"], CASES["10 cm each"])
 
 
-AT_REST = {"order": EXACT, "limit": limit, "predicted": "it is at rest, and nothing but roundings is left"}
+AT_REST = {"order": EXACT, "limit": limit, "predicted": "it is at rest, and only round-off is left"}
 NO_THEORY = {"order": EXACT, "limit": measured_limit, "predicted": "no theory says how soon it comes to rest here"}
 
 RUNNERS = (
@@ -131,16 +131,16 @@ RUNNERS = (
     ours(FABRIK, **NO_THEORY),
     ours(TRANSPOSE, supports=in_time, **AT_REST),
     engine(PYBULLET, "", as_our_damping, "jointDamping as our λ², 3,000 iterations", **AT_REST),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with its defaults",
            order=EXACT, limit=measured_limit,
-           predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("its damping is ½ m² whatever the size of the arm and the distance, and it stops after "
+           predicted="its own law is its search, which leaves only round-off",
+           departure=Departure("its damping is ½ m² for any size of the arm and any distance, and it stops after "
                                "20 iterations", default_law)),
 )
 
 
 def sanity_checks():
-    """Return Findings: no angles on a fine grid come nearer to the target than the ring."""
+    """Return Findings: no angles on a fine grid come closer to the target than the ring."""
     near = []
     for p in CASES.values():
         grid = np.linspace(0.0, 2.0 * np.pi, 121)
@@ -154,7 +154,7 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The arm, straight to the nearest point, the way that is missing, and both edges of the ring."""
+    """Draw the arm, straight towards the nearest point, the missing distance, and both edges of the ring."""
     end, lengths = np.asarray(observed)[1:], lengths_of(p)
     inner, outer = annulus(lengths)
     bearing = np.arctan2(end[1], end[0])

@@ -28,9 +28,9 @@ from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scen
 from validate.scenes._common import ONE_LINK, check_positives, floor_of
 from validate.scenes.pbd._common import in_space
 
-T = 1.5                      # [s]: once through the lowest point, and most of the way up
+T = 1.5                      # [s]: the bob has passed the lowest point and nearly reached its turning point
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-SMALL = 1e-14                # moment of MuJoCo's bob over mL², because it permits no bob without one [-]
+SMALL = 1e-14                # moment of MuJoCo's bob over mL², because MuJoCo permits no bob without a moment [-]
 
 
 class Params(NamedTuple):
@@ -73,17 +73,20 @@ def truth(p, t):
 
 
 def with_inertia(p, t):
-    """A bob whose moment I about itself turns with the string falls as if gravity were g/(1 + I/mL²)."""
+    """Return the position of a bob whose moment I about itself rotates with the string.
+
+    It falls as if gravity were g/(1 + I/mL²).
+    """
     return place(pendulum_angle(np.radians(p.degrees), p.L, p.g / (1.0 + SHARE), t), p)
 
 
 def limits(p, dt):
-    """Nothing changes faster than the rate √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
+    """The fastest rates are √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
 
     With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
     order 2.  pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a step leaves.
-    pybullet does the same, with erp 1: both are of order 1, but pymunk moves the bob before it pulls.  The coordinate
-    of MuJoCo is the angle, which cannot leave a joint open: a table of coefficients, applied to it, predicts the error.
+    pybullet does the same, with erp 1.  Both are of order 1, but pymunk moves the bob before it pulls.  The coordinate
+    of MuJoCo is the angle, which cannot open a joint: a table of coefficients, applied to it, predicts the error.
     """
     return by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
 
@@ -102,9 +105,9 @@ ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth
 
 
 def bullet_error(p, dt):
-    """pybullet's bob moves by symplectic Euler, and in each step its joint closes what the last step has opened.  The
-    prediction is this step, written out.  Sweeps and roundings leave 1e-15 of a velocity, which grows as a pendulum's
-    errors do.
+    """pybullet's bob moves by symplectic Euler, and in each step its joint closes the gap that the last step has
+    opened.  The prediction is this step, written out.  Sweeps and round-off leave 1e-15 of a velocity, which grows
+    as a pendulum's errors do.
     """
     bob = place(np.radians(p.degrees), p)
     error = bullet_bob(bob, p.m, SHARE * p.m * p.L**2, p.g, dt, round(T / dt)) - with_inertia(p, T)
@@ -140,7 +143,7 @@ RUNNERS = (
            order=1, limit=limits, predicted=bullet_error,
            departure=Departure(
                f"its solver, which sweeps over three axes, needs a bob with a moment of inertia. It has {SHARE} mL² "
-               f"and turns with the string, so that it falls as if gravity were g/{1.0 + SHARE:g}", with_inertia)),
+               f"and rotates with the string, so it falls as if gravity were g/{1.0 + SHARE:g}", with_inertia)),
     engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
     engine(MUJOCO, "default", partial(mujoco_make, integrator="Euler"), "hinge; the semi-implicit Euler step",

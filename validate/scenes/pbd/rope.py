@@ -1,4 +1,4 @@
-"""A rope of points on strings is released horizontally; while it falls its end whips round."""
+"""A rope of points on strings is released horizontally; as it falls, its end whips round."""
 
 from functools import partial
 from typing import Annotated, NamedTuple
@@ -66,7 +66,7 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Every point, from the angles of the links, so that links keep their length exactly.
+    """Every point follows from the angles of the links, so links keep their length exactly.
 
     Tensions and angular accelerations follow from Newton's law, integrated by DOP853 at 1e-12.  Nothing is projected.
     """
@@ -84,7 +84,7 @@ def of_bodies(p, t):
 
 
 def of(p):
-    """Return what the functions of the reference take."""
+    """Return the arguments of the functions of the reference."""
     return p.links, p.l, p.m, p.g, T
 
 
@@ -93,12 +93,12 @@ def size(p):
 
 
 def beyond(p, dt):
-    """Return the part of the limits of order 1 and 2 that is of order 2."""
+    """Return the second-order part of the limits of order 1 and 2."""
     return rope_rates(*of(p))[1] * dt**2 + by_order(0.0, T, dt)[2]
 
 
 def limits(p, dt):
-    """First order by the modified equation, integrated by DOP853.
+    """The first order follows from the modified equation, integrated by DOP853.
 
     Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
     time.  For the fourth order it is dt⁴ ∫ρ⁵ dt.
@@ -110,9 +110,9 @@ def limits(p, dt):
 def unfinished_limit(p, dt):
     """PBD and XPBD stop their sweeps before all links have their length.
 
-    Even a single sweep leaves a link too long by at most the distance that its tension moves a point in one step,
-    T dt²/m (stability case stiffness-depends-on-dt has it exactly).  Over N links that adds up to N times as much in
-    position.  Links that are too long also change the forces, which adds ∫ρ dt times as much again.
+    Even a single sweep leaves a link too long by at most the distance that its tension moves a point in one step, T
+    dt²/m (the stability case stiffness-depends-on-dt gives it exactly).  Over N links the error of position is N
+    times as large.  Links that are too long also change the forces, which adds ∫ρ dt times the same error again.
     """
     one, _, _, pull = rope_rates(*of(p))
     return limits(p, dt)[1] + p.links**1.5 * pull / p.m * dt**2 * (1.0 + one) / size(p)
@@ -142,7 +142,7 @@ BODIES = MOTION._replace(seen=np.ravel, truth=of_bodies)
 
 
 def short(p):
-    """Return whether the rope is short: the projection matrix is small, and few iterations do not explode."""
+    """Return whether the rope is short: then the projection matrix is small, and few iterations do not diverge."""
     return p.links <= 20
 
 
@@ -154,11 +154,11 @@ def pybullet_make(p, dt):
     return bullet_rope(straight(p), p.m, p.g, SHARE * p.m * p.l**2, dt, np.ravel)
 
 
-IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
-SWEPT = "its sweeps stop before all links have their length, and what they leave is bounded, but not modelled"
+IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit contains it"
+SWEPT = "its sweeps stop before all links have their length, and the remaining error is bounded, but not modelled"
 FINER = (10_000, 20_000, 50_000)
 RUNNERS = (
-    ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum has it
+    ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum shows it
     ours(PBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
     ours(XPBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
     ours(RATTLE, limit=limits, predicted=MOTION.predict(rattle, 2)),
@@ -178,7 +178,7 @@ RUNNERS = (
            order=1, limit=bodies_limit, predicted=BODIES.predict_bullet(SHARE, bullet_sweeps), most_steps=5000,
            departure=Departure(
                "its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
-               f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly",
+               f"{SHARE} m l² and rotates with the link above it, so the rope falls slightly more slowly",
                of_bodies)),
 )
 

@@ -1,4 +1,4 @@
-"""Free bodies and rolling balls: how they start and are drawn, and the runners that turn them."""
+"""Free bodies and rolling balls: initial states, drawings, and the runners that rotate them."""
 
 from functools import partial
 from typing import Any
@@ -20,14 +20,14 @@ from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
 def turn_runners(body, methods, limits, in_quick, exact=()):
     """Return the runners of our methods on a TurningBody.
 
-    in_quick: {method that a quick run has: its most steps there, or None};    exact: methods with nothing but round-off
+    in_quick: {method in a quick run: its largest number of steps there, or None};    exact: methods with round-off only
     """
     return tuple(ours(m, limit=limits, predicted=body.predict(m.table), order=EXACT if m in exact else m.order,
                       in_quick=m in in_quick, most_in_quick=in_quick.get(m)) for m in methods)
 
 
 def free_engines(body):
-    """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a TurningBody that is free."""
+    """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a free TurningBody."""
     return (
         engine(PYBULLET, "reduced coordinates", free_body,
                "createMultiBody with its defaults, but no damping and no clamp of velocity",
@@ -40,7 +40,7 @@ def free_engines(body):
 
 
 def mujoco_default(body):
-    """Return the runner of MuJoCo's own default on a TurningBody that is free."""
+    """Return the runner of MuJoCo's own default on a free TurningBody."""
     return engine(MUJOCO, "default", partial(mujoco.free_body, integrator="Euler"),
                   "freejoint; the semi-implicit Euler step",
                   order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM),
@@ -81,7 +81,7 @@ def ball_on_floor(p):
 
 
 def bowled(p, rim=0.0):
-    """Return (x, q, v, ω) of a ball that is bowled along x; rim: first speed of its rim [m/s]."""
+    """Return (x, q, v, ω) of a ball that is bowled along x; rim: initial speed of its rim [m/s]."""
     spin = np.array([0.0, rim / p.R, 0.0])
     return np.array([0.0, 0.0, p.R]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([p.v0, 0.0, 0.0]), spin
 
@@ -104,5 +104,5 @@ def rolled(p, t, rim=0.0):
 
 
 def rolling_circle(body, R):
-    """Return the read of pymunk's EngineRun of a circle that rolls: the same three."""
+    """Return the read function of pymunk's EngineRun of a rolling circle: the same three quantities."""
     return lambda: np.array([body.position.x, body.velocity.x, -R * body.angular_velocity])

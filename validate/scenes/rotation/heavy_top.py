@@ -83,7 +83,7 @@ def limits(p, dt):
 
 def pybullet_limit(p, dt):
     """pybullet takes the gyroscopic term at the end of the step (maximal coordinates) or at its beginning (reduced),
-    about the centre of mass instead of the pivot: I = I₁ − ml².  In body coordinates its tip turns at
+    about the centre of mass instead of the pivot: I = I₁ − ml².  In body coordinates its tip rotates at
     Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by ½(Ω dt)² per step.
     """
     turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
@@ -145,13 +145,13 @@ def points(observed, p):
 
 
 def bodies(p):
-    """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line over the point."""
+    """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line above the point."""
     reach = np.sin(p.tilt)
     return [drawing.cylinder(0.03 * reach, reach), drawing.sphere(0.07 * reach), drawing.cylinder(0.01 * reach, reach)]
 
 
 def poses(observed, p):
-    """Rotate out of the vertical by the shortest turn: the spin of a round axle cannot be seen."""
+    """Return the poses rotated out of the vertical by the shortest rotation: the spin of a round axle is invisible."""
     x, y, z = tip = axis(observed)
     q = np.array([1.0 + z, -y, x, 0.0])
     q /= np.linalg.norm(q)
@@ -165,7 +165,7 @@ def axis(observed):
 
 
 def arrows(observed, p):
-    """Return ω, less the thousandth of it across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
+    """Return ω, without the thousandth of it across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
     x, y, _ = tip = axis(observed)
     return {"ω": (tip, tip + np.sin(p.tilt) * tip), "τ": (tip, tip + np.array([-y, x, 0.0]))}
 

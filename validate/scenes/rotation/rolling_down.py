@@ -77,7 +77,7 @@ def limits(p, dt):
 
 
 def new_velocity(p, dt, share=1.0):
-    """The new velocity moves the ball for all of a step: ½ a dt T too far, in pybullet too.
+    """The new velocity moves the ball during all of a step: ½ a dt T too far, in pybullet too.
 
     v and rω are exact.  Mean velocities make no error.
     """

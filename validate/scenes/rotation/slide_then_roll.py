@@ -45,9 +45,9 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def truth(p, t):
-    """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); from then on both are v₀/(1 + I/mR²).
+    """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); then both are v₀/(1 + I/mR²).
 
-    5/7 of the speed is left to a sphere, 2/3 to a disc.
+    A sphere keeps 5/7 of the speed, a disc 2/3.
     Source: Newton and Euler with f = μmg; first lecture deck, friction.
     """
     return balls.rolled(p, t)
@@ -58,7 +58,9 @@ def round_off(dt):
 
 
 def limits(p, dt):
-    """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
+    """While it slides, a step that moves with the new velocity loses ½ μg dt per second.
+
+    With the old one it gains the same.
 
     In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
     exact, though pymunk's friction may act for one step more or less: another μg dt².
@@ -74,7 +76,7 @@ def new_velocity(p, dt, share=1.0, more=0.0):
 
     The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
     """
-    # share: of the new velocity in the way of a step; more: what the first step adds to v + I ω/mR [m/s]
+    # share: of the new velocity in the displacement of a step; more: added to v + I ω/mR by the first step [m/s]
     rolling = (p.v0 + more) / (1.0 + p.shape)
     velocity = lambda t: np.maximum(p.v0 - p.mu * p.g * t, rolling)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
@@ -86,8 +88,8 @@ old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velo
 
 
 def new_velocity_of_a_sphere(p, dt):
-    """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on
-    the one that it is given.
+    """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR²; from then on
+    it uses the given moment.
     """
     return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / balls.SPHERE - 1.0))
 
@@ -140,7 +142,7 @@ def bodies(p):
 def poses(observed, p):
     """Return the rotation of the rim.
 
-    The rim moved ½ (Rω)²/(μg mR²/I) while the ball slid, and then the distance of the ball beyond (v₀² − v²)/2μg.
+    The rim moved ½ (Rω)²/(μg mR²/I) while the ball slid, and then the same distance as the ball after (v₀² − v²)/2μg.
     """
     x, v, rim = observed
     brake = p.mu * p.g

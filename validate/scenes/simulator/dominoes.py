@@ -1,10 +1,10 @@
-"""A row of dominoes, the first of them pushed: impacts, tilting, sliding and leaning all at once.
+"""A row of dominoes, the first of which is pushed: impacts, tilting, sliding and leaning all at once.
 
-No formula gives this motion, and no published value is known.  Two codes that share nothing, the lesson's pile and
-pymunk, must come to the same motion as their steps shrink; that is the test.  The loop of lesson 10 and pymunk do: with
+No formula gives this motion, and no published value is known.  The test is that two codes that share nothing, the
+lesson's pile and pymunk, converge to the same motion as their steps shrink.  The loop of lesson 10 and pymunk do: with
 steps of 1/20,000 s they differ by 0.008 %.  The loop sweeps until an impact is finished.  The pile of lesson 9 visits
 each contact twice per step.  That does not finish the last impact, which runs from the floor back through all six
-dominoes: with steps of 1/1000 s the pile is still 1.3 % away.
+dominoes: with steps of 1/1000 s the pile still differs by 1.3 %.
 """
 
 from functools import cache, partial
@@ -28,12 +28,12 @@ from validate.scenes.drawing import outlines
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
-ROWS = 4                     # each begins at another moment: see limit
-WINDOW = 0.04                # of these moments [s]; the first impact is later
-BETWEEN = 5                  # steps of the reference run between two states that are kept; there it is interpolated
+ROWS = 4                     # each begins at a different time: see limit
+WINDOW = 0.04                # range of these times [s]; the first impact is later
+BETWEEN = 5                  # steps of the reference run between two kept states, between which it is interpolated
 KEPT = 10_000                # of its states per second
 UNCERTAINTY = 1e-4           # of the limit of pymunk's runs, which are of first order
-SWEEPS = 1                   # of the loop, before it looks whether a sweep still changes something
+SWEEPS = 1                   # of the loop, before it tests whether a sweep still changes anything
 CARRIED = 0.3                # hertz of a soft contact times a step [-]: nearly the stiffest that a pile stands
 ZETA, MARGIN = 10.0, 0.01    # damping ratio [-] and margin [m] of the pile
 
@@ -59,9 +59,9 @@ def inertia(p):
 
 
 def begin(p, t):
-    """(x (n, 2), angles (n,), v (n, 2), angular velocities (n,)) at t, before the first impact.
+    """Return (x (n, 2), angles (n,), v (n, 2), angular velocities (n,)) at t, before the first impact.
 
-    The first domino tilts about its lower right corner, the others stand.
+    The first domino tilts about its lower right corner; the others stand.
     """
     x = np.stack((p.pitch * np.arange(p.n), np.full(p.n, 0.5 * p.height)), axis=1)
     angle, v, omega = np.zeros(p.n), np.zeros((p.n, 2)), np.zeros(p.n)
@@ -73,7 +73,7 @@ def begin(p, t):
 
 
 def moments():
-    """(ROWS,) times [s] after the push at which the rows begin."""
+    """Return (ROWS,) times [s] after the push at which the rows begin."""
     return delays(WINDOW)[:ROWS]
 
 
@@ -102,7 +102,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def corners(x, angle, p):
-    """Corners (8n,) [m] of n dominoes at x (n, 2) with these angles (n,)."""
+    """Return the corners (8n,) [m] of n dominoes at x (n, 2) with these angles (n,)."""
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     a, b = 0.5 * p.width * np.array([-1.0, 1.0, 1.0, -1.0]), 0.5 * p.height * np.array([-1.0, -1.0, 1.0, 1.0])
     return np.stack((x[:, :1] + c * a - s * b, x[:, 1:] + s * a + c * b), axis=2).ravel()
@@ -115,7 +115,7 @@ def observe(state, p):
 
 @cache
 def reference(p):
-    """(KEPT (T + WINDOW) + 1, 8n): corners of one row at equal intervals from the push on, by pymunk."""
+    """Return (KEPT (T + WINDOW) + 1, 8n): the corners of one row at equal intervals after the push, by pymunk."""
     space, read = pymunk_rows(p, np.zeros(1), 200, 1e-6)
     film = [read()]
     for _ in range(round(KEPT * (T + WINDOW))):
@@ -126,11 +126,11 @@ def reference(p):
 
 
 def truth(p, t):
-    """No closed form is known.  The reference is pymunk with 50,000 steps per second and 200 iterations.  Each row is
-    on its way for t and for the moment at which it began.
+    """No closed form is known.  The reference is pymunk with 50,000 steps per second and 200 iterations.  Each row has
+    moved for t and for the time at which it began.
 
     The lessons share no code with it.  The pile shares no method either: pymunk has rigid contacts and moves before it
-    pushes, the pile has soft contacts and pushes before it moves.  This scene tests that all three come to the same
+    pushes, the pile has soft contacts and pushes before it moves.  This scene tests that all three converge to the same
     motion.  The loop does: with 20,000 steps it is within 0.01 %.  The pile stays about 1 % away, because two sweeps
     per step do not finish the last impact.
     """
@@ -140,12 +140,12 @@ def truth(p, t):
 
 
 def limit(p, dt):
-    """Each impact of two dominoes is seen up to one step late.  Until then a corner goes v dt too far, with v = ω
-    (height + width) of the first domino at most.  It meets everything later by the same time.  After n impacts each
-    corner is off by n v dt: first order.  It is chance where in its step an impact falls.  So errors of single runs
-    scatter by a factor of three about a line.  Therefore several rows begin at different moments, and the error is that
-    of all of them.  From 0.95 s on, the last impact pushes the whole row back.  So the errors at 1 s fall unevenly, and
-    the slope through four of them says little.
+    """Each impact of two dominoes is detected up to one step late.  Until then a corner moves up to v dt too far, with
+    v = ω (height + width) of the first domino at most.  It meets everything later by the same time.  After n
+    impacts each corner is off by n v dt: first order.  The phase of an impact in its step is random.  So errors of
+    single runs scatter by a factor of three about a line.  Therefore several rows begin at different moments, and
+    the error is that of all of them.  From 0.95 s on, the last impact pushes the whole row back.  So the errors at
+    1 s decrease unevenly, and the slope through four of them means little.
 
     This limit leaves out the impacts that two sweeps do not finish.  At 1/1000 s it is still larger than their effect;
     with shorter steps the pile would depart.
@@ -157,7 +157,7 @@ def limit(p, dt):
 # ---------------------------------------------------------------------------------------------- engines
 
 def pymunk_rows(p, begins, iterations, slop):
-    """(space, () → corners): a row for each of these moments, one beside the other."""
+    """Return (space, () → corners): a row for each of these moments, side by side."""
     import pymunk
     space, dominoes = pymunk_space((0.0, -p.g)), []
     space.iterations, space.collision_slop = iterations, slop
@@ -205,8 +205,8 @@ def pybullet_make(p, dt, iterations, residual):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-BY_CHANCE = "where in its step an impact falls is chance, and each impact passes that on"
-LONG_LIVED = "its contact points live longer than a step, so that it does not converge to this motion"
+BY_CHANCE = "the phase of an impact in its step is random, and each impact passes this error on"
+LONG_LIVED = "its contact points persist over several steps, so it does not converge to this motion"
 RUNNERS = (
     ours(PILE, order=ABOUT_1, limit=limit, predicted=BY_CHANCE),
     ours(SETTLED_LOOP, order=ABOUT_1, limit=limit, predicted=BY_CHANCE, most_in_quick=200,
@@ -225,7 +225,7 @@ RUNNERS = (
 
 
 def energies(p):
-    """Energy [J] of the reference at its kept states, but the first and the last, from differences of places."""
+    """Return the energy [J] of the reference at its kept states but the first and the last, by differences."""
     film = reference(p).reshape(-1, p.n, 4, 2)
     x, side = film.mean(axis=2), film[:, :, 1] - film[:, :, 0]
     angle = np.unwrap(np.arctan2(side[..., 1], side[..., 0]), axis=0)
@@ -254,7 +254,7 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The four corners of each domino of the first row, and the floor."""
+    """Draw the four corners of each domino of the first row, and the floor."""
     end = p.pitch * p.n + p.height
     first = np.asarray(observed).reshape(ROWS, -1, 2)[0]
     return np.round(np.vstack((first, [(-p.pitch, 0.0), (end, 0.0)])), 4)
@@ -279,7 +279,7 @@ SCENE = Scene(
     uses=("contact points of boxes", "soft contacts and memory", "one substep per step"),
     full_loop="its method is a whole loop itself, with soft contacts in place of rigid ones: the motions "
               "are not the same",
-    ablations={"restitution": "dominoes of wood bounce a little; no law says how several impacts at once do",
+    ablations={"restitution": "wooden dominoes bounce slightly; no law says how several impacts at once do",
                "substeps": "two or four per step take two or four times as long, and come no nearer to the limit",
                "sweeps that change nothing": "the loop ends its sweeps when they hardly change an impulse any more; "
                                              "with 100 in each step it errs by as much and takes longer"},

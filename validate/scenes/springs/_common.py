@@ -1,4 +1,4 @@
-"""Nets of springs: how they start and are drawn, and the runners that move them."""
+"""Nets of springs: initial states, drawings, and the runners that move them."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def in_space(net):
 
 
 def observe_net(state, p):
-    """Return the places of all nodes, seen from the front."""
+    """Return the positions of all nodes, seen from the front."""
     return state[0][:, :2].ravel()
 
 
@@ -38,7 +38,7 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
     """Return the fields that the scenes of the ReferenceNetwork net(p) share.
 
     positive    names of parameters that must be positive
-    contact     what the scene leaves out, in words
+    contact     the parts that the scene omits, in words
     other       fields that this scene has in place of the usual ones
     """
     return {
@@ -61,7 +61,7 @@ def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
     limits           (p, dt) → {order: largest relative error}
     finer_in_full    of pymunk
     mesh_in_quick    fields of the Runner of the implicit mesh, whose step takes seconds to compile
-    The implicit methods of lesson 1 are left to a full run: they build a dense matrix at every correction.
+    The implicit methods of lesson 1 run in a full run only, because they build a dense matrix at every correction.
     """
     return (
         *integrator_runners(motion, limits, compiled=EXPLICIT),

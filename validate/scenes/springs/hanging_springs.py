@@ -65,7 +65,7 @@ def modes(p):
 
 
 def static_extension(p):
-    """Return the rest positions below the unstretched ones [m]: spring i carries the N + 1 − i masses below it."""
+    """Return the distances of the rest positions below the unstretched ones [m]; spring i carries N + 1 − i masses."""
     return np.cumsum(p.m * p.g / p.k * np.arange(p.springs, 0, -1))
 
 
@@ -84,7 +84,7 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """Each mode on its own, as the system is linear.  pymunk is symplectic Euler: order 1."""
+    """Each mode errs on its own, because the system is linear.  pymunk is symplectic Euler: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
     return by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
@@ -133,7 +133,7 @@ def points(observed, p):
 
 
 def sanity_checks():
-    """Return Findings: the numbers of the lecture, for a test to assert."""
+    """Return Findings: the numbers of the lecture."""
     p = CASES["at rest"]
     slowest = modes(p)[0][0]
     left = (1.0 + slowest * T) * np.exp(-slowest * T)            # share of the motion left after T, critically damped

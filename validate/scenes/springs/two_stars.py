@@ -27,7 +27,7 @@ class Stars(NamedTuple):
 
     @property
     def mu(self):
-        """G (m_a + m_b) [m³/s²]: the path of one star, seen from the other, is that of a planet around such a sun."""
+        """Return G (m_a + m_b) [m³/s²]: the relative path of the stars is that of a planet around such a sun."""
         return self.G * (self.m_a + self.m_b)
 
 
@@ -84,14 +84,14 @@ MOTION = kepler_motion(T)._replace(seen=seen, truth=truth)
 
 
 def pulls(x, p):
-    """Return the accelerations (2, 2) [m/s²] of both, apart from the lesson's."""
+    """Return the accelerations (2, 2) [m/s²] of both, independent of the lesson's."""
     r = x[1] - x[0]
     F = p.G * p.m_a * p.m_b / np.sqrt(np.sum(r * r)) ** 3 * r
     return np.stack((F / p.m_a, -F / p.m_b))
 
 
 def pymunk_stars(p, dt, ahead=0.0):
-    """Attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
+    """Make the stars with their attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
     import pymunk
     space, bodies, (x, v) = pymunk_space(), [], start(p)
     for m, place, speed, pull in zip((p.m_a, p.m_b), x, v, pulls(x, p)):
@@ -134,7 +134,7 @@ def points(observed, p):
 
 
 def in_space(p):
-    """The same motion with an unused z coordinate."""
+    """Return the same motion with an unused z coordinate."""
     return tuple(np.append(rows, np.zeros((2, 1)), axis=1) for rows in start(p)), p
 
 
