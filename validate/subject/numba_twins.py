@@ -1,4 +1,4 @@
-"""Compilation of plain functions with numba: the compiled twins, their cache, and four changes to numba itself.
+"""Compilation of plain functions with numba: the compiled twins, their cache, and what is changed in numba itself.
 
 A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
 looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
@@ -49,23 +49,8 @@ def compiled(function, name, cache, inline="never"):
     from numba import config, njit
     config.CACHE_DIR = cache
     twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(function)
-    _forget_literals(twin)
     twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, name)))
     return twin
-
-
-def _forget_literals(twin):
-    """Let callers compile a twin once for all strings and whole numbers that they write down.
-
-    numba would compile it for each of them: every check of the input again for the name of each thing that it checks.
-    """
-    from numba.core.types import unliteral
-    fold = twin._compiler.fold_argument_types
-
-    def folded(arguments, keywords):
-        signature, kinds = fold(arguments, keywords)
-        return signature, tuple(map(unliteral, kinds))
-    twin._compiler.fold_argument_types = folded
 
 
 class CachedDispatch:
@@ -126,17 +111,6 @@ def _kind(argument):
 
 
 @cache
-def _make_dispatcher_constants_cacheable():
-    """Let numba cache functions that pass a function on: it refuses to,
-    because it would store an address, which is never read.
-    """
-    import numba.experimental.function_type  # noqa: F401
-    from numba import types
-    from numba.core.imputils import lower_constant
-    lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
-
-
-@cache
 def _pass_checked_functions_on():
     """Let a compiled function take a CheckedFirst or a CachedDispatch as an argument: the twin in it is meant."""
     from numba.extending import typeof_impl
@@ -145,26 +119,6 @@ def _pass_checked_functions_on():
     @typeof_impl.register(CachedDispatch)
     def _(around, context):
         return typeof_impl(around.twin, context)
-
-
-@cache
-def _shorten_broadcast_error():
-    """Replace numba's detailed message for `rows[k] = row` by a short one:
-    compiling the detailed one dominates compile time.
-    """
-    from numba.extending import overload
-    from numba.np import arrayobj
-
-    def shapes_differ(src_shapes, index_shape):
-        """Replace numba's function of that purpose."""
-
-    @overload(shapes_differ)
-    def _(src_shapes, index_shape):
-        def say(src_shapes, index_shape):
-            raise ValueError("an array does not fit where it is assigned to")
-        return say
-    if hasattr(arrayobj, "raise_with_shape_context"):                # of numba 0.61 and later
-        arrayobj.raise_with_shape_context = shapes_differ
 
 
 @cache
@@ -188,9 +142,7 @@ def use_cache(digest):
     """Return the cache folder of this digest, as text, and delete those that were not used for long."""
     import numba
     from numba.core.config import _OptLevel
-    _make_dispatcher_constants_cacheable()
     _pass_checked_functions_on()
-    _shorten_broadcast_error()
     _save_one_at_a_time()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all

@@ -74,7 +74,7 @@ def truth(p, t):
     """Springs of stiffness 1/α, observed at every point.
 
     Released flat, they are moved by DOP853 with separately coded forces.  At rest, they have the shape of minimum
-    energy, by a sparse Newton method, which does not move.
+    energy, found by a sparse Newton method, and do not move.
     """
     return rest(p).ravel() if p.hanging else reference(p).sol(t)[:3 * p.n**2]
 
