@@ -14,6 +14,7 @@ ITERATIONS = 50              # of the contact solver, by default
 IMPACT_ITERATIONS = 50
 CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]
 WARM = 0.1                   # share of the last impulses with which the contact solver begins, by default [-]
+APART = 100.0                # of bodies in a step that is done beforehand, more than the size of any of them [m]
 UPRIGHT = np.eye(3)          # rotation of a body that is not rotated
 
 
@@ -38,7 +39,8 @@ class Bullet:
         self.client = _idle.pop() if _idle else pybullet.connect(pybullet.DIRECT)
         self.pb = Client(pybullet, self.client)
         made(self)
-        self.pb.setGravity(*map(float, gravity))
+        self.gravity, self.waiting = tuple(map(float, gravity)), []      # bodies whose moments do not count yet
+        self.pb.setGravity(*self.gravity)
         self.pb.setTimeStep(dt)
         # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking
         # threshold is global to the process and survives reconnecting, so every scene sets it
@@ -52,6 +54,40 @@ class Bullet:
             self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
         self.pb.resetBaseVelocity(body, list(map(float, v)))
         return body
+
+    def give_moments(self, body, m, I, maximal, **more):
+        """Set mass [kg] and moments (3,) [kg m²] in one call, or the first is lost; `more` are further properties.
+
+        In maximal coordinates moments that are not those of the shape count from the second step on: see `begin`.
+        """
+        moments = list(map(float, I))
+        if maximal and not np.allclose(self.pb.getDynamicsInfo(body, -1)[2], moments, rtol=1e-12, atol=0.0):
+            self.waiting.append(body)
+        self.pb.changeDynamics(body, -1, mass=m, localInertiaDiagonal=moments, **more)
+
+    def begin(self):
+        """Let all moments count in the first step, too; return self.  Joints are made afterwards.
+
+        Bullet computes the inverse tensor of a body in maximal coordinates at the end of a step.  So one step is done
+        beforehand, without gravity, with all bodies at rest and far from each other.  Then each is put in its place.
+        """
+        if not self.waiting:
+            return self
+        pb = self.pb
+        moving = [body for body in map(pb.getBodyUniqueId, range(pb.getNumBodies()))
+                  if pb.getDynamicsInfo(body, -1)[0] > 0.0]
+        starts = [(*pb.getBasePositionAndOrientation(body), *pb.getBaseVelocity(body)) for body in moving]
+        for k, (body, (_, q, *_)) in enumerate(zip(moving, starts)):
+            pb.resetBasePositionAndOrientation(body, (0.0, 0.0, APART * (k + 1)), q)
+            pb.resetBaseVelocity(body, (0.0,) * 3, (0.0,) * 3)
+        pb.setGravity(0.0, 0.0, 0.0)
+        self.waiting.clear()
+        self.step()
+        for body, (x, q, v, omega) in zip(moving, starts):
+            pb.resetBasePositionAndOrientation(body, x, q)
+            pb.resetBaseVelocity(body, v, omega)
+        pb.setGravity(*self.gravity)
+        return self
 
     def position(self, body):
         return self.pb.getBasePositionAndOrientation(body)[0]
@@ -85,17 +121,17 @@ class Rigid(Bullet):
         self.pb.setPhysicsEngineParameter(numSolverIterations=iterations, erp=erp, contactSlop=0)
 
     def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=UPRIGHT, shape=-1, mu=0.0):
-        """Make a body at x with the rotation R; mass and moments go in one call, or the first is lost."""
+        """Make a body at x with the rotation R."""
         q = np.roll(quaternion(R), -1).tolist()  # pybullet has w last
         body = self.pb.createMultiBody(
             m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=int(maximal)
         )
         unclamped = {} if maximal else {"maxJointVelocity": 1e9}
-        self.pb.changeDynamics(
+        self.give_moments(
             body,
-            -1,
-            mass=m,
-            localInertiaDiagonal=list(map(float, I)),
+            m,
+            I,
+            maximal,
             linearDamping=0,
             angularDamping=0,
             lateralFriction=mu,
@@ -156,11 +192,9 @@ class Impacts(Bullet):
         body = pb.createMultiBody(
             m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=1
         )
-        inertia = {"mass": m, "localInertiaDiagonal": list(map(float, I))} if m else {}
         pb.changeDynamics(
             body,
             -1,
-            **inertia,
             restitution=e,
             lateralFriction=mu,
             linearDamping=0,
@@ -169,6 +203,8 @@ class Impacts(Bullet):
             spinningFriction=0,
             contactProcessingThreshold=0,
         )
+        if m:
+            self.give_moments(body, m, I, True)
         pb.resetBaseVelocity(body, list(map(float, v)), list(map(float, omega)))
         return body
 

@@ -196,7 +196,7 @@ def pybullet_make(p, dt):
     def read():
         x, v = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity))
         return np.stack((x[:, 0], x[:, 2] - RADIUS, v[:, 0], v[:, 2]), axis=1).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = (

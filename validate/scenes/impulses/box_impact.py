@@ -147,7 +147,8 @@ def pybullet_make(p, dt):
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=HALF.tolist())
     centre = (0.0, 0.0, -r[0, 2] - OVERLAP)
     body = bullet.body(p.m, moments(p), shape, centre, y[:3], y[3:], p.e, ROUGH * p.rough, R=turned(p))
-    return EngineRun(bullet.step, lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y, bullet.close)
+    read = lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 def flat(p):

@@ -72,9 +72,6 @@ FREE_BODY: dict[str, Any] = {
 
 # ---------------------------------------------------------------------------------------------- rolling balls
 
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
-
-
 def ball_on_floor(p):
     """Return the RollingBall with I = shape m R² on a horizontal floor."""
     return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))

@@ -116,7 +116,7 @@ def pybullet_make(p, dt, maximal=False):
     axis = R[:, 2]
     bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
     body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
-    bullet.pivot(body, (0.0, 0.0, -LENGTH), maximal)
+    bullet.begin().pivot(body, (0.0, 0.0, -LENGTH), maximal)
     return EngineRun(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
 
 

@@ -69,13 +69,13 @@ def limits(p, dt):
     return {1: bias + round_off(dt), 2: 0.125 * brake * dt * dt / size + round_off(dt)}
 
 
-def new_velocity(p, dt, share=1.0, more=0.0):
+def new_velocity(p, dt, share=1.0):
     """Both velocities are exact at every step, but the ball moves with the new one, the old one or their mean.
 
     The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
     """
-    # share: of the new velocity in the way of a step; more: what the first step adds to v + I ω/mR [m/s]
-    rolling = (p.v0 + more) / (1.0 + p.shape)
+    # share: of the new velocity in the way of a step
+    rolling = p.v0 / (1.0 + p.shape)
     velocity = lambda t: np.maximum(p.v0 - p.mu * p.g * t, rolling)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
     reached = share * new + (1.0 - share) * old
@@ -83,13 +83,6 @@ def new_velocity(p, dt, share=1.0, more=0.0):
 
 
 old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velocity, share=0.5)
-
-
-def new_velocity_of_a_sphere(p, dt):
-    """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on
-    the one that it is given.
-    """
-    return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / balls.SPHERE - 1.0))
 
 
 def pymunk_make(p, dt):
@@ -118,7 +111,7 @@ RUNNERS = (
            "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=limits, predicted=new_velocity),
     engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
-           order=1, limit=limits, predicted=new_velocity_of_a_sphere),
+           order=1, limit=limits, predicted=new_velocity),
 )
 
 

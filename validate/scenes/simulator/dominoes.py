@@ -202,7 +202,7 @@ def pybullet_make(p, dt, iterations, residual):
         x = np.array([bullet.position(body) for body in dominoes])[:, [0, 2]]
         turned = np.array([bullet.R(body) for body in dominoes])
         return corners(x, np.arctan2(turned[:, 2, 0], turned[:, 0, 0]), p)
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 BY_CHANCE = "where in its step an impact falls is chance, and each impact passes that on"
