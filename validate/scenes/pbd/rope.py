@@ -8,8 +8,9 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.check import states
-from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_sweeps, pymunk_rope
-from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
+from validate.engines import bullet
+from validate.engines.pbd import FEWER, ITERATIONS, pymunk_rope
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, SYMPLECTIC_EULER, XPBD
 from validate.reference.pbd import (
     Rope,
     RopeMotion,
@@ -22,8 +23,10 @@ from validate.reference.pbd import (
     rope_motion,
     rope_places,
     rope_rates,
+    rope_slope,
 )
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, by_order, engine, ours
+from validate.reference.schemes import Motion
+from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, by_order, engine, ours
 from validate.scenes._common import check_positives
 from validate.scenes.pbd._common import in_space
 
@@ -74,15 +77,6 @@ def truth(p, t):
     return rope_places(theta, p.l).ravel()
 
 
-def of_bodies(p, t):
-    """Return the positions of points that have a moment of inertia and rotate with the link above.
-
-    Lagrange's equations are solved by DOP853.
-    """
-    theta = rope_motion(p.links, p.l, p.m, p.g, T, SHARE * p.m * p.l**2).sol(t)[:p.links]
-    return rope_places(theta, p.l).ravel()
-
-
 def of(p):
     """Return what the functions of the reference take."""
     return p.links, p.l, p.m, p.g, T
@@ -123,10 +117,13 @@ def pymunk_limit(p, dt):
     return rope_lag(*of(p), ahead=-0.5) / size(p) * dt + beyond(p, dt)
 
 
-def bodies_limit(p, dt):
-    """The modified equation of pybullet is that of bodies which turn with the link above."""
-    lag = rope_lag(*of(p), inertia=SHARE * p.m * p.l**2, ahead=0.5)
-    return lag / np.linalg.norm(of_bodies(p, T)) * dt + beyond(p, dt)
+def angles_limit(p, dt):
+    """The coordinates of pybullet's links are their angles, and symplectic Euler errs by at most (ρ dt)² per step.
+
+    The sum is dt ∫ρ² dt, which is at most dt √(∫ρ dt ∫ρ³ dt) by Schwarz's inequality.
+    """
+    one, three, _, _ = rope_rates(*of(p))
+    return np.sqrt(one * three) * dt + by_order(0.0, T, dt)[1]
 
 
 def floor(p, dt):
@@ -138,7 +135,23 @@ def rope(p):
 
 
 MOTION = RopeMotion(T, rope, lambda x: x[1:].ravel(), truth, floor)
-BODIES = MOTION._replace(seen=np.ravel, truth=of_bodies)
+
+
+def hanging(p):
+    """Return θ̈(t, θ, ω) of all links, θ from straight down."""
+    slope = rope_slope(p.l, p.m, p.g)
+    return lambda t, theta, omega: slope(t, np.concatenate((theta, omega)))[p.links:]
+
+
+def released(p):
+    return np.full(p.links, 0.5 * np.pi), np.zeros(p.links)
+
+
+def ends_of(theta, p):
+    return rope_places(theta, p.l).ravel()
+
+
+ANGLES = Motion(T, hanging, released, ends_of, truth, floor)
 
 
 def short(p):
@@ -151,7 +164,8 @@ def pymunk_make(p, dt, sweeps=ITERATIONS):
 
 
 def pybullet_make(p, dt):
-    return bullet_rope(straight(p), p.m, p.g, SHARE * p.m * p.l**2, dt, np.ravel)
+    ends = np.concatenate((np.zeros((1, 2)), straight(p)))
+    return bullet.chain(ends, p.m, 0.0, 1.0, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
 
 
 IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
@@ -172,14 +186,9 @@ RUNNERS = (
            f"the same with {FEWER} iterations for each link: the fastest setting that errs no more",
            order=1, limit=pymunk_limit, predicted=MOTION.predict_unfinished(chipmunk_rope, 1), supports=short,
            most_steps=5000, finer_in_full=FINER),
-    engine(PYBULLET, "", pybullet_make,
-           f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with "
-           f"I = {SHARE} m l²; a step without gravity beforehand, after which moments count",
-           order=1, limit=bodies_limit, predicted=BODIES.predict_bullet(SHARE, bullet_sweeps), most_steps=5000,
-           departure=Departure(
-               "its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
-               f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly",
-               of_bodies)),
+    engine(PYBULLET, "", pybullet_make, bullet.HINGES,
+           order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), most_steps=5000,
+           finer_in_full=FINER[:1]),
 )
 
 
