@@ -12,6 +12,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 
+from .check import Whose
 from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
 
 EXACT = "exact"              # an order: no error but round-off
@@ -55,6 +56,7 @@ class Departure(NamedTuple):
     """Why a method or an engine departs from the truth, and the law that it follows instead."""
     reason: str              # the end of a sentence that begins with "because"
     own_law: Callable        # (p, t) → the same quantities as truth(p, t); the truth itself where it does not depart
+    whose: Whose             # its law, its default, or our set-up
 
 
 class Prediction(NamedTuple):
@@ -82,6 +84,9 @@ class Runner:
         thing = f"the runner {self.who.label!r}"
         for f in fields(self):
             check_type(f"field {f.name!r} of {thing}", getattr(self, f.name), f.type)
+        if self.departure and not isinstance(self.departure.whose, Whose):
+            raise BadInput(f"field 'departure' of {thing}", f"of {self.departure.whose!r}",
+                           f"choose from: {', '.join(map(str, Whose))}")
         if self.predicted == "":
             raise BadInput(f"field 'predicted' of {thing}", "empty", "predict its error, or say why no theory does")
 

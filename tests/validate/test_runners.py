@@ -7,8 +7,9 @@ import pytest
 
 from solutions.checks import BadInput
 from validate import measure, methods
+from validate.check import Whose
 from validate.methods import INTEGRATORS, RK4, VERLET
-from validate.scene import Method, Runner, no_limit, ours
+from validate.scene import Departure, Method, Runner, no_limit, ours
 from validate.subject import modules
 
 PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)
@@ -61,6 +62,25 @@ def test_a_runner_without_a_meaning_is_refused(field, value, says):
 def test_a_misspelt_field_is_an_error(misspelt):
     with pytest.raises(TypeError, match=misspelt):
         ours(VERLET, limit=limit, predicted="of no theory", **{misspelt: None})
+
+
+def test_a_departure_without_its_owner_is_refused():
+    with pytest.raises(BadInput, match="its law, its default, our set-up"):
+        ours(VERLET, limit=limit, predicted="of no theory", departure=Departure("it is", limit, "the engine's"))
+
+
+@pytest.mark.parametrize("name", modules.scene_names())
+def test_no_departure_is_our_own_set_up(name):
+    """What a scene could set up otherwise is no property of an engine."""
+    found = [r for r in modules.bind_scene(name).runners if r.departure and r.departure.whose is Whose.SET_UP]
+    assert not found, found
+
+
+def test_what_a_default_setting_does_is_not_called_the_engines_law():
+    """Reports and tables tell the two apart: a runner named `default` departs by its default."""
+    departures = [r for name in modules.scene_names() for r in modules.bind_scene(name).engine_runners if r.departure]
+    defaults = [r for r in departures if r.who.variant.startswith("default")]
+    assert len(defaults) > 5 and {r.departure.whose for r in defaults} == {Whose.DEFAULT}
 
 
 def test_a_case_that_the_scene_has_not_is_refused():

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..check import Whose
 from ..reference.orientation import quaternion
 from ..scene import Departure, EngineRun
 from . import quiet_import
@@ -255,7 +256,7 @@ def hidden_damping(acceleration, start):
 
         return solve_ivp(slope, (0.0, max(t, 1e-9)), begin, method="DOP853", rtol=1e-12, atol=1e-13).y[:d, -1]
     return Departure("its reduced-coordinate bodies are damped by default, −0.04 v (1 + |v|); the 0.04 is documented, "
-                     "the factor 1 + |v| is not", own_law)
+                     "the factor 1 + |v| is not", own_law, Whose.DEFAULT)
 
 
 # ---------------------------------------------------------------------------------------------- bodies on hinges

@@ -201,7 +201,8 @@ def judged(scene, runner, p, truth, runs, enough):
     if departure is None:
         return found
     return {**found, "verdict": Verdict.FOLLOWS_OWN_LAW if verdict is Verdict.AGREES else verdict,
-            "departure_reason": departure.reason, "departure": relative(law, truth), "own_law": law}
+            "departure_reason": departure.reason, "departure_whose": departure.whose,
+            "departure": relative(law, truth), "own_law": law}
 
 
 def verdict_on(rows, law, finest, order, order_shown):

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.impulses import BodyState3D, check_restitution
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
@@ -169,7 +169,7 @@ RUNNERS = (
     ours(TOGETHER, limit=sweeps_left, predicted=UNTIL_SETTLED, order=EXACT),
     ours(IN_TURN, limit=sweeps_left, predicted=ONLY_ROUND_OFF, order=EXACT, supports=several_points,
          departure=Departure("each point sees the body as the previous one left it, so that the order of the points "
-                             "counts", in_turn)),
+                             "counts", in_turn, Whose.LAW)),
     engine(PYMUNK, "", pymunk_make, "a Poly on a thick Segment, 2,000 iterations",
            order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=flat),
     engine(PYBULLET, "", pybullet_make, "a box on a box; maximal coordinates; contactERP, contactSlop, "

@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
@@ -168,7 +168,7 @@ RUNNERS = (
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
            departure=Departure("its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or "
-                               "at 0.1 mm", default_law)),
+                               "at 0.1 mm", default_law, Whose.DEFAULT)),
 )
 
 

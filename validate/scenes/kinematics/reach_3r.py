@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -180,7 +180,7 @@ RUNNERS = (
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
            departure=Departure("it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and "
-                               "its damping is ½ whatever the size of the arm", default_law)),
+                               "its damping is ½ whatever the size of the arm", default_law, Whose.DEFAULT)),
 )
 
 
