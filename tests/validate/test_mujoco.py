@@ -1,4 +1,4 @@
-"""MuJoCo, the witness that may be missing: its laws hold, and where it is not installed the scenes say so."""
+"""MuJoCo: its laws hold, and on a platform without its wheel the scenes say that it is missing."""
 
 import numpy as np
 import pytest

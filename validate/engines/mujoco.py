@@ -1,4 +1,4 @@
-"""MuJoCo, a witness where pybullet has no wheel: joints by angles and soft contacts, in double precision.
+"""MuJoCo, a live witness of order 4, also where pybullet has no wheel: joints by angles and soft contacts.
 
 Bodies on joints and free bodies have no constraint here that a step could violate.  Runge–Kutta 4 turns a body by
 the method of Munthe-Kaas, and what is left of its error is of order 4; MuJoCo's own default is the semi-implicit Euler
