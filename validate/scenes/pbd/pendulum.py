@@ -29,7 +29,6 @@ from validate.scenes.pbd._common import in_space
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-SMALL = 1e-14                # moment of MuJoCo's bob over mL², because it permits no bob without one [-]
 
 
 class Params(NamedTuple):
@@ -99,15 +98,14 @@ def pymunk_make(p, dt):
     return pymunk_rope([place(np.radians(p.degrees), p)], p.L, p.m, p.g, dt, lambda x: x[0], 1)
 
 
-def hinged(p, dt, chain, share, **more):
-    """Make the EngineRun of a bob on a hinge: chain of validate/engines, share: its own moment over mL²."""
+def hinged(p, dt, chain, **more):
+    """Make the EngineRun of a bob on a hinge; chain of validate/engines."""
     string = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
-    return chain(string, p.m, share * p.m * p.L**2, 1.0, p.g, dt,
+    return chain(string, p.m, 0.0, 1.0, p.g, dt,
                  lambda angles: p.L * np.array([np.cos(angles[0]), np.sin(angles[0])]), **more)
 
 
-pybullet_make = partial(hinged, chain=bullet.chain, share=0.0)
-mujoco_make = partial(hinged, chain=mujoco.chain, share=SMALL)
+mujoco_make = partial(hinged, chain=mujoco.chain)
 
 
 RUNNERS = (
@@ -119,7 +117,7 @@ RUNNERS = (
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
     engine(PYMUNK, "", pymunk_make, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
-    engine(PYBULLET, "", pybullet_make, bullet.HINGES,
+    engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
            order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table)),
     engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),

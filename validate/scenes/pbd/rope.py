@@ -8,9 +8,9 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.check import states
-from validate.engines import bullet
+from validate.engines import bullet, mujoco
 from validate.engines.pbd import FEWER, ITERATIONS, pymunk_rope
-from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, SYMPLECTIC_EULER, XPBD
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
 from validate.reference.pbd import (
     Rope,
     RopeMotion,
@@ -26,7 +26,7 @@ from validate.reference.pbd import (
     rope_slope,
 )
 from validate.reference.schemes import Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
 from validate.scenes._common import check_positives
 from validate.scenes.pbd._common import in_space
 
@@ -118,12 +118,14 @@ def pymunk_limit(p, dt):
 
 
 def angles_limit(p, dt):
-    """The coordinates of pybullet's links are their angles, and symplectic Euler errs by at most (ρ dt)² per step.
+    """The coordinates of pybullet's links and of MuJoCo's are their angles.
 
-    The sum is dt ∫ρ² dt, which is at most dt √(∫ρ dt ∫ρ³ dt) by Schwarz's inequality.
+    A step of order k errs by (ρ dt)ᵏ⁺¹ at most.  The sum is dt ∫ρ² dt for symplectic Euler, which is at most
+    dt √(∫ρ dt ∫ρ³ dt) by Schwarz's inequality, and dt⁴ ∫ρ⁵ dt for Runge–Kutta.
     """
-    one, three, _, _ = rope_rates(*of(p))
-    return np.sqrt(one * three) * dt + by_order(0.0, T, dt)[1]
+    one, three, five, _ = rope_rates(*of(p))
+    floors = by_order(0.0, T, dt)
+    return {1: np.sqrt(one * three) * dt + floors[1], 4: five * dt**4 + floors[4]}
 
 
 def floor(p, dt):
@@ -163,9 +165,10 @@ def pymunk_make(p, dt, sweeps=ITERATIONS):
     return pymunk_rope(straight(p), p.l, p.m, p.g, dt, np.ravel, sweeps * max(p.links, 10))
 
 
-def pybullet_make(p, dt):
+def hinged(p, dt, chain):
+    """Make the EngineRun of links on hinges; chain of validate/engines."""
     ends = np.concatenate((np.zeros((1, 2)), straight(p)))
-    return bullet.chain(ends, p.m, 0.0, 1.0, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
+    return chain(ends, p.m, 0.0, 1.0, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
 
 
 IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
@@ -186,9 +189,11 @@ RUNNERS = (
            f"the same with {FEWER} iterations for each link: the fastest setting that errs no more",
            order=1, limit=pymunk_limit, predicted=MOTION.predict_unfinished(chipmunk_rope, 1), supports=short,
            most_steps=5000, finer_in_full=FINER),
-    engine(PYBULLET, "", pybullet_make, bullet.HINGES,
+    engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
            order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), most_steps=5000,
            finer_in_full=FINER[:1]),
+    engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
+           order=4, limit=angles_limit, predicted=ANGLES.predict(RK4.table), most_steps=5000),
 )
 
 
