@@ -74,6 +74,7 @@ class Runner:
     predicted: Callable | str    # (p, dt) → Prediction, or None for a step that is too long; or why there is none
     departure: Departure | None = None   # where it follows another law than the truth
     supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
+    is_truth: Callable | None = None     # (p) → bool: whether a run of its engine is the truth of this case
     in_quick: bool = True                # False: only --full runs it
     slow_cases: tuple = ()               # names of cases in which only --full runs it
     compiled_in_quick: bool = False      # it takes longer in plain Python than numba does to compile it
@@ -94,6 +95,10 @@ class Runner:
     def label(self):
         """Its name for people."""
         return self.who.label
+
+    def is_reference(self, p):
+        """Return whether the truth of this case is a run of its own engine: such a curve counts nowhere."""
+        return self.is_truth is not None and bool(self.is_truth(p))
 
     @property
     def is_engine(self):
