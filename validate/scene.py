@@ -5,7 +5,7 @@ A scene is a file in `validate/scenes/<lesson>/` that ends with one `SCENE = Sce
 """
 
 from collections.abc import Callable
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -38,6 +38,8 @@ class Engine(NamedTuple):
     make: Callable           # (p, dt) → EngineRun
     settings: str            # what was set, and to what, for people
     most_steps: int | None = None            # the largest number of steps that is worth the engine's time
+    substeps: int = 1                        # steps in a call from Python: `make` gives a world that makes so many
+    recorded_as: str | None = None           # the variant whose recorded runs are bitwise its own
 
     @property
     def label(self):
@@ -123,6 +125,18 @@ def ours(method, *, order=None, **about):
 def engine(product, variant, make, settings, *, most_steps=None, **about):
     """Return the Runner of an engine with these settings."""
     return Runner(who=Engine(product, variant, make, settings, most_steps), **about)
+
+
+def in_substeps(runner, substeps):
+    """Return the same runner of pybullet, whose own loop makes so many steps in a call from Python: `numSubSteps`.
+
+    The motion is bitwise the same, so that one record serves both.  It is a set-up without forces written in Python.
+    """
+    one = runner.who
+    variant = f"{one.variant}, {substeps} substeps" if one.variant else f"{substeps} substeps"
+    return replace(runner, who=one._replace(
+        variant=variant, make=one.product.adapter.substepped(one.make, substeps), substeps=substeps,
+        recorded_as=one.label, settings=f"the same, numSubSteps {substeps}: bitwise the same motion in fewer calls"))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from ..check import Whose
 from ..reference.orientation import quaternion
 from ..scene import Departure, EngineRun
 from . import quiet_import
-from .switches import Switch, made
+from .switches import Switch, made, worlds_made
 
 _idle: list = []             # connected clients that are free for another run
 ITERATIONS = 50              # of the contact solver, by default
@@ -41,6 +41,7 @@ class Bullet:
         self.client = _idle.pop() if _idle else pybullet.connect(pybullet.DIRECT)
         self.pb = Client(pybullet, self.client)
         made(self)
+        self.dt = dt
         self.gravity, self.waiting = tuple(map(float, gravity)), []      # bodies whose moments do not count yet
         self.pb.setGravity(*self.gravity)
         self.pb.setTimeStep(dt)
@@ -104,9 +105,13 @@ class Bullet:
     def step(self):
         self.pb.stepSimulation()
 
+    def make_in_a_call(self, substeps):
+        """Let a call from Python make so many steps."""
+        self.pb.setPhysicsEngineParameter(fixedTimeStep=substeps * self.dt, numSubSteps=substeps)
+
     def close(self):
         """Empty the world and keep its client, with its own settings, for the next run: connecting takes 20 ms."""
-        self.pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, warmStartingFactor=WARM)
+        self.pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, warmStartingFactor=WARM, numSubSteps=0)
         self.pb.resetSimulation()
         _idle.append(self.client)
 
@@ -288,6 +293,17 @@ def chain(ends, m, inertia, centre, g, dt, read):
     pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
     here = lambda: np.cumsum([state[0] for state in pb.getJointStates(body, list(links))])
     return EngineRun(bullet.step, lambda: read(here()), bullet.close)
+
+
+def substepped(make, substeps):
+    """Return make(p, dt) of the same world, of which a call makes so many steps of dt."""
+    def world(p, dt):
+        with worlds_made() as worlds:
+            run = make(p, dt)
+        for bullet in worlds:
+            bullet.make_in_a_call(substeps)
+        return run
+    return world
 
 
 def empty_world():

@@ -100,7 +100,7 @@ def run_engine_to_end(scene, engine, p, steps):
     """Return the Outcome of an engine after so many steps."""
     world = engine.make(p, scene.duration / steps)
     try:
-        for _ in range(steps):
+        for _ in range(steps // engine.substeps):
             world.step()
         observed = np.array(world.read(), dtype=float)
     finally:

@@ -122,7 +122,7 @@ def time_engine(engine, p):
 
         def loop():
             step = world.step
-            for _ in range(steps):
+            for _ in range(steps // engine.substeps):
                 step()
         return loop, world.close
     return prepare

@@ -19,7 +19,7 @@ from validate.methods import (
     VERLET,
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import coordinates, measured, round_off
 
 T = 10.0                     # [s]
@@ -117,6 +117,8 @@ def mujoco_make(p, dt):
 
 
 EXACTLY = {"order": EXACT, "limit": limits, "predicted": mean_velocity}
+NEW_VELOCITY = engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
+                      order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(EULER, limit=limits, predicted=old_velocity),
     *(ours(m, **EXACTLY) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
@@ -130,8 +132,8 @@ RUNNERS = (
     engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
-           order=1, limit=limits, predicted=new_velocity),
+    NEW_VELOCITY,
+    in_substeps(NEW_VELOCITY, 10),
     engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
     engine(MUJOCO, "", mujoco_make, "slide joints; Runge–Kutta 4", **EXACTLY),
 )

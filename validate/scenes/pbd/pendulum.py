@@ -23,7 +23,7 @@ from validate.reference.pbd import (
     rattle_once,
 )
 from validate.reference.schemes import Motion
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import ONE_LINK, check_positives, floor_of
 from validate.scenes.pbd._common import in_space
 
@@ -108,6 +108,8 @@ def hinged(p, dt, chain, **more):
 mujoco_make = partial(hinged, chain=mujoco.chain)
 
 
+HINGE = engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
+               order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table))
 RUNNERS = (
     ours(PROJECTION, limit=limits, predicted=BOB.predict(onto_circle, 1), most_in_quick=2000),
     ours(PBD, limit=limits, predicted=BOB.predict(onto_circle, 1)),
@@ -117,8 +119,8 @@ RUNNERS = (
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
     engine(PYMUNK, "", pymunk_make, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
-    engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
-           order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table)),
+    HINGE,
+    in_substeps(HINGE, 100),
     engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
     engine(MUJOCO, "default", partial(mujoco_make, integrator="Euler"), "hinge; the semi-implicit Euler step",

@@ -26,7 +26,7 @@ from validate.reference.pbd import (
     rope_slope,
 )
 from validate.reference.schemes import Motion
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import check_positives
 from validate.scenes.pbd._common import in_space
 
@@ -174,6 +174,9 @@ def hinged(p, dt, chain):
 IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
 SWEPT = "its sweeps stop before all links have their length, and what they leave is bounded, but not modelled"
 FINER = (10_000, 20_000, 50_000)
+HINGED = engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
+                order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), most_steps=5000,
+                finer_in_full=FINER[:1])
 RUNNERS = (
     ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum has it
     ours(PBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
@@ -189,9 +192,8 @@ RUNNERS = (
            f"the same with {FEWER} iterations for each link: the fastest setting that errs no more",
            order=1, limit=pymunk_limit, predicted=MOTION.predict_unfinished(chipmunk_rope, 1), supports=short,
            most_steps=5000, finer_in_full=FINER),
-    engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
-           order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), most_steps=5000,
-           finer_in_full=FINER[:1]),
+    HINGED,
+    in_substeps(HINGED, 50),
     engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
            order=4, limit=angles_limit, predicted=ANGLES.predict(RK4.table), most_steps=5000),
 )

@@ -11,7 +11,7 @@ from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, in_substeps, ours
 from validate.scenes import drawing
 from validate.scenes._common import check_positives, measured
 from validate.scenes.drawing import pose
@@ -102,6 +102,8 @@ def pybullet_make(p, dt, maximal=False):
     return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), np.zeros(3), maximal, dt)
 
 
+MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+                 order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
     ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
@@ -110,8 +112,8 @@ RUNNERS = (
     engine(PYBULLET, "reduced coordinates", pybullet_make,
            "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=limits, predicted=new_velocity),
-    engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
-           order=1, limit=limits, predicted=new_velocity),
+    MAXIMAL,
+    in_substeps(MAXIMAL, 60),
 )
 
 

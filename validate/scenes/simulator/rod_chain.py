@@ -28,7 +28,7 @@ from validate.reference.simulator import (
     rods_motion,
     rods_slope,
 )
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, in_substeps, ours
 from validate.scenes import drawing
 from validate.scenes._common import check_positives
 from validate.scenes.drawing import pose
@@ -205,6 +205,8 @@ def hinged(p, dt, chain):
 LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which its limit has"
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
 FINER = (2000, 5000, 10_000, 20_000)
+HINGED = engine(PYBULLET, "reduced coordinates", partial(hinged, chain=bullet.chain), bullet.HINGES,
+                order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), finer_in_full=FINER)
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=LAGRANGIAN),
     ours(COMPOSED_JOINTS, limit=limits, predicted=LAGRANGIAN, in_quick=False),
@@ -215,8 +217,8 @@ RUNNERS = (
     engine(PYBULLET, "", pybullet_make,
            f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane",
            order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
-    engine(PYBULLET, "reduced coordinates", partial(hinged, chain=bullet.chain), bullet.HINGES,
-           order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), finer_in_full=FINER),
+    HINGED,
+    in_substeps(HINGED, 10),
     engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
            order=4, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
 )
