@@ -203,6 +203,7 @@ def links(p):
 
 SCENE = Scene(
     title="A house of cards", lesson="simulator",
+    film_of_truth="pymunk, 6,000 steps per second",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
