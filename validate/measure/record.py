@@ -8,7 +8,7 @@ import platform
 from itertools import product
 
 from ..check import jsonable
-from ..reference.stored import RECORDED, computed_anew
+from ..reference.stored import RECORDED, computed_anew, kept
 from ..run.store import whole
 from ..scene import PYBULLET
 from .accuracy import run_engine_to_end
@@ -44,6 +44,8 @@ def record(name):
     }
     if numbers := numbers_of(scene):
         record["numbers"] = numbers
+    if agreements := kept(name).get("agreed"):           # which measure/agreement.py computes
+        record["agreed"] = agreements
     RECORDED.mkdir(exist_ok=True)
     path = RECORDED / f"{name}.json"
     with whole(path) as draft:
