@@ -39,6 +39,13 @@ class Verdict(StrEnum):
     NOT_ATTEMPTED = "not attempted"          # the exercise has no answer yet
 
 
+class Whose(StrEnum):
+    """Whose choice a departure from the truth is."""
+    LAW = "its law"                          # of the method, or of the engine with the option that names the runner
+    DEFAULT = "its default"                  # the engine has another setting without it
+    SET_UP = "our set-up"                    # another set-up of the scene removes it; no scene here may have one
+
+
 class Role(StrEnum):
     """Where a curve or a film comes from."""
     TRUTH = "truth"

@@ -39,8 +39,8 @@ class Product:
 PYMUNK = Product("pymunk", 2, "chipmunk", "#000000", "x", "pymunk", "pip install pymunk")
 PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
                    "leave --engine out: its recorded traces stand in", recorded=True)
-MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core", "pip install -e '.[witness]' adds it",
-                 optional=True)
+MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core",
+                 "pip install mujoco-core, where it has a wheel", optional=True)
 PRODUCTS = (PYMUNK, PYBULLET, MUJOCO)
 
 

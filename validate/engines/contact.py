@@ -313,6 +313,8 @@ def bullet_tower(tower, iterations, residual, warm=WARM, maximal=False):
     bodies = [bullet.body(m, (inertia,) * 3, (0.0, 0.0, y), (0.0,) * 3, True, shape=shape, mu=mu)
               for m, inertia, y, mu in zip(tower.masses, tower.inertias, tower.heights(), tower.frictions())]
 
+    bullet.begin()
+
     def upward(c):
         return c[9] * c[7][2] - c[10] * c[11][2] - c[12] * c[13][2]      # friction is that on the lower body
 

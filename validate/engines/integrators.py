@@ -1,4 +1,4 @@
-"""A point in a field of forces, and a planet, in both engines."""
+"""A point in a field of forces, and a planet, in the engines."""
 
 import numpy as np
 
@@ -6,6 +6,7 @@ from ..reference.integrators import attraction, perihelion
 from ..scene import EngineRun
 from .bullet import Bullet
 from .chipmunk import pymunk_space, pymunk_world
+from .mujoco import points
 
 
 def pymunk_point(gravity, m, v, read, dt, force=None, damping=0.0):
@@ -71,6 +72,16 @@ def pymunk_planet(p, dt, ahead=0.0):
     body.velocity_func = attract
     space.add(body)
     return pymunk_world(space, dt, lambda: np.array(body.position))
+
+
+def mujoco_planet(p, dt):
+    """Call the attraction in every stage of Runge–Kutta's step."""
+    mu, (x, v) = p.mu, perihelion(p)
+
+    def pull(x, v):
+        share = -mu / (x[0] * x[0] + x[1] * x[1]) ** 1.5
+        return share * x[0], share * x[1]
+    return points([1.0], [x], [v], dt, lambda x: x[0], force=pull)
 
 
 def bullet_planet(p, dt, ahead=0.0):

@@ -15,6 +15,7 @@ from . import film, traces
 from .selection import select, with_overrides
 
 ASYMPTOTIC = 0.5             # limits above this are not compared with a run [-]
+REFERENCE = "the truth here is a run of this engine: a reference, which counts nowhere"
 
 
 class Outcome(NamedTuple):
@@ -99,7 +100,7 @@ def run_engine_to_end(scene, engine, p, steps):
     """Return the Outcome of an engine after this number of steps."""
     world = engine.make(p, scene.duration / steps)
     try:
-        for _ in range(steps):
+        for _ in range(steps // engine.substeps):
             world.step()
         observed = np.array(world.read(), dtype=float)
     finally:
@@ -152,7 +153,7 @@ def engine_curve(selection, case, runner, p, truth):
             nothing = {"label": engine.label, "rows": [], "order": None, "expected": runner.order,
                        "verdict": Verdict.UNDECIDED}
             return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "",
-                    "unpredicted": reason(runner)}
+                    "unpredicted": reason(runner), "reference": runner.is_reference(p)}
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
@@ -199,12 +200,16 @@ def judged(scene, runner, p, truth, runs, enough):
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
+    if runner.is_reference(p):
+        verdict, message = Verdict.UNDECIDED, REFERENCE
     found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
-             "message": message, "departure_reason": "", "unpredicted": reason(runner)}
+             "message": message, "departure_reason": "", "unpredicted": reason(runner),
+             "reference": runner.is_reference(p)}
     if departure is None:
         return found
     return {**found, "verdict": Verdict.FOLLOWS_OWN_LAW if verdict is Verdict.AGREES else verdict,
-            "departure_reason": departure.reason, "departure": relative(law, truth), "own_law": law}
+            "departure_reason": departure.reason, "departure_whose": departure.whose,
+            "departure": relative(law, truth), "own_law": law}
 
 
 def verdict_on(rows, law, finest, order, order_shown):

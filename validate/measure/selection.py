@@ -104,7 +104,8 @@ class Selection(NamedTuple):
         if self.plan.quick:
             most = min(most, runner.most_in_quick or np.inf)
         finer = () if self.plan.quick or p != self.first[1] else runner.finer_in_full
-        return tuple(n for n in self.steps if n <= most) + finer
+        at_once = runner.who.substeps if runner.is_engine else 1
+        return tuple(n for n in self.steps if n <= most and n % at_once == 0) + finer
 
     def fastest(self, runner):
         """Return the same at the fastest speed that was asked for."""

@@ -122,7 +122,7 @@ def time_engine(engine, p):
 
         def loop():
             step = world.step
-            for _ in range(steps):
+            for _ in range(steps // engine.substeps):
                 step()
         return loop, world.close
     return prepare
@@ -302,18 +302,18 @@ def time_to_error(points, target):
 
 
 def advantage(rows, case):
-    """Return the smallest error of each engine, its time for that, our shortest time for it, and the ratio.
-
-    There is no race if none of our methods was run.
+    """For each engine that errs: its smallest error, its time for that, our shortest time to get there,
+    and the ratio.  There is no race where none of our methods was run,
+    and none against the run that is the truth.
     """
     if not case["ours"]:
         return []
-    product = {c["label"]: c["product"] for c in case["engines"]}
+    product = {c["label"]: c["product"] for c in case["engines"] if not c["reference"]}
     result, ours = [], {}
     for r in rows:
         if r["speed"] in ("plain", "compiled"):
             ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
-    worth = [r for r in rows if r["speed"] == "engine" and EXACTLY < r["error"] < ASYMPTOTIC]
+    worth = [r for r in rows if r["speed"] == "engine" and r["label"] in product and EXACTLY < r["error"] < ASYMPTOTIC]
     for label in dict.fromkeys(r["label"] for r in worth):
         best = min((r for r in worth if r["label"] == label), key=lambda r: r["error"])
         reached = [(t, name, speed) for (name, speed), points in ours.items()

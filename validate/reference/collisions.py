@@ -90,11 +90,25 @@ def found_after(enters, leaves, dt, T):
     return np.where(found < leaves, np.minimum(found, T), T)
 
 
+class Sweep(NamedTuple):
+    """How an engine sweeps a ball along its path in a step."""
+    radius: float            # of the ball that it sweeps [m]
+    near: float              # of a ball that touches where it gives contact points: it sweeps nothing that has any [m]
+    least: float             # way along the normal in the step: it ignores what comes nearer by less [m]
+
+    def hits(self, p, dt, when):
+        """Return the times (n,) at which balls stop by a sweep, ∞ where none does; when as in detection_errors."""
+        enters, seen, h = when(p, self.radius)[0], when(p, self.near)[0], 1e-6 * self.radius
+        with np.errstate(invalid="ignore"):              # of a ball that never touches
+            nearer = h * dt / (when(p, self.radius - h)[0] - enters)     # gap = 0 gives  d(enters)/dr = −1/(speed)
+            return np.where((seen > dt * np.floor(enters / dt)) & (nearer > self.least), enters, np.inf)
+
+
 def detection_errors(T, place, when, band, swept=None):
     """Return the field `predicted` of a runner whose balls move in a straight line and stop when contact is detected.
 
     place(p) → (x, v), each (n, 3)    when(p, r) → the times at which balls of radius r enter and leave the target
-    band(p, dt) → as in Prediction    swept(p, dt) → radius that an engine sweeps, None for a step that is not swept
+    band(p, dt) → as in Prediction    swept(p, dt) → Sweep of an engine, None for a step that is not swept
     """
     def predicted_error(p, dt):
         """The time of each impact is known, and so is its phase in a step.
@@ -107,8 +121,8 @@ def detection_errors(T, place, when, band, swept=None):
         found = found_after(enters, leaves, dt, T)
         if found is None:
             return None
-        if swept is not None and (r := swept(p, dt)) is not None:
-            found = np.minimum(found, when(p, r)[0])
+        if swept is not None and (sweep := swept(p, dt)) is not None:
+            found = np.minimum(found, sweep.hits(p, dt, when))
         error = (found - np.minimum(enters, T))[:, None] * v
         return Prediction(np.ravel(error[:, 1:]), band(p, dt))
 

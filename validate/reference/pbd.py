@@ -5,7 +5,6 @@ links keep their length exactly, and SciPy's DOP853 integrates them.  A cloth is
 and finds its rest state.
 """
 
-from cmath import rect
 from collections.abc import Callable
 from functools import cache, partial
 from typing import NamedTuple
@@ -103,18 +102,17 @@ def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
 
 
 @cache
-def rope_lag(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0):
+def rope_lag(n, l, m, g, T, late=0.0, ahead=0.0):
     """Return |∂x/∂dt| [m/s] of all points at T: the error of a first-order method to first order in dt.
 
     The projection method takes the links' forces at the end of each step,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt²
     (g + W Jᵀ(xₙ₊₁) λₙ₊₁). Relative to the middle, tensions pull along e + dt ė (late = 1).  Its start,
-    x₁ − x₀ = dt² a, is that of the velocity ½dt later (ahead = ½).  The engines take the links' directions in the
-    middle of that difference (late = 0).  pybullet begins as we do, ahead = ½; pymunk moves before it pulls,
-    x₁ = x₀: ahead = −½.
+    x₁ − x₀ = dt² a, is that of the velocity ½dt later (ahead = ½).  pymunk takes the links' directions in the
+    middle of that difference (late = 0) and moves before it pulls, x₁ = x₀: ahead = −½.
     """
     # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: 0.01 m/s
     h = 1e-4
-    motion = lambda dt: rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-7)
+    motion = lambda dt: rope_motion(n, l, m, g, T, 0.0, late * dt, ahead * dt, 1e-7)
     ends = [rope_places(motion(dt).y[:n, -1], l) for dt in (h, -h)]
     return float(np.linalg.norm(ends[0] - ends[1]) / (2.0 * h))
 
@@ -339,8 +337,7 @@ def rope_after(step, rope, h, steps):
 
 
 FINEST = {1: 800, 2: 800, 4: 400}    # steps of the finest run of such a step, by its order
-UNFINISHED = 0.5             # band over the error of a rope whose sweeps stop before all links are right [-]
-OTHER_ORDER = 0.02           # the same of pybullet's rope, because sweeps in another order leave another error [-]
+UNFINISHED = 0.5             # of the error of a rope whose sweeps stop before all links are right [-]
 
 
 class RopeMotion(NamedTuple):
@@ -388,74 +385,8 @@ class RopeMotion(NamedTuple):
             return widened(law(p), dt, self.floor(p, dt), UNFINISHED)
         return predicted_error
 
-    def predict_bullet(self, share, sweeps):
-        """Return the same for pybullet's rope; I = share · m l², sweeps(links) → visits to a link per step.
-
-        The engine sorts its joints.  Upward and downward sweeps differ by at most 1 % of the error.
-        """
-        law = self.error_law(lambda rope, h, steps: bullet_rope(rope.x[1:], share, rope.l, rope.g, h, steps,
-                                                                sweeps(len(rope.x) - 1)), 1, 1600)
-
-        def predicted_error(p, dt):
-            """pybullet: its own step of rigid bodies on joints, with the engine's number of sweeps.
-
-            The engine sweeps in another order, so the band is wider by 2 % of the error.
-            """
-            return widened(law(p), dt, self.floor(p, dt), OTHER_ORDER)
-        return predicted_error
-
 
 def widened(law, dt, floor, share):
     """Return the Prediction of an ErrorLaw with its band widened by that fraction of the error; None if it has none."""
     found = law.prediction(dt, floor)
     return found and found._replace(band=found.band + share * np.linalg.norm(found.error) / law.size)
-
-
-def bullet_bob(bob, m, inertia, g, dt, steps):
-    """Return the position (2,) of pybullet's bob, a body with a moment of inertia on a pivot in the origin.
-
-    Symplectic Euler moves the bob.  Then an impulse J at the pivot gives its velocity there, v + ω × r, the value
-    −(bob + r)/dt, which closes in one step the gap of the joint (erp 1).  Along r it acts on m alone, and across r on
-    1/m + |r|²/I.
-    """
-    x, v, angle, omega = complex(*bob), 0j, 0.0, 0.0
-    arm = -x
-    for _ in range(steps):
-        r, v = arm * rect(1.0, angle), v - 1j * g * dt
-        along = r / abs(r)
-        want = (-(x + r) / dt - v - 1j * omega * r) * along.conjugate()
-        J = along * complex(m * want.real, want.imag / (1.0 / m + abs(r) ** 2 / inertia))
-        v, omega = v + J / m, omega + (r.conjugate() * J).imag / inertia
-        x, angle = x + v * dt, angle + omega * dt
-    return np.array([x.real, x.imag])
-
-
-def bullet_rope(x, share, l, g, dt, steps, sweeps):
-    """Return the bodies (n, 2) of a rope in pybullet; x (n, 2) are the positions at rest, I = share · m l².
-
-    As for the bob, a joint holds the end of each arm at the centre of the body above.  Starting from zero impulses,
-    Gauss–Seidel sweeps over the rows of the joints leave the fraction  (−L⁻¹ U)^sweeps  of the impulses, where L + U is
-    their matrix.
-    """
-    n = len(x)
-    begin = x[:, 0] + 1j * x[:, 1]
-    z, v, arm = begin, np.zeros(n, dtype=complex), np.append(0.0, begin[:-1]) - begin
-    angle, omega, inverse = np.zeros(n), np.zeros(n), np.tile([1.0, 1.0, 1.0 / (share * l * l)], n)
-    k, rows = np.arange(n), np.zeros((2 * n, 3 * n))
-    rows[2 * k, 3 * k] = rows[2 * k + 1, 3 * k + 1] = 1.0
-    rows[2 * k[1:], 3 * k[:-1]] = rows[2 * k[1:] + 1, 3 * k[:-1] + 1] = -1.0
-    for _ in range(steps):
-        r = arm * np.exp(1j * angle)
-        rows[2 * k, 3 * k + 2], rows[2 * k + 1, 3 * k + 2] = -r.imag, r.real
-        gap = z + r - np.append(0.0, z[:-1])
-        u = np.stack((v.real, v.imag - g * dt, omega), axis=1).ravel()
-        A = rows * inverse @ rows.T
-        J = np.linalg.solve(A, -np.stack((gap.real, gap.imag), axis=1).ravel() / dt - rows @ u)
-        sweep = np.linalg.solve(np.tril(A), -np.triu(A, 1))
-        left, ten = np.linalg.matrix_power(sweep, sweeps % 10) @ J, np.linalg.matrix_power(sweep, 10)
-        for _ in range(sweeps // 10):
-            left = ten @ left
-        u += inverse * ((J - left) @ rows)
-        v, omega = u[::3] + 1j * u[1::3], u[2::3]
-        z, angle = z + v * dt, angle + omega * dt
-    return np.stack((z.real, z.imag), axis=1)

@@ -1,4 +1,7 @@
-"""Numbers of the reference solutions that take seconds to compute: `validate record` stores them with a scene."""
+"""Numbers of the reference that take seconds: `validate record` computes them once, and keeps them with a scene.
+
+A motion on which two codes agree is kept there, too; `measure/agreement.py` computes it.
+"""
 
 import json
 from contextlib import contextmanager
@@ -11,9 +14,14 @@ _computing: list[dict] = []  # [{key: number}] of the block `computed_anew`
 
 @cache
 def numbers(scene):
-    """Return {key: number} that were stored for a scene."""
+    """{key: number} that were stored for a scene."""
+    return kept(scene).get("numbers", {})
+
+
+def kept(scene):
+    """Return what the record of a scene holds; nothing without one."""
     try:
-        return json.loads((RECORDED / f"{scene}.json").read_text(encoding="utf-8")).get("numbers", {})
+        return json.loads((RECORDED / f"{scene}.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):        # measure/traces.py names a damaged file, when it reads the engine's runs
         return {}
 
@@ -29,6 +37,22 @@ def stored(scene, function, *arguments):
         return number
     found = numbers(scene).get(key)
     return function(*arguments) if found is None else found
+
+
+@cache
+def agreements(scene):
+    """Return {key: motion} on which two codes agree, of the cases of a scene; measure/agreement.py writes them."""
+    return kept(scene).get("agreed", {})
+
+
+def agreed(scene, p):
+    """Return the motion of this case, or None."""
+    return agreements(scene).get(key_of(p))
+
+
+def key_of(p):
+    """Return the key of a case: the values of its parameters."""
+    return json.dumps(list(p))
 
 
 @contextmanager

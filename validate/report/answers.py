@@ -53,24 +53,23 @@ def faster(results, cores=None):
 
 
 def departures(results):
-    """Return one line for each engine and reason, unpredicted ones first.
-
-    Each line is {engine, kind, reason, low, high, places}.
-    """
+    """One line for each engine and reason: {engine, kind, reason, whose, low, high, places}, unpredicted ones first."""
     groups, undecided = {}, {}
     for r, name, c in curves_of(results, "engines"):
         verdict = Verdict(c["verdict"])
         if verdict in (Verdict.FOLLOWS_OWN_LAW, Verdict.DEPARTS):
-            reason = c["departure_reason"] if verdict is Verdict.FOLLOWS_OWN_LAW else f"not known: it {c['message']}"
+            known = verdict is Verdict.FOLLOWS_OWN_LAW
+            reason = c["departure_reason"] if known else f"not known: it {c['message']}"
+            whose = c["departure_whose"] if known else ""
             last = words.finest(c)
-            size = c["departure"] if verdict is Verdict.FOLLOWS_OWN_LAW else (last["error"] if last else None)
-            groups.setdefault((words.KINDS[verdict], c["label"], reason), []).append((r, name, size))
+            size = c["departure"] if known else (last["error"] if last else None)
+            groups.setdefault((words.KINDS[verdict], c["label"], reason, whose), []).append((r, name, size))
         elif verdict is Verdict.UNDECIDED:
             undecided.setdefault(r["scene"], r["title"])
     lines = []
-    for (kind, label, reason), found in groups.items():
+    for (kind, label, reason, whose), found in groups.items():
         sizes = [size for _, _, size in found if size is not None]
-        lines.append({"engine": label, "kind": kind, "reason": reason, "low": min(sizes, default=None),
+        lines.append({"engine": label, "kind": kind, "reason": reason, "whose": whose, "low": min(sizes, default=None),
                       "high": max(sizes, default=None), "places": {r["scene"]: r["title"] for r, _, _ in found},
                       "cases": len(found)})
     lines.sort(key=lambda line: (line["kind"] != "departs", -len(line["places"]), -(line["high"] or 0.0)))

@@ -14,7 +14,7 @@ SCENES = ("scene", "lesson", "side", "verdict", "comparisons")
 RACES = ("scene", "lesson", "engine", "relative error [-]", "engine's time [s]", "our method", "our time [s]",
          "ratio [-]", "lowest ratio [-]", "highest ratio [-]", "outcome")
 PARTS = ("scene", "engine", "part", "steps", "time with it over time without it [-]", "relative change without it [-]")
-DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "scenes")
+DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "whose", "scenes")
 FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation")
 
 
@@ -58,7 +58,8 @@ def texts(results, stability):
              *(a["range"] or (None, None)), a["outcome"]) for a in races])
     if lines:
         found["departures.csv"] = text(DEPARTURES, [
-            (d["engine"], d["kind"], d["low"], d["high"], d["reason"], " ".join(d["places"])) for d in lines])
+            (d["engine"], d["kind"], d["low"], d["high"], d["reason"], d["whose"], " ".join(d["places"]))
+            for d in lines])
     if words.engine_parts(results):
         found["engine-parts.csv"] = text(PARTS, [
             (r["scene"], row["engine"], row["part"], row["steps"], row["cost"], row["change"])

@@ -493,13 +493,13 @@ def _departures(result):
     for n, c in every:
         if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
             label = named(c) if "product" in c else named(c)[:1].upper() + named(c)[1:]
-            groups.setdefault((label, c["departure_reason"]), []).append((n, c))
-    for (label, reason), found in groups.items():
+            groups.setdefault((label, c["departure_reason"], c["departure_whose"]), []).append((n, c))
+    for (label, reason, whose), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
         orders = [c["order"] for _, c in found if c["order"]]
         shown = f"converges to that law, with order {orders[0]:.2f}" if orders else "agrees with that law"
-        yield (f"{label} departs from the truth by {size}{several}, because {reason}. "
+        yield (f"{label} departs from the truth by {size}{several}, because {reason} ({whose}). "
                f"The scene predicts this; the run {shown}.")
 
 

@@ -8,13 +8,14 @@ import numpy as np
 
 from solutions.collisions import Plane
 from solutions.given.collisions import Target
-from validate.engines.collisions import SWEPT, SWEPT_SETTINGS, across, bullet_rays, bullet_swept, swept_radius
+from validate.engines.collisions import SWEPT_SETTINGS, across, bullet_rays, bullet_swept, sweep
 from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, ONLY_ROUND_OFF, impact_times, rounded_way
+from validate.reference.collisions import COPIES, ONLY_ROUND_OFF, detection_errors, impact_times, rounded_way
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, engine, ours
 from validate.scenes._common import check_positives
 
 PLACE_APART = 1.0            # metre between two copies along the x axis
+SHARES = (0.8, 0.95, 0.99, 0.999)  # radii that pybullet sweeps, over that of the ball [-]: our choices
 ENGINE_SPEEDS = (1.0, 1e2, 1e4)  # of the balls in an engine [m/s]: the lowest, the middle, the highest
 
 # pybullet's rays may end this far in front of a round shape [m], measured, not derived.  Rays come from outside;
@@ -40,12 +41,6 @@ class Flight(NamedTuple):
         few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * self.T
         return (way + few) / self.steep / np.linalg.norm(self.truth(p, self.T))
 
-    def swept_limit(self, p, dt):
-        """A swept ball ends where its smaller sphere touches, when the ball is a fifth of its radius deep, or
-        earlier.  If a step is too short to be swept, the ball is detected at most one step late.
-        """
-        return self.per_ball(p, deepest(p, dt) / self.steep) + self.rounding(p, dt)
-
 
 def start_balls(place, positive):
     """Return start(p) of the balls (x, v) = place(p); it raises BadInput unless these parameters are positive."""
@@ -66,7 +61,8 @@ def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
     place(p) → (x, v), each (n, 3)       fastest [m/s] that the discrete test can handle
     limits, late    of our methods: limits, and the field `predicted` of the discrete test
     obstacle        of the rays, in words
-    rays, swept     {field: its value} of the Runner of each way of pybullet
+    rays            {field: its value} of the Runner of pybullet's rays
+    swept           share → the same of the Runner that sweeps a ball of that share of the radius
     """
     def slow_enough(p):
         return p.speed <= fastest
@@ -78,15 +74,27 @@ def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
         ours(DISCRETE, limit=limits, predicted=late, supports=slow_enough),
         engine(PYBULLET, "rays", partial(bullet_rays, place=place), f"one rayTestBatch per step, at a {obstacle}",
                supports=some_speeds, most_steps=100, **rays),
-        engine(PYBULLET, "swept", partial(bullet_swept, place=place), SWEPT_SETTINGS,
-               supports=some_speeds, most_steps=200, **swept),
+        *(engine(PYBULLET, f"sweeps {share:g} r", partial(bullet_swept, place=place, share=share),
+                 SWEPT_SETTINGS.format(share), supports=some_speeds, most_steps=200, order=0, **swept(share))
+          for share in SHARES),
     )
 
 
-def deepest(p, dt):
-    """Return the largest distance [m] between the position of bullet_swept and the place of impact.
+def swept_runner(flight, when, band):
+    """Return share → {field: its value} of the Runner that sweeps; when and band as in detection_errors.
 
-    Without a sweep a ball is at most v dt deep.  With a sweep it ends where the swept sphere touches, with the ball
-    (1 − SWEPT) r deep, or earlier, where the ball itself is detected less deep.
+    band(p, dt, share) depends on the share, too.
     """
-    return p.speed * dt if swept_radius(p, dt) is None else (1.0 - SWEPT) * p.r
+    def fields(share):
+        def limit(p, dt):
+            """A swept ball ends where its smaller sphere touches, with the ball 1 − share of its radius deep, or
+            earlier.  Without a sweep it is found at most one step late: in a step that is too short, along or across
+            the surface, and where the engine has contact points for it already.
+            """
+            one = sweep(p, dt, share)
+            swept = one is not None and np.all(np.isfinite(one.hits(p, dt, when)))
+            late = (1.0 - share) * p.r if swept else p.speed * dt
+            return flight.per_ball(p, late / flight.steep) + band(p, dt, share)
+        return {"limit": limit, "predicted": detection_errors(flight.T, flight.place, when, partial(band, share=share),
+                                                              partial(sweep, share=share))}
+    return fields

@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.collisions import Box, Plane
+from validate.check import Whose
 from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
 from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
@@ -404,9 +405,9 @@ def only(*pairs):
 GJK_STOPS = "it stops when it knows the distance to 1e-14 of the size, and the limit bounds what is left"
 WITH_CORNERS = "exact for bodies with corners: only round-off is left, and the limit bounds it"
 POLYTOPE_STOPS = "closed forms are exact; its expanding polytope stops at 1e-12 m, and the limit bounds what is left"
-ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm", with_margins)
+ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm", with_margins, Whose.LAW)
 OWN_GRID = Departure("it places the points of a hull on a grid of its own and surrounds them with a margin of 1 mm",
-                     with_margins)
+                     with_margins, Whose.LAW)
 EXACTLY = {"order": EXACT, "limit": round_off, "predicted": ONLY_ROUND_OFF}
 RUNNERS = (
     ours(NARROW, **EXACTLY,

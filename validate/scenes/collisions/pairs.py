@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.collisions import check_boxes
+from validate.check import Whose
 from validate.engines.collisions import bullet_closest_pairs, bullet_query_pairs
 from validate.methods import BRUTE_FORCE, TREES
 from validate.reference.collisions import all_touching
@@ -132,7 +133,7 @@ RUNNERS = (
            "getOverlappingObjects with the corners of each box, after a step", **COUNTS,
            supports=up_to(MOST_BY_ENGINE),
            departure=Departure("its broad phase enlarges boxes by 2 cm on every side, to predict contacts",
-                               by_wider_boxes)),
+                               by_wider_boxes, Whose.DEFAULT)),
 )
 
 

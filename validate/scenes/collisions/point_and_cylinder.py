@@ -8,7 +8,7 @@ solves for the first root and works with any step.
 import numpy as np
 
 from validate.check import states
-from validate.engines.collisions import swept_radius
+from validate.engines.collisions import sweep
 from validate.reference import collisions as balls
 from validate.scene import EXACT, Scene
 from validate.scenes.collisions import _common as common
@@ -69,9 +69,9 @@ def when(p, r):
     return enters, 2.0 * middle - enters
 
 
-def swept_band(p, dt):
-    """Return the band of a swept ball's prediction: that of a ray, or round-off without a sweep."""
-    return rounding(p, dt) if swept_radius(p, dt) is None else ray_limit(p, dt)
+def swept_band(p, dt, share):
+    """Return how far a swept ball may end from its prediction: as far as a ray does, by round-off without a sweep."""
+    return rounding(p, dt) if sweep(p, dt, share) is None else ray_limit(p, dt)
 
 
 def limits(p, dt):
@@ -97,8 +97,7 @@ RUNNERS = common.ball_runners(
     place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
     "GEOM_CYLINDER of radius R + r",
     rays={"order": 0, "limit": ray_limit, "predicted": "where its rays end is measured and not derived"},
-    swept={"order": 0, "limit": FLIGHT.swept_limit,
-           "predicted": balls.detection_errors(T, place, when, swept_band, swept_radius)})
+    swept=common.swept_runner(FLIGHT, when, swept_band))
 
 
 SIDES = 36                   # of the polygon that is drawn for the circle: it differs by 0.4 % of the radius

@@ -153,6 +153,7 @@ def pybullet_stands(p, number, dt, iterations, residual):
         bodies.append(bullet.body(DENSITY * stones.m[k], (10.0 * moment, moment, 10.0 * moment),
                                   (stones.x[k, 0], 0.0, stones.x[k, 1]), (0.0,) * 3, True, R=UPRIGHT,
                                   shape=pb.createCollisionShape(pb.GEOM_MESH, vertices=hull), mu=np.sqrt(mu)))
+    bullet.begin()
     for _ in range(round(WATCHED / dt)):
         bullet.step()
     x = np.array([bullet.position(body) for body in bodies])[:, [0, 2]]

@@ -299,7 +299,7 @@ def pybullet_world(p, number, dt, iterations):
         static((x[-1, 0] - 1.5, -2.0), (2.0, 2.0), 1.0)
         for k in range(p.blocks):
             movable(x[k], 1.0, HEIGHT, (1.0 + HEIGHT**2) / 12.0, p.mu)
-    return bullet, bodies
+    return bullet.begin(), bodies
 
 
 def pybullet_stands(p, number, dt, iterations, residual):

@@ -147,6 +147,7 @@ def pybullet_make(p, dt):
     bullet.ball(0.0, 1.0, R, (PLACES[0], 0.0, 0.0), still, still, 1.0, 0.0)
     light = bullet.ball(LIGHT, 1.0, R, (PLACES[1], 0.0, 0.0), still, still, 1.0, 0.0)
     large = bullet.ball(heavy(p), 1.0, R, (PLACES[2], 0.0, 0.0), (-p.V, 0.0, 0.0), still, 1.0, 0.0)
+    bullet.begin()
     velocities = lambda: (bullet.velocity(light)[0], bullet.velocity(large)[0])
     return EngineRun(lambda: None, lambda: count(bullet.step, velocities, p), bullet.close)
 

@@ -15,7 +15,7 @@ from solutions.contact import (
     make_contacts,
     make_pile_2d,
 )
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
@@ -317,8 +317,8 @@ def too_few(sweeps):
     """Return the reason why this number of sweeps per step does not carry the heavy box, and no error reports it."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
     return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
-                     "box is inside the light one. It reports no residual, so nothing warns of it",
-                     lambda p, t: np.zeros(1))
+                     "box is inside the light one. It reports no residual, so that nothing warns of it",
+                     lambda p, t: np.zeros(1), Whose.DEFAULT)
 
 
 def up_to(**most):
@@ -331,7 +331,7 @@ def up_to(**most):
 
 ANY = np.inf
 SPRINGS = Departure("its contacts are springs with dampers, whose stiffness is not ours: the impedance "
-                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly)
+                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly, Whose.LAW)
 PHASE = "only the size of its rocking is known, because its phase depends on the exact places of the corners"
 RUNNERS = (
     ours(DIRECT, limit=solved_limit, order=EXACT, supports=up_to(forces=ANY),

@@ -7,7 +7,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
@@ -156,7 +156,7 @@ RUNNERS = (
     engine(MUJOCO, "", mujoco_make, f"{TILTED}a ball that cannot turn; {SOFT}",
            order=1, limit=limits, predicted=hops,
            departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
-                               "slope that can hold it, a block creeps", held)),
+                               "slope that can hold it, a block creeps", held, Whose.LAW)),
 )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
@@ -102,7 +102,7 @@ def new_velocities(p, dt):
     return Prediction(summed(velocities, T, dt, True) - pyramid(p, T), rounded(p, dt))
 
 
-BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid)
+BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid, Whose.LAW)
 
 
 def pymunk_make(p, dt):

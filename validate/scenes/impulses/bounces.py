@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.impulses import BouncingBall, check_restitution
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
@@ -198,13 +198,13 @@ def pybullet_make(p, dt):
     def read():
         x, v = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity))
         return np.stack((x[:, 0], x[:, 2] - RADIUS, v[:, 0], v[:, 2]), axis=1).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = (
     ours(PENALTY, limit=soft_limit, predicted=pushed_back, supports=keeps_bouncing, most_in_quick=2500,
          departure=Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
-                             soft)),
+                             soft, Whose.LAW)),
     *impact_runners(
         (PROJECTING, BACKTRACKING), limits, late_impacts,
         (pymunk_make, "circles on a thick segment; collision_slop 1e-5"), (pybullet_make, "spheres on a GEOM_PLANE"),

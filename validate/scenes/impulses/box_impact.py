@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.impulses import BodyState3D, check_restitution
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
@@ -148,7 +148,8 @@ def pybullet_make(p, dt):
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=HALF.tolist())
     centre = (0.0, 0.0, -r[0, 2] - OVERLAP)
     body = bullet.body(p.m, moments(p), shape, centre, y[:3], y[3:], p.e, ROUGH * p.rough, R=turned(p))
-    return EngineRun(bullet.step, lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y, bullet.close)
+    read = lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 def flat(p):
@@ -168,8 +169,8 @@ SMALL_OVERLAP = "its error is what 2,000 iterations and an overlap of 1e-12 m le
 RUNNERS = (
     ours(TOGETHER, limit=sweeps_left, predicted=UNTIL_SETTLED, order=EXACT),
     ours(IN_TURN, limit=sweeps_left, predicted=ONLY_ROUND_OFF, order=EXACT, supports=several_points,
-         departure=Departure("each point acts on the body as the previous one left it, so the order of the points "
-                             "counts", in_turn)),
+         departure=Departure("each point sees the body as the previous one left it, so that the order of the points "
+                             "counts", in_turn, Whose.LAW)),
     engine(PYMUNK, "", pymunk_make, "a Poly on a thick Segment, 2,000 iterations",
            order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=flat),
     engine(PYBULLET, "", pybullet_make, "a box on a box; maximal coordinates; contactERP, contactSlop, "

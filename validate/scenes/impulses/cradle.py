@@ -144,7 +144,7 @@ def pybullet_make(p, dt):
     def read():
         rows = np.array([(bullet.position(b)[0], bullet.velocity(b)[0]) for b in balls]).reshape(COPIES, BALLS, 2)
         return seen(rows[:, :, 0], rows[:, :, 1], p)
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = impact_runners(

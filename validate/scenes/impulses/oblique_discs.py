@@ -137,7 +137,7 @@ def pybullet_make(p, dt):
         for i, m in enumerate((p.m1, p.m2))
     ]
     read = lambda: np.array([(*bullet.position(b)[:2], *bullet.velocity(b)[:2]) for b in balls]).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = impact_runners(

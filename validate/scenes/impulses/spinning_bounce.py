@@ -150,7 +150,7 @@ def pybullet_make(p, dt):
     def read():
         x, v, omega = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity, bullet.omega))
         return np.stack((x[:, 0], x[:, 2] - p.R, v[:, 0], v[:, 2], -p.R * omega[:, 1]), axis=1).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 def is_sphere(p):

@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
@@ -425,13 +425,14 @@ RUNNERS = (
            supports=only("ball", "box", "cylinder"), **EXACTLY),
     engine(PYBULLET, "automatic", bullet_make, "createMultiBody with its defaults", supports=only(*BOXED), **EXACTLY,
            departure=Departure("it uses the box around the shape, along the axes of the shape, instead of the shape",
-                               by_bounding_box)),
+                               by_bounding_box, Whose.DEFAULT)),
     engine(PYBULLET, "hull", bullet_make, "GEOM_MESH from corners", supports=only("corner"), **EXACTLY,
            departure=Departure("it uses the box around the hull instead of the hull, and makes it 6 mm larger",
-                               by_fat_box)),
+                               by_fat_box, Whose.DEFAULT)),
     engine(PYBULLET, "concave mesh", partial(bullet_make, concave=True), "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH",
            supports=only("corner"), **EXACTLY,
-           departure=Departure("it gives triangle meshes no inertia, so no torque rotates them", by_nothing)),
+           departure=Departure("it gives triangle meshes no inertia, so that no torque rotates them", by_nothing,
+                               Whose.DEFAULT)),
     engine(PYBULLET, "told", partial(bullet_make, told=True),
            "localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre "
            "and principal axes",
@@ -439,7 +440,7 @@ RUNNERS = (
     engine(PYMUNK, "", pymunk_make, "moment_for_circle, moment_for_poly, or shapes with a density",
            supports=only("ring", "triangle", "two discs"), **EXACTLY),
     engine(PYMUNK, "Segment", pymunk_make, "moment_for_segment", supports=only("round bar"), **EXACTLY,
-           departure=Departure("it uses the box around the bar instead of the bar", by_flat_box)),
+           departure=Departure("it uses the box around the bar instead of the bar", by_flat_box, Whose.LAW)),
 )
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from validate.engines import mujoco
 from validate.engines.integrators import bullet_point, pymunk_point
 from validate.methods import (
     BLANES_MOAN,
@@ -20,8 +21,10 @@ from validate.methods import (
 )
 from validate.reference.integrators import EVEN, FINEST, FINEST_RK4, early_limit, kepler_limits, perihelion
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_NEW_FORCE, OLD_VELOCITY_OLD_FORCE
-from validate.scene import LATE_LEAPFROG, PYBULLET, PYMUNK, engine, ours
+from validate.scene import LATE_LEAPFROG, MUJOCO, PYBULLET, PYMUNK, engine, ours
 from validate.scenes._common import check_positives
+
+MOST_OF_ORDER_4 = 20_000     # steps of an engine of order 4 around a sun; half of them in a quick run
 
 
 def integrator_runners(motion, limits, compiled=()):
@@ -85,6 +88,19 @@ class Point(NamedTuple):
         return engine(PYBULLET, "", self.pybullet, "useMaximalCoordinates=1, no damping; force applied each step",
                       order=1, limit=limits, predicted=motion.predict(NEW_VELOCITY_OLD_FORCE))
 
+    def mujoco(self, p, dt, damping=None, wind=None):
+        """Call the force in every stage, or let the joints damp, damping(p) [N s/m], and a wind(p) [N] push."""
+        gravity, m = np.append(self.gravity(p), 0.0), self.mass(p)
+        own = {"force": self.force(p)} if damping is None else {"damping": damping(p)}
+        if wind is not None:
+            gravity[:2] += np.array(wind(p)) / m
+        return mujoco.points([m], np.zeros((1, 2)), [self.velocity(p)], dt, lambda x: self.read(x[0]), gravity, **own)
+
+    def in_mujoco(self, motion, limits, settings="force in mjcb_passive, in every stage", **own):
+        """Return the runner of MuJoCo; own: damping and wind of `mujoco`."""
+        return engine(MUJOCO, "", partial(self.mujoco, **own), f"slide joints, {settings}; Runge–Kutta 4",
+                      order=4, limit=limits, predicted=motion.predict(RK4.table))
+
     def in_default_pybullet(self, motion, limits, departure):
         """Return the runner of pybullet's default body, which is slowed by its own damping."""
         return engine(PYBULLET, "default", partial(self.pybullet, default=True),
@@ -124,13 +140,13 @@ def sun_and_planet(observed, p):
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
-def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
+def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_steps):
     """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
 
     The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
     symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
-    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large
-    most_steps             of an engine
+    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large; MuJoCo's needs none
+    most_steps             of an engine of order 1
     """
     T, limits = motion.T, kepler_limits(motion.T)
     symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
@@ -147,4 +163,7 @@ def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
         engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
                order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
         engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
+        engine(MUJOCO, "", mujoco_make, "slide joints, attraction in mjcb_passive, in every stage; Runge–Kutta 4",
+               order=4, limit=limits, predicted=errors[RK4], most_steps=MOST_OF_ORDER_4,
+               most_in_quick=MOST_OF_ORDER_4 // 2),
     )

@@ -1,7 +1,7 @@
 """A planet orbits its sun sixteen times on an ellipse, and the methods are compared by its final position."""
 
 from solutions.support.orbits import attraction
-from validate.engines.integrators import bullet_planet, pymunk_planet
+from validate.engines.integrators import bullet_planet, mujoco_planet, pymunk_planet
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import Planet, kepler_motion, kepler_position
 from validate.scene import Scene
@@ -23,7 +23,8 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 SCENE = Scene(
     title="Kepler", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
+    runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, mujoco_planet,
+                           50_000),
     acceleration=lambda lessons: attraction, start=planet, run=run, observe=coordinates(2),
     truth=kepler_position,
     # of the reference solution: round-off in the energy, v²/2 − μ/r, grows like a phase error to 3e-13

@@ -1,7 +1,7 @@
 """A comet on a long ellipse, at most 19 times as far from the sun as at its nearest point, where most error arises."""
 
 from solutions.support.orbits import attraction
-from validate.engines.integrators import bullet_planet, pymunk_planet
+from validate.engines.integrators import bullet_planet, mujoco_planet, pymunk_planet
 from validate.methods import ADAPTIVE, BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import (
     Planet,
@@ -42,7 +42,7 @@ def limit(p, dt):
 
 MOTION = kepler_motion(T)
 RUNNERS = (
-    *planet_runners(MOTION, (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
+    *planet_runners(MOTION, (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, mujoco_planet, 50_000),
     ours(ADAPTIVE, limit=limit, predicted=adaptive_errors(MOTION)),
 )
 

@@ -109,6 +109,7 @@ RUNNERS = (
     engine(PYBULLET, "own damping", with_damping(POINT.pybullet),
            "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second",
            order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new))),
+    POINT.in_mujoco(MOTION, limits, "damping of the joints", damping=lambda p: p.k),
 )
 
 SCENE = Scene(

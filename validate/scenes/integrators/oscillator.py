@@ -9,9 +9,10 @@ from solutions.integrators import Oscillator, oscillator_acceleration
 from validate.engines.bullet import hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.integrators import bullet_point
-from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.engines.mujoco import points as points_in_mujoco
+from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER, RK4
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
 from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import damped
 
@@ -126,6 +127,10 @@ def pybullet_make(p, dt, ahead=0.0, default=False):
                         default=default)
 
 
+def mujoco_make(p, dt):
+    return points_in_mujoco([p.m], [[p.x0]], [[0.0]], dt, np.ravel, stiffness=p.k, damping=p.c)
+
+
 RUNNERS = (
     *(ours(m, limit=limits, predicted=MOTION.predict(m.table), compiled_in_quick=m in ONE_OF_EACH_ORDER,
            most_in_quick=IN_QUICK.get(m)) for m in INTEGRATORS),
@@ -142,6 +147,8 @@ RUNNERS = (
     engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5),
            "first velocity − ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
+    engine(MUJOCO, "", mujoco_make, "slide joint with stiffness and damping; Runge–Kutta 4",
+           order=4, limit=limits, predicted=MOTION.predict(RK4.table)),
 )
 
 

@@ -98,6 +98,7 @@ RUNNERS = (
     POINT.in_pymunk(MOTION, limits),
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
+    POINT.in_mujoco(MOTION, limits),
 )
 
 

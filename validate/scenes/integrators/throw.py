@@ -7,6 +7,7 @@ import numpy as np
 
 from validate.engines.bullet import hidden_damping
 from validate.engines.integrators import bullet_point, pymunk_point
+from validate.engines.mujoco import points as points_in_mujoco
 from validate.methods import (
     AVERAGE_VELOCITY,
     EULER,
@@ -18,7 +19,7 @@ from validate.methods import (
     VERLET,
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import coordinates, measured, round_off
 
 T = 10.0                     # [s]
@@ -111,7 +112,13 @@ def pybullet_make(p, dt, ahead=0.0, default=False):
     return bullet_point((0.0, 0.0, -p.g), 1.0, (0.0, 0.0, 0.0), v, np.array, dt, default=default)
 
 
+def mujoco_make(p, dt):
+    return points_in_mujoco([1.0], np.zeros((1, 3)), [start(p)[1]], dt, lambda x: x[0], (0.0, 0.0, -p.g))
+
+
 EXACTLY = {"order": EXACT, "limit": limits, "predicted": mean_velocity}
+NEW_VELOCITY = engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
+                      order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(EULER, limit=limits, predicted=old_velocity),
     *(ours(m, **EXACTLY) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
@@ -125,9 +132,10 @@ RUNNERS = (
     engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
-           order=1, limit=limits, predicted=new_velocity),
+    NEW_VELOCITY,
+    in_substeps(NEW_VELOCITY, 10),
     engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
+    engine(MUJOCO, "", mujoco_make, "slide joints; Runge–Kutta 4", **EXACTLY),
 )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
+from validate.check import Whose
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, end_of, search_errors, searched
@@ -133,7 +134,7 @@ RUNNERS = (
            order=EXACT, limit=default_limit, supports=is_bent,
            predicted="its own law is its search, which leaves only round-off",
            departure=Departure("its 20 iterations with a damping of ½ m² are too few for so small a bend",
-                               default_law)),
+                               default_law, Whose.DEFAULT)),
 )
 
 

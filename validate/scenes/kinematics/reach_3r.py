@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -176,11 +176,11 @@ RUNNERS = (
       for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
     engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 200 iterations, residualThreshold 1e-12",
            order=EXACT, limit=cured_limit,
-           predicted="it ends when it detects no missing rotation, and round-off decides when that is"),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation and its defaults",
-           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves only round-off",
-           departure=Departure("it stops at 0.1 mm from the place, for any direction, or after 20 iterations, and "
-                               "its damping is ½ for any size of the arm", default_law)),
+           predicted="it ends where it sees no missing rotation any more, and that moment depends on roundings"),
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
+           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
+           departure=Departure("it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and "
+                               "its damping is ½ whatever the size of the arm", default_law, Whose.DEFAULT)),
 )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import end_of
@@ -99,10 +99,11 @@ def beyond_the_last_joint(p):
     return p.x > REACH - LENGTHS[-1]
 
 
-STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays)
-POINTING = Departure("every joint points at the target already", stays)
-ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line)
-JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves only round-off"}
+STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays,
+                  Whose.LAW)
+POINTING = Departure("every joint points at the target already", stays, Whose.LAW)
+ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line, Whose.LAW)
+JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves nothing but roundings"}
 
 RUNNERS = (
     *(ours(m, departure=STUCK, **JUDGED) for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),

@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
@@ -133,9 +133,9 @@ RUNNERS = (
     engine(PYBULLET, "", as_our_damping, "jointDamping as our λ², 3,000 iterations", **AT_REST),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with its defaults",
            order=EXACT, limit=measured_limit,
-           predicted="its own law is its search, which leaves only round-off",
-           departure=Departure("its damping is ½ m² for any size of the arm and any distance, and it stops after "
-                               "20 iterations", default_law)),
+           predicted="its own law is its search, which leaves nothing but roundings",
+           departure=Departure("its damping is ½ m² whatever the size of the arm and the distance, and it stops after "
+                               "20 iterations", default_law, Whose.DEFAULT)),
 )
 
 

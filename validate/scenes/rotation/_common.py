@@ -12,7 +12,7 @@ from validate.engines.rotation import free_body
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, free_limits
 from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
-from validate.scene import EXACT, MUJOCO, PYBULLET, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, engine, in_substeps, ours
 from validate.scenes._common import measured
 from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
 
@@ -27,13 +27,15 @@ def turn_runners(body, methods, limits, in_quick, exact=()):
 
 
 def free_engines(body):
-    """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a free TurningBody."""
+    """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a TurningBody that is free."""
+    maximal = engine(PYBULLET, "", partial(free_body, maximal=True), "useMaximalCoordinates=1, no damping",
+                     order=1, limit=free_limits(body.T, (IMPLICIT,)), predicted=body.predict(IMPLICIT_TERM))
     return (
         engine(PYBULLET, "reduced coordinates", free_body,
                "createMultiBody with its defaults, but no damping and no clamp of velocity",
                order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM)),
-        engine(PYBULLET, "", partial(free_body, maximal=True), "useMaximalCoordinates=1, no damping",
-               order=1, limit=free_limits(body.T, (IMPLICIT,)), predicted=body.predict(IMPLICIT_TERM)),
+        maximal,
+        in_substeps(maximal, 100),
         engine(MUJOCO, "", mujoco.free_body, "freejoint; Runge–Kutta 4",
                order=4, limit=free_limits(body.T), predicted=body.predict(MUNTHE_KAAS), most_steps=5000),
     )
@@ -71,9 +73,6 @@ FREE_BODY: dict[str, Any] = {
 
 
 # ---------------------------------------------------------------------------------------------- rolling balls
-
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
-
 
 def ball_on_floor(p):
     """Return the RollingBall with I = shape m R² on a horizontal floor."""

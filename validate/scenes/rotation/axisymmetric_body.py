@@ -100,6 +100,7 @@ def engines_energy(p, dt=1e-3, steps=10000):
     for sign, maximal, kind in ((1, False, "reduced"), (-1, True, "maximal")):
         bullet = Rigid(dt)
         body = bullet.body(1.0, I, np.zeros(3), w, maximal)
+        bullet.begin()
         for _ in range(steps):
             bullet.step()
         after = bullet.R(body).T @ bullet.omega(body)

@@ -11,7 +11,7 @@ from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, in_substeps, ours
 from validate.scenes import drawing
 from validate.scenes._common import check_positives, measured
 from validate.scenes.drawing import pose
@@ -71,13 +71,13 @@ def limits(p, dt):
     return {1: bias + round_off(dt), 2: 0.125 * brake * dt * dt / size + round_off(dt)}
 
 
-def new_velocity(p, dt, share=1.0, more=0.0):
+def new_velocity(p, dt, share=1.0):
     """Both velocities are exact at every step, but the ball moves with the new one, the old one or their mean.
 
     The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
     """
-    # share: of the new velocity in the displacement of a step; more: added to v + I ω/mR by the first step [m/s]
-    rolling = (p.v0 + more) / (1.0 + p.shape)
+    # share: of the new velocity in the way of a step
+    rolling = p.v0 / (1.0 + p.shape)
     velocity = lambda t: np.maximum(p.v0 - p.mu * p.g * t, rolling)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
     reached = share * new + (1.0 - share) * old
@@ -85,13 +85,6 @@ def new_velocity(p, dt, share=1.0, more=0.0):
 
 
 old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velocity, share=0.5)
-
-
-def new_velocity_of_a_sphere(p, dt):
-    """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR²; from then on
-    it uses the given moment.
-    """
-    return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / balls.SPHERE - 1.0))
 
 
 def pymunk_make(p, dt):
@@ -111,6 +104,8 @@ def pybullet_make(p, dt, maximal=False):
     return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), np.zeros(3), maximal, dt)
 
 
+MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+                 order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
     ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
@@ -119,8 +114,8 @@ RUNNERS = (
     engine(PYBULLET, "reduced coordinates", pybullet_make,
            "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=limits, predicted=new_velocity),
-    engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
-           order=1, limit=limits, predicted=new_velocity_of_a_sphere),
+    MAXIMAL,
+    in_substeps(MAXIMAL, 60),
 )
 
 

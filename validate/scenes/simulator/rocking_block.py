@@ -131,7 +131,7 @@ def pybullet_make(p, dt):
     def read():
         R = bullet.R(body)
         return np.array([-np.arctan2(R[0, 2], R[2, 2]), -bullet.omega(body)[1]])
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 # Tried at 24, 120, 480 and 2,400 steps; the errors with these settings are 148, 14, 3.1 and 0.64 % in pymunk, and 23,

@@ -4,6 +4,7 @@ Our joints solve for all hinges at once, by one band matrix.  pymunk and pybulle
 Angles need no joints at all: the chain obeys Lagrange's equations, and Runge–Kutta's method of lesson 1 solves them.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,9 +14,9 @@ from solutions.given.simulator import RodsInAngles
 from solutions.rotation import SUZUKI
 from solutions.simulator import make_bodies, make_bodies_2d, make_joints
 from validate.check import states
-from validate.engines.mujoco import chain as mujoco_chain
+from validate.engines import bullet, mujoco
 from validate.engines.simulator import pybullet_chain, pymunk_chain
-from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
+from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE, SYMPLECTIC_EULER
 from validate.reference.orientation import about
 from validate.reference.schemes import Motion
 from validate.reference.simulator import (
@@ -27,7 +28,7 @@ from validate.reference.simulator import (
     rods_motion,
     rods_slope,
 )
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, in_substeps, ours
 from validate.scenes import drawing
 from validate.scenes._common import check_positives
 from validate.scenes.drawing import pose
@@ -162,10 +163,11 @@ def swept_limit(p, dt):
 
 
 def angles_limit(p, dt):
-    """The angles of Runge–Kutta's method and of MuJoCo change at the largest rate of a rod.  They cannot open a joint,
-    so the method's table, applied to them, predicts the error.
+    """The angles of Runge–Kutta's method, of pybullet's hinges and of MuJoCo change at the greatest rate of a rod.
+
+    They cannot leave a joint open: the method's table, applied to them, predicts the error.
     """
-    return by_order(rods_gaps(*of(p))[1], T, dt)[4] + 1e-9
+    return {order: limit + 1e-9 for order, limit in by_order(rods_gaps(*of(p))[1], T, dt).items()}
 
 
 def hanging(p):
@@ -195,13 +197,16 @@ def pybullet_make(p, dt):
                           1.0, dt, lambda x, angle: lower_ends(x, angle, p))
 
 
-def mujoco_make(p, dt):
-    return mujoco_chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
+def hinged(p, dt, chain):
+    """Make the EngineRun of rods on hinges, whose coordinates are angles; chain of validate/engines."""
+    return chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
 
 
 LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which is in its limit"
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
 FINER = (2000, 5000, 10_000, 20_000)
+HINGED = engine(PYBULLET, "reduced coordinates", partial(hinged, chain=bullet.chain), bullet.HINGES,
+                order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), finer_in_full=FINER)
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=LAGRANGIAN),
     ours(COMPOSED_JOINTS, limit=limits, predicted=LAGRANGIAN, in_quick=False),
@@ -212,7 +217,9 @@ RUNNERS = (
     engine(PYBULLET, "", pybullet_make,
            f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane",
            order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
-    engine(MUJOCO, "", mujoco_make, "hinges; Runge–Kutta 4",
+    HINGED,
+    in_substeps(HINGED, 10),
+    engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
            order=4, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
 )
 

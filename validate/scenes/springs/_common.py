@@ -3,10 +3,11 @@
 import numpy as np
 
 from solutions.springs import make_spring_network
+from validate.engines import mujoco
 from validate.engines.springs import pymunk_net
-from validate.methods import EXPLICIT, IMPLICIT_MESH
+from validate.methods import EXPLICIT, IMPLICIT_MESH, RK4
 from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
-from validate.scene import PYMUNK, engine, ours
+from validate.scene import MUJOCO, PYMUNK, engine, ours
 from validate.scenes._common import check_positives, measured
 from validate.scenes.integrators._common import integrator_runners
 
@@ -55,7 +56,7 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
 
 
 def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
-    """Return the runners of a scene of the ReferenceNetwork net(p): our methods, and pymunk.
+    """Return the runners of a scene of the ReferenceNetwork net(p): our methods, pymunk and MuJoCo.
 
     motion           the Motion of net(p)
     limits           (p, dt) → {order: largest relative error}
@@ -70,6 +71,9 @@ def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
         engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), "DampedSpring between point masses",
                finer_in_full=finer_in_full, order=1, limit=limits,
                predicted=motion.predict_model(net_model(net, pymunk_net_model))),
+        engine(MUJOCO, "", lambda p, dt: mujoco.net(net(p), dt, np.ravel),
+               "point masses on slide joints, tendons as springs; Runge–Kutta 4",
+               order=4, limit=limits, predicted=motion.predict(RK4.table), most_steps=5000),
     )
 
 

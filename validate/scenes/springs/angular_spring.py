@@ -8,9 +8,11 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
 from validate.check import states
+from validate.engines import mujoco
 from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import RK4
 from validate.reference.schemes import Model, Motion
-from validate.scene import PYMUNK, Scene, by_order, engine
+from validate.scene import MUJOCO, PYMUNK, Scene, by_order, engine
 from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
 
@@ -154,10 +156,20 @@ def pymunk_make(p, dt):
     return pymunk_world(space, dt, lambda: np.array([body.angle]))
 
 
+def mujoco_make(p, dt):
+    """The rod on a hinge whose spring rests where the rod hangs, at −90° from x."""
+    rod = np.stack((HINGE, p.length * np.array([np.sin(p.theta0), -np.cos(p.theta0)])))
+    spring = f'stiffness="{mujoco.text(p.kappa)}" springref="-90"'
+    return mujoco.chain(rod, p.m, p.m * p.length**2 / 12.0, 0.5, p.g, dt, lambda angles: angles + 0.5 * np.pi,
+                        joint=spring)
+
+
 RUNNERS = (
     *integrator_runners(MOTION, limits),
     engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias = 0",
            order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_rod))),
+    engine(MUJOCO, "", mujoco_make, "hinge with stiffness; Runge–Kutta 4",
+           order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),
 )
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from validate.check import states
+from validate.engines import mujoco
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS
@@ -128,6 +129,17 @@ def bullet_stars(p, dt, ahead=0.0):
     return EngineRun(step, lambda: np.array([bullet.position(body)[:2] for body in bodies]).ravel(), bullet.close)
 
 
+def mujoco_stars(p, dt):
+    """Call the attraction in every stage of Runge–Kutta's step."""
+    strength = p.G * p.m_a * p.m_b
+
+    def pull(x, v):
+        along, up = x[2] - x[0], x[3] - x[1]
+        share = strength / (along * along + up * up) ** 1.5
+        return share * along, share * up, -share * along, -share * up
+    return mujoco.points((p.m_a, p.m_b), *start(p), dt, np.ravel, force=pull)
+
+
 def points(observed, p):
     """Draw both stars."""
     return np.reshape(observed, (2, 2))
@@ -152,7 +164,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Two stars", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, 20_000),
+    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, mujoco_stars, 20_000),
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks, points=points,

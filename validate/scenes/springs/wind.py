@@ -86,7 +86,11 @@ def thrown(p):
 MOTION = Motion(T, law, thrown, as_pair, truth, floor_of(limits))
 
 
-RUNNERS = (*integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits))
+RUNNERS = (
+    *integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits),
+    POINT.in_mujoco(MOTION, limits, "damping of the joints, wind as a part of gravity",
+                    damping=lambda p: p.k_v, wind=lambda p: (-p.wind, 0.0)),
+)
 
 
 def sanity_checks():
