@@ -4,6 +4,7 @@ changed, `validate audit` whether a report follows from its raw rows, `validate 
 `validate piles` and `validate targets` time our code against the engines.
 """
 
+import json
 import os
 from contextlib import contextmanager
 from enum import StrEnum
@@ -19,7 +20,7 @@ from solutions.checks import BadInput
 
 from .products import PRODUCTS, PYBULLET, product_named
 from .run.processes import Ended, alone_in, ending_once, one_sentence, workers
-from .run.store import SUBSET, lessons_of, stored_report, writable
+from .run.store import FULL_RUN, SUBSET, lessons_of, report_of_this_version, stored_report, writable, write_text
 from .subject import copies, modules, needs
 
 HELP = (
@@ -146,8 +147,9 @@ def compare(
 ):
     """Print what changed between two reports; exit with 1 when something became worse."""
     from .report.compare import KINDS, changes
+    before, after = stored_report(old), stored_report(new)
     try:
-        found = changes(stored_report(old), stored_report(new))
+        found = changes(before, after)
     except (KeyError, TypeError, ValueError):
         raise BadInput("one of the reports", "of another version of the workbook", "make it again") from None
     for kind in KINDS:
@@ -167,10 +169,11 @@ def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = 
     Exit with 1 when something differs.
     """
     from .report.audit import audit as check
+    content = report_of_this_version(report)
     try:
-        problems, counts = check(report, stored_report(report))
+        problems, counts = check(report, content)
     except (KeyError, TypeError, AttributeError, IndexError):
-        raise BadInput(f"report {str(report)!r}", "of another version of the workbook", "make it again") from None
+        raise BadInput(f"report {str(report)!r}", "with parts missing", "make it again") from None
     for problem in problems:
         console.print(f"✗ {problem}", highlight=False, markup=False, soft_wrap=True)
     checked = ", ".join(f"{count} {what}" for what, count in counts.items())
@@ -182,13 +185,24 @@ def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = 
 def summary(
     report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report"),
     into: Annotated[Path | None, typer.Option(help=f"Put it between the marks {RESULTS} of this file.")] = None,
+    keep: Annotated[bool, typer.Option("--keep", help="Keep it, for quick reports to show beside their own.")] = False,
 ):
     """Print the main results of a report as a table in Markdown, one line per lesson."""
-    from .report.summary import by_lesson
-    text = by_lesson(stored_report(report))
+    from .report.summary import by_lesson, in_short
+    content = report_of_this_version(report)
+    if keep and content["run"]["mode"] != "full":
+        raise BadInput(f"report {str(report)!r}", "of a quick run", "keep the results of a full one")
+    text = by_lesson(content)
+    if keep:
+        write_text(FULL_RUN, json.dumps(in_short(content), ensure_ascii=False, indent=1) + "\n")
     if into is None:
         print(text, end="")
-        return
+    else:
+        put_between_marks(into, text)
+
+
+def put_between_marks(into, text):
+    """Replace what stands between two marks RESULTS in a file.  Raises BadInput without them."""
     try:
         head, mark, rest = into.read_text(encoding="utf-8").partition(RESULTS)
         _, closing, tail = rest.partition(RESULTS)

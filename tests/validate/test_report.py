@@ -12,7 +12,7 @@ from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
 from validate.measure.selection import Plan
-from validate.report import films, plots, words
+from validate.report import films, numbers, plots, words
 from validate.report.answers import answers
 from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
@@ -171,61 +171,13 @@ def test_a_plot_follows_the_scheme_of_the_page_and_has_no_background(made):
 
 @pytest.mark.parametrize(("x", "said"), [(266.4, "270×"), (3.84, "3.8×"), (0.0423, "0.042×"), (None, "–")])
 def test_a_ratio_has_two_digits(x, said):
-    assert words.factor(x) == said
+    assert numbers.factor(x) == said
 
 
 @pytest.mark.parametrize(("x", "tolerance", "said"), [
     (2.8284271, 3e-5, "2.82843"), (14400.0, 0.0, "14,400"), (1.0000005, 1e-13, "1.0000005000000"), (0.0, 1e-6, "0")])
 def test_a_finding_has_as_many_digits_as_its_tolerance(x, tolerance, said):
-    assert words.known(x, tolerance) == said
-
-
-def engine(label="pymunk", verdict="agrees"):
-    return {"label": label, "verdict": verdict, "departure_reason": ""}
-
-
-def race(theirs, ours, reached=True, speed="compiled"):
-    """A race whose times are (shortest, median, longest) [s]."""
-    rows = [{"label": label, "speed": speed, "steps": 10, "error": 0.01, "low": t[0], "seconds": t[1], "high": t[2]}
-            for label, speed, t in (("pymunk", "engine", theirs), ("Verlet", speed, ours))]
-    curve = {"label": "Verlet", "rows": [{"error": 0.01 if reached else 0.1}]}
-    result = {"quick": False, "times": {"rows": rows}, "cases": {"one": {"ours": [curve], "engines": [engine()]}}}
-    known = {"ours": ours[1], "ratio": theirs[1] / ours[1]} if ours else {"ours": None, "ratio": None}
-    return words.race({"engine": "pymunk", "product": "pymunk", "error": 0.01, "seconds": theirs[1],
-                       "method": "Verlet", "speed": speed, **known}, result)
-
-
-def test_a_race_is_won_only_beyond_a_factor_of_two_and_beyond_the_spread_of_its_times():
-    assert race((3.9, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "faster"
-    assert race((1.7, 1.8, 1.9), (0.9, 1.0, 1.1))["outcome"] == "a tie"
-    assert race((0.8, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "a tie"
-    assert race((0.2, 0.2, 0.2), (0.9, 1.0, 1.1))["outcome"] == "slower"
-    assert words.ratio(race((2.0, 4.0, 8.0), (1.0, 1.0, 1.0))) == "4× (2.0 to 8.0)"
-    assert words.ratio(race((1.1, 1.3, 1.9), (1.0, 1.0, 1.0))) == "1.3× (1.1 to 1.9)"
-
-
-def test_plain_python_alone_can_win_a_race_but_not_lose_it():
-    assert race((3.9, 4.0, 4.1), (0.9, 1.0, 1.1), speed="plain")["outcome"] == "faster"
-    for theirs in (1.8, 0.2):
-        found = race((theirs,) * 3, (0.9, 1.0, 1.1), speed="plain")
-        assert found["outcome"] == "open" and found["ratio"] is None and "plain Python only" in words.ratio(found)
-
-
-def test_a_race_without_a_ratio_says_why_and_is_lost_where_no_run_of_ours_is_that_accurate():
-    open_race = {"engine": "pymunk", "error": 0.01, "seconds": 1.0, "ratio": None}
-    for error, said, outcome in ((0.001, "too long to be timed", "open"), (0.1, "none of our runs", "slower")):
-        case = {"ours": [{"label": "Verlet", "rows": [{"error": error}]}], "engines": [engine()]}
-        found = words.race(open_race, {"quick": False, "cases": {"one": case}, "times": {"rows": []}})
-        assert said in words.ratio(found) and found["outcome"] == outcome
-        short = words.race(open_race, {"quick": True, "cases": {"one": case}, "times": {"rows": []}})
-        assert short["outcome"] == "open"
-
-
-def test_there_is_no_race_to_an_error_that_no_theory_bounds():
-    case = {"ours": [{"label": "loop", "rows": [{"error": 0.5}]}], "engines": [engine(verdict="undecided")]}
-    found = words.race({"engine": "pymunk", "error": 0.01, "seconds": 1.0, "ratio": 3.0},
-                       {"cases": {"one": case}, "times": {"rows": []}})
-    assert found["outcome"] == "open" and found["ratio"] is None and "luck" in words.ratio(found)
+    assert numbers.known(x, tolerance) == said
 
 
 def test_a_busy_machine_is_named_and_an_idle_one_is_not():
@@ -259,19 +211,3 @@ def test_no_page_names_what_only_a_programmer_knows():
         scene = modules.bind_scene(name)
         for text in (*map(modules.report_text, filter(None, (scene.truth, scene.law))), theory(scene)):
             assert not internal.findall(text), name
-
-
-def test_of_settings_that_err_alike_the_fastest_one_runs():
-    def entry(engine, error, seconds):
-        return {"engine": engine, "product": "pymunk", "error": error, "seconds": seconds, "ours": 1e-3,
-                "method": "ours", "speed": "compiled", "ratio": seconds / 1e-3}
-    settings = [entry("pymunk", 1e-4, 9.0), entry("pymunk, fewer iterations", 1.04e-4, 3.0),
-                entry("pymunk, fewest", 1e-3, 1.0)]
-    rows = [{"label": a["engine"], "speed": "engine", "error": a["error"], "low": a["seconds"], "high": a["seconds"]}
-            for a in settings]
-    rows.append({"label": "ours", "speed": "compiled", "error": 1e-4, "seconds": 1e-3, "low": 1e-3, "high": 1e-3})
-    engines = [engine(a["engine"]) for a in settings]
-    result = {"quick": False, "cases": {"only": {"engines": engines}}, "times": {"advantage": settings, "rows": rows}}
-    assert words.races(result)["pymunk"]["engine"] == "pymunk, fewer iterations"
-    settings[1]["error"] = rows[1]["error"] = 1.06e-4                  # errs more: its time is no time to that error
-    assert words.races(result)["pymunk"]["engine"] == "pymunk"

@@ -16,7 +16,6 @@ from validate import measure, methods
 from validate.check import Verdict, is_right
 from validate.measure.accuracy import ASYMPTOTIC, engine_curve, theory
 from validate.measure.selection import select
-from validate.measure.timing import time_to_error
 from validate.report import words
 from validate.scene import PRODUCTS, PYBULLET
 from validate.subject import modules
@@ -198,13 +197,6 @@ def test_same_scene_same_bits():
     first, second = (measure.errors("oscillator", measure.Plan(speeds=("plain",), live=LIVE, most_steps=100))
                      for _ in range(2))
     assert first == second
-
-
-def test_time_to_an_error_is_read_between_points():
-    points = [(1e-1, 1.0), (1e-3, 100.0)]
-    assert time_to_error(points, 1e-2) == pytest.approx(10.0)
-    assert time_to_error(points, 1e-4) is None
-    assert time_to_error(points, 1.0) == 1.0
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])

@@ -14,6 +14,7 @@ from ..check import Verdict, jsonable
 from ..methods import DISCRETE, GYROSCOPIC, PENALTY, RATTLE, ROLLING, SLIDING, SYMPLECTIC_EULER
 from . import timing
 from .accuracy import relative, run_to_end
+from .compilation import compilation
 from .selection import select, with_overrides
 from .switches import engine_parts
 from .timing import SAME, Timed, interleaved, time_ours
@@ -294,6 +295,9 @@ def times(name, plan, result):
     These are its run times, its savings by omission, and the cost of each part.
     """
     selection = select(name, plan)
-    parts = [] if plan.quick or plan.most_steps else engine_parts(selection, selection.first[1])
-    return {**timing.times(name, plan, result), "left_out": jsonable(left_out(name, plan, result)),
-            "engine_parts": parts}
+    _, p = selection.first
+    timed = timing.times(name, plan, result)
+    full = not (plan.quick or plan.most_steps)
+    return {**timed, "left_out": jsonable(left_out(name, plan, result)),
+            "engine_parts": engine_parts(selection, p) if full else [],
+            "compilation": compilation(selection, p, timed["races"]) if full else None}

@@ -17,7 +17,7 @@ from ..products import PYBULLET, PYMUNK
 from ..scene import Scene
 from ..subject import modules
 
-REPEATS = 7                  # of a timed run, at most
+REPEATS = 9                  # of a timed run; fewer only of long ones in plain Python
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
 
 
@@ -38,7 +38,7 @@ class Plan(NamedTuple):
 
     def repeats(self):
         """Return number of timed repeats; fewer where a reader is waiting."""
-        return 3 if self.most_steps else 5 if self.quick else REPEATS
+        return 3 if self.most_steps else REPEATS
 
     def enough(self):
         """Return how many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.

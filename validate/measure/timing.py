@@ -1,15 +1,15 @@
 """Error against run time.
 
-Only the stepping loop is timed: two warm-ups, then interleaved repeats with garbage collection off.  A loop that is
-shorter than a tenth of a millisecond is repeated inside the clock; one that takes longer than 40 ms is warmed up once
-and repeated less often, because its time varies less.  Errors come from separate, identical runs.
+Only the stepping loop is timed: two warm-ups, then nine interleaved repeats with garbage collection off.  A loop that
+is shorter than a tenth of a millisecond is repeated inside the clock.  One that takes longer than 40 ms is warmed up
+once.  A long loop in plain Python, which decides no race, is repeated less often.  Errors come from separate, identical
+runs.
 """
 
 import gc
 import os
 import time
 import warnings
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,19 +17,20 @@ import numpy as np
 
 from ..check import jsonable
 from . import traces
-from .accuracy import ASYMPTOTIC, labels_that_agree, relative
+from .accuracy import labels_that_agree, relative
+from .calls import costs_of_calls
+from .races import races, reach
 from .selection import REPEATS, select, with_overrides
 
 WARM_UPS, PROBE = 2, 64
-EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SAME = 1e-9                  # relative difference of two motions that count as the same [-]
 LONG = 0.04                  # a timed loop that takes longer is warmed up once [s]
-ENOUGH = 0.3                 # a timed loop is repeated until it has run for so long, or as often as was asked for [s]
+ENOUGH = 0.3                 # in plain Python a loop is repeated until it has run for so long, or as often as all [s]
 LEAST_REPEATS = 3            # but at least so often [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 SHORTEST_LOOK = 0.1          # the system counts hundredths of a second: a shorter look at them is no measurement [s]
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 
 
 class Timed(NamedTuple):
@@ -59,14 +60,15 @@ def times(name, plan, result):
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]}
             for label, speed, n, t in timed if n in found[label]]
     done = {(r["label"], r["speed"]) for r in rows}
+    calls = costs_of_calls(plan.live) if items else []
     return jsonable({
         "rows": rows,
         "untimed": list(dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in done)),
-        "baseline": baseline(plan.live) if scene.moves else {},
+        "calls": calls,
         "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
         "others": others if items else None,
         "time_to_error": times_to_error(rows),
-        "advantage": advantage(rows, result["cases"][case]),
+        "races": races(rows, result["cases"][case], [product.name for product in plan.live], plan.quick, calls),
         "ablations": ablations(selection, p, labels_that_agree(result)),
     })
 
@@ -167,7 +169,7 @@ def interleaved(items, time_limits, repeats=REPEATS):
         try:
             for lap in range(repeats):
                 for (item, inner, seconds), sample in zip(chosen, samples):
-                    if lap < LEAST_REPEATS or lap * seconds < ENOUGH:
+                    if item.speed != "plain" or lap < LEAST_REPEATS or lap * seconds < ENOUGH:
                         sample.append(clock(item, inner))
         finally:
             if enabled:
@@ -216,31 +218,6 @@ def clock(item, inner, steps=None):
         close()
 
 
-@cache
-def baseline(live):
-    """Return the cost of one step of an empty world [s], including the Python call, for each engine.
-
-    Measure it once.
-    """
-    costs = {}
-    for product in live:
-        world = product.adapter.empty_world()
-        costs[product.name] = empty_step(world.step)
-        world.close()
-    return costs
-
-
-def empty_step(step):
-    """Return median seconds per call."""
-    laps = []
-    for _ in range(REPEATS):
-        begin = time.perf_counter()
-        for _ in range(500):
-            step()
-        laps.append((time.perf_counter() - begin) / 500)
-    return float(np.median(laps))
-
-
 # ---------------------------------------------------------------------------------------------- ablations
 
 def ablations(selection, p, agreeing):
@@ -276,52 +253,10 @@ def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full)
 # ---------------------------------------------------------------------------------------------- reading the diagram
 
 def times_to_error(rows):
-    """Return {label (speed): {target error: seconds, or None if no run reaches it}}, log-log between points."""
-    table = {}
-    for key in dict.fromkeys((r["label"], r["speed"]) for r in rows):
-        points = sorted((r["error"], r["seconds"]) for r in rows if (r["label"], r["speed"]) == key)
-        table[f"{key[0]} ({key[1]})"] = {f"{target:g}": time_to_error(points, target) for target in TARGETS}
-    return table
-
-
-def time_to_error(points, target):
-    """Return the shortest time for that error from (error, seconds) points.
-
-    It is that of the cheapest accurate point, or between it and the next.
-    """
-    good = [(s, e) for e, s in points if e <= target]
-    if not good:
-        return None
-    seconds, error = min(good)
-    worse = [(e, s) for e, s in points if e > target and s < seconds]
-    if not worse or error <= 0.0:
-        return seconds
-    e, s = min(worse)
-    fraction = np.log(target / error) / np.log(e / error)
-    return float(np.exp(np.log(seconds) + fraction * (np.log(s) - np.log(seconds))))
-
-
-def advantage(rows, case):
-    """For each engine that errs: its smallest error, its time for that, our shortest time to get there,
-    and the ratio.  There is no race where none of our methods was run,
-    and none against the run that is the truth.
-    """
-    if not case["ours"]:
-        return []
-    product = {c["label"]: c["product"] for c in case["engines"] if not c["reference"]}
-    result, ours = [], {}
-    for r in rows:
-        if r["speed"] in ("plain", "compiled"):
-            ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
-    worth = [r for r in rows if r["speed"] == "engine" and r["label"] in product and EXACTLY < r["error"] < ASYMPTOTIC]
-    for label in dict.fromkeys(r["label"] for r in worth):
-        best = min((r for r in worth if r["label"] == label), key=lambda r: r["error"])
-        reached = [(t, name, speed) for (name, speed), points in ours.items()
-                   if (t := time_to_error(sorted(points), best["error"]))]
-        quickest = min(reached, default=(None, "", ""))
-        result.append({
-            "engine": label, "product": product[label], "error": best["error"], "seconds": best["seconds"],
-            "ours": quickest[0], "method": quickest[1], "speed": quickest[2],
-            "ratio": best["seconds"] / quickest[0] if quickest[0] else None,
-        })
-    return result
+    """[{label, speed, seconds}]: of each curve its times to the TARGETS, None where its runs do not get there."""
+    groups = {}
+    for row in rows:
+        groups.setdefault((row["label"], row["speed"]), []).append(row)
+    reached = {key: [reach(group, target) for target in TARGETS] for key, group in groups.items()}
+    return [{"label": label, "speed": speed, "seconds": [one and one.seconds for one in found]}
+            for (label, speed), found in reached.items()]

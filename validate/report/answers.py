@@ -1,17 +1,19 @@
 """The four questions of the front page, answered from the results."""
 
 from collections import Counter
-from statistics import quantiles
 
 from ..check import Verdict
+from ..measure.races import Outcome
 from ..scene import EXACT
-from . import words
+from . import choice, races, words
+
+LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for [-]
 
 
 def answers(results, stability, cores=None):
-    """Return {question's name: what the front page says}: right, faster, departures, stable."""
+    """Return {question's name: what the front page says}: right, faster, departures, stable, which."""
     return {"right": right(results), "faster": faster(results, cores), "departures": departures(results),
-            "stable": stable(stability)}
+            "stable": stable(stability), "which": choice.by_lesson(results)}
 
 
 def curves_of(results, role):
@@ -41,15 +43,34 @@ def right(results):
 
 
 def faster(results, cores=None):
-    """Return all races of the report, each with its scene; those that we do not win are listed by name."""
-    every = [{**race, "scene": r["scene"], "title": r["title"], "lesson": r["lesson"]}
-             for r in results for race in words.races(r).values()]
-    decided = [race for race in every if race["ratio"]]
-    by = {outcome: [race for race in every if race["outcome"] == outcome]
-          for outcome in ("faster", "a tie", "slower", "open")}
-    low, middle, high = quantiles([race["ratio"] for race in decided], n=4) if len(decided) > 1 else (None,) * 3
-    return {"races": every, "decided": decided, "by": by, "low": low, "middle": middle, "high": high,
-            "warning": words.busy_warning(results, cores)}
+    """All races of the report, how many ended how at each error, and what the ratios at the headline are made of."""
+    every = races.every(results)
+    counts = races.counted(every)
+    headline = races.at(every)
+    by = {outcome.name.lower(): [race for race in headline if Outcome(race["outcome"]) is outcome]
+          for outcome in Outcome}
+    return {"races": every, "counts": counts, "headline": races.headline_of(counts), "by": by,
+            "factors": races.median_factors(every), "rows": races.rows(every),
+            "undecided": by_reason(by["undecided"]),
+            "beyond": [race for race in headline if race["ratio"] and not LEAST <= race["ratio"] <= MOST],
+            "calls": calls(results), "warning": words.busy_warning(results, cores)}
+
+
+def by_reason(undecided):
+    """{why: races} of the undecided races."""
+    found = {}
+    for race in undecided:
+        found.setdefault(race["why"], []).append(race)
+    return found
+
+
+def calls(results):
+    """Return what a call from Python costs each engine: one record each, from the first scene that was timed."""
+    found = {}
+    for result in results:
+        for one in result["times"].get("calls") or ():
+            found.setdefault(one["product"], one)
+    return list(found.values())
 
 
 def departures(results):

@@ -15,7 +15,7 @@ from rich.table import Table
 from solutions.checks import BadInput
 
 from ..measure.accuracy import ASYMPTOTIC
-from ..run.store import stored_report
+from ..run.store import report_of_this_version
 from .audit import distance
 
 ROUND_OFF_ONLY = 1e-9        # limits below this leave room for round-off only, relative [-]
@@ -83,7 +83,7 @@ def loosest(rows):
 
 def show(report):
     """Print how sharp the limits of a report are.  Raises BadInput for a report without limits."""
-    rows = list(rows_of(stored_report(report)))
+    rows = list(rows_of(report_of_this_version(report)))
     if not rows:
         raise BadInput(f"report {str(report)!r}", "without a limit above round-off", "name a report of more scenes")
     console = Console(width=120)

@@ -23,9 +23,11 @@ import importlib
 import inspect
 import os
 import re
+import shutil
 import sys
 import traceback
 import types
+import uuid
 import warnings
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
@@ -35,7 +37,7 @@ from solutions.checks import BadInput
 
 from ..scene import Scene, field_names
 from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
-from .numba_twins import CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
+from .numba_twins import CACHE, CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
@@ -270,6 +272,27 @@ def _module_set(folder, compiled, digest):
     if compiled and not can_compile():
         raise BadInput("numba", "not installed", "install it, or use --plain")
     return CompiledModules(folder, digest) if compiled else ModuleSet(folder, digest)
+
+
+def compiled_twice(of="solutions"):
+    """Yield two compiled module sets of a subject, one after the other.
+
+    The first finds an empty cache, and the second what the first has left there.
+    """
+    digest = f"anew-{uuid.uuid4().hex[:12]}"
+    try:
+        for _ in range(2):
+            forget_modules(f"_compiled_{digest}")
+            yield CompiledModules(subject_folder(of), digest)
+    finally:
+        forget_modules(f"_compiled_{digest}")
+        shutil.rmtree(CACHE / digest, ignore_errors=True)
+
+
+def forget_modules(package):
+    """Forget that a package and what lies below it were imported."""
+    for name in [name for name in sys.modules if name == package or name.startswith(f"{package}.")]:
+        del sys.modules[name]
 
 
 def record_of(module, name):
