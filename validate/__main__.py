@@ -176,9 +176,17 @@ def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = 
         raise BadInput(f"report {str(report)!r}", "with parts missing", "make it again") from None
     for problem in problems:
         console.print(f"✗ {problem}", highlight=False, markup=False, soft_wrap=True)
+    say_measured(content)
     checked = ", ".join(f"{count} {what}" for what, count in counts.items())
     console.print(f"{len(problems)} differences in {checked}.", highlight=False, soft_wrap=True)
     raise typer.Exit(1 if problems else 0)
+
+
+def say_measured(report):
+    """Print each limit and tolerance of a report that was measured and not derived."""
+    from .report.words import measured_limits
+    for place, why in measured_limits(report["scenes"], report["stability"]):
+        console.print(f"· measured, not derived: {place}: {why}", highlight=False, markup=False, soft_wrap=True)
 
 
 @app.command("summary")
@@ -218,6 +226,7 @@ def limits(report: Annotated[Path, typer.Argument(help="Folder of a report.")] =
     """Print how many times larger than the error the limits of a report are, and its loosest curves."""
     from .report.limits import show
     show(report)
+    say_measured(report_of_this_version(report))
 
 
 @app.command("piles")

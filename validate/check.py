@@ -18,6 +18,7 @@ class Finding(NamedTuple):
     measured: float          # the value from the experiment
     tolerance: float         # derived before the experiment, in the unit of the quantity
     observation: str         # the result of the experiment, in one sentence
+    tolerance_from: str = ""  # the measurement that the tolerance was taken from; empty where it was derived
 
     @property
     def holds(self):
@@ -37,6 +38,8 @@ class Verdict(StrEnum):
     DEPARTS = "departs"                      # no theory predicted this
     UNDECIDED = "undecided"                  # too coarse to judge, or not recorded
     NOT_ATTEMPTED = "not attempted"          # the exercise has no answer yet
+    UNFINISHED = "does not arrive"           # it does not come to its end, as the scene says
+    REFERENCE = "reference"                  # the truth is a run of this engine: nothing is judged
 
 
 class Whose(StrEnum):

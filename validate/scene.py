@@ -39,7 +39,6 @@ class Engine(NamedTuple):
     settings: str            # what was set, and to what, for people
     most_steps: int | None = None            # the largest number of steps that is worth the engine's time
     substeps: int = 1                        # steps in a call from Python: `make` gives a world that makes so many
-    recorded_as: str | None = None           # the variant whose recorded runs are bitwise its own
 
     @property
     def label(self):
@@ -75,6 +74,8 @@ class Runner:
     limit: Callable          # (p, dt) → largest relative error; or {order: that}, of which it takes its own
     predicted: Callable | str    # (p, dt) → Prediction, or None for a step that is too long; or why there is none
     departure: Departure | None = None   # where it follows another law than the truth
+    measured: str = ""                   # what its limit was measured on; empty where theory gives it
+    unfinished: Callable | None = None   # (p) → why it does not come to its end in this case, or ""; it is not run then
     supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
     is_truth: Callable | None = None     # (p) → bool: whether a run of its engine is the truth of this case
     in_quick: bool = True                # False: only --full runs it

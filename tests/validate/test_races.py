@@ -32,7 +32,8 @@ def line(label, speed, order, per_step, constant=1.0, steps=(10, 100, 1000), **m
 
 
 def engine(per_step=1e-5, constant=1.0, verdict="agrees", **more):
-    return line("pymunk", "engine", 1, per_step, constant, product="pymunk", variant="", verdict=verdict, **more)
+    about = {"product": "pymunk", "variant": "", "substeps": 1, "verdict": verdict}
+    return line("pymunk", "engine", 1, per_step, constant, **about, **more)
 
 
 def held(engines, ours, quick=False, cost=COST):
@@ -74,6 +75,12 @@ def test_a_ratio_is_the_product_of_order_and_loop_and_calls_are_a_part_of_the_lo
         assert race["ratio"] == pytest.approx(race["order"] * race["loop"])
         assert race["loop"] == pytest.approx(100.0) and race["calls"] == pytest.approx(10.0 / 9.0)
         assert race["same_order"]["label"] == "Euler" and race["low"] < race["ratio"] < race["high"]
+
+
+def test_an_engine_that_makes_many_steps_in_a_call_pays_for_few_calls():
+    theirs = engine()
+    theirs[0].update(substeps=10)
+    assert held([theirs], [EULER])[0.01]["calls"] == pytest.approx(1.0 / 0.99)
 
 
 def test_without_a_method_of_the_engines_order_a_ratio_has_no_parts():
@@ -137,7 +144,7 @@ def test_what_does_not_agree_with_the_truth_does_not_race():
 def test_of_settings_that_err_alike_the_fastest_one_runs_to_the_engines_best():
     def setting(variant, error, seconds):
         label = f"pymunk, {variant}"
-        return (curve(label, 1, [(10, error)], product="pymunk", variant=variant),
+        return (curve(label, 1, [(10, error)], product="pymunk", variant=variant, substeps=1),
                 [row(label, "engine", 10, error, seconds)])
     settings = [setting("as it is", 1e-4, 9.0), setting("fewer", 1.04e-4, 3.0), setting("fewest", 1e-3, 1.0)]
     ours = line("RK4", "compiled", 4, 1e-7)
@@ -147,7 +154,7 @@ def test_of_settings_that_err_alike_the_fastest_one_runs_to_the_engines_best():
 
 
 def test_an_engine_without_error_races_to_round_off():
-    theirs = (curve("pymunk", "exact", [(1, 1e-16)], product="pymunk", variant=""),
+    theirs = (curve("pymunk", "exact", [(1, 1e-16)], product="pymunk", variant="", substeps=1),
               [row("pymunk", "engine", 1, 1e-16, 1e-6)])
     exact = (curve("event", "exact", [(1, 0.0)]), [row("event", "compiled", 1, 0.0, 1e-7)])
     found = held([theirs], [exact])

@@ -12,7 +12,7 @@ from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
 from validate.measure.selection import Plan
-from validate.report import films, numbers, plots, words
+from validate.report import films, numbers, plots, races, words
 from validate.report.answers import answers
 from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
@@ -143,6 +143,90 @@ def test_a_departure_that_nobody_predicted_is_on_the_front_page(made):
     assert found["departures"]["lines"][0]["kind"] == "departs"
     front = report.texts(worse, [], data["run"])["index.html"]
     assert "some of it nobody predicted" in front and "comparisons depart" in front
+
+
+def changed(made, **fields):
+    """The results of the small report, of which these curves of ours in `throw` are changed; and what it was made with.
+    """
+    _, data = made
+    other = json.loads(json.dumps(data))
+    for curve in other["scenes"][0]["cases"]["thrown"]["engines"] if fields.pop("engines", False) else \
+            other["scenes"][0]["cases"]["thrown"]["ours"][:1]:
+        curve.update(fields)
+    return other
+
+
+def front_of(data):
+    return report.texts(data["scenes"], data["stability"], data["run"])["index.html"]
+
+
+def test_a_method_that_does_not_arrive_is_counted_on_the_front_page_and_not_among_those_that_agree(made):
+    front = front_of(changed(made, verdict="does not arrive", rows=[], message="it never ends"))
+    _, data = made
+    ours = sum(len(case["ours"]) for scene in data["scenes"] for case in scene["cases"].values())
+    assert f"{ours - 1} of {ours - 1} comparisons come out as theory says" in front
+    assert re.search(r"1 does not arrive: <a href=\"throw.html\">Throw</a>", front)
+
+
+def test_the_front_page_says_which_truths_are_an_engines_own_run(made):
+    _, data = made
+    assert "No truth is a run of an engine." in front_of(data)
+    front = front_of(changed(made, engines=True, verdict="reference", reference=True))
+    assert "In 1 scene the truth is an engine's own run, and that engine is not judged there: " \
+           '<a href="throw.html">Throw</a> (pymunk)' in front
+    assert "that is neither" not in front
+
+
+def test_a_finding_that_was_not_run_is_counted_as_such(made):
+    _, data = made
+    other = json.loads(json.dumps(data))
+    other["stability"][0]["not_run"] = [{"claim": "It holds.", "quantity": "share [-]", "why": "pybullet is missing"}]
+    pages = report.texts(other["scenes"], other["stability"], other["run"])
+    assert "findings hold; 1 not run" in pages["index.html"] and "pybullet is missing" in pages["stability.html"]
+    assert "It holds.,share [-],,,,not run,pybullet is missing," in pages["stability.csv"]
+
+
+def test_a_measured_limit_is_listed_and_counted(made):
+    _, data = made
+    assert words.measured_limits(data["scenes"], data["stability"]) == []
+    other = changed(made, measured="ten times what was seen")
+    found, = words.measured_limits(other["scenes"], other["stability"])
+    assert found == (f"throw: {other['scenes'][0]['cases']['thrown']['ours'][0]['label']}", "ten times what was seen")
+    assert "1 limit or tolerance was measured" in front_of(other)
+
+
+def test_a_quick_report_shows_no_tick_while_races_are_undecided_and_the_last_full_run_beside_it(made):
+    _, data = made
+    section = front_of(data).partition('id="faster"')[2].partition("</section>")[0]
+    assert "verdict agrees" not in section and "verdict open" in section
+    assert "No full run of this version is kept" in section
+    counts = races.counted([])
+    counts[1].update(ratio=31.0, low=28.0, high=35.0, slower=2, tie=5, races=55)
+    other = json.loads(json.dumps(data))
+    other["run"]["full_run"] = {"date": "2026-11-30", "commit": "abc1234", "machine": "Linux", "processor": "P",
+                                "counts": counts}
+    section = front_of(other).partition('id="faster"')[2].partition("</section>")[0]
+    assert "2026-11-30" in section and "abc1234" in section and "31× (28 to 35) at 1 %, 2 losses and 5 ties" in section
+
+
+@pytest.mark.parametrize(("ratio", "mark"), [(5000.0, " beyond"), (0.01, " below"), (50.0, "")])
+def test_a_value_beyond_the_axis_of_the_strip_is_marked_as_such(made, ratio, mark):
+    _, data = made
+    other = json.loads(json.dumps(data))
+    race = next(one for one in other["scenes"][0]["times"]["races"] if one["level"] == 0.01)
+    race.update(ratio=ratio, low=0.9 * ratio, high=1.1 * ratio, outcome="faster", why="")
+    dots = re.findall(r'class="dot \w+([ \w]*)" href="throw.html"', front_of(other))
+    assert dots == [mark]
+    assert ("Beyond the axis" in front_of(other)) == bool(mark)
+
+
+def test_every_race_is_in_its_file_with_what_it_is_made_of(made):
+    folder, data = made
+    lines = (folder / "races.csv").read_text(encoding="utf-8").splitlines()
+    held = sum(len(scene["times"]["races"]) for scene in data["scenes"])
+    assert len(lines) == held + 1 and held % 4 == 0 and held > 0
+    for name in ("order", "loop", "calls", "compilation, cold", "motion until compilation has paid"):
+        assert name in lines[0]
 
 
 def test_the_error_from_an_engines_own_law_is_drawn_beside_that_from_the_truth(made):

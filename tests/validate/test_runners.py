@@ -7,11 +7,11 @@ import pytest
 
 from solutions.checks import BadInput
 from validate import measure, methods
-from validate.check import Verdict, Whose
-from validate.measure.accuracy import REFERENCE, Outcome, judged
-from validate.measure.timing import advantage
+from validate.check import Verdict
+from validate.measure.accuracy import Outcome, judged
+from validate.measure.races import races
 from validate.methods import INTEGRATORS, RK4, VERLET
-from validate.scene import PYMUNK, Departure, Method, Runner, no_limit, ours
+from validate.scene import PYMUNK, Method, Runner, no_limit, ours
 from validate.subject import modules
 
 PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)
@@ -112,6 +112,15 @@ def test_the_largest_error_of_a_curve_that_no_theory_judges_is_infinite():
     assert unjudged and all(r.largest_error(None, 0.1) == np.inf and not callable(r.predicted) for r in unjudged)
 
 
+def test_a_limit_that_was_measured_is_marked_and_says_on_what():
+    """Its text or its name has the word; `validate audit` and `validate limits` list what is marked."""
+    for name in modules.scene_names():
+        for r in modules.bind_scene(name).runners:
+            limit = getattr(r.limit, "func", r.limit)
+            says = "measured" in f"{limit.__name__} {limit.__doc__}"
+            assert says == bool(r.measured), (name, r.label)
+
+
 @pytest.mark.parametrize(("name", "case", "judges_itself"), [
     ("card_house", "too smooth", True), ("card_house", "rough enough", False),
     ("machine", "places", True), ("machine", "energy", False)])
@@ -129,9 +138,12 @@ def test_a_reference_is_neither_judged_nor_raced():
     runs = [(100, Outcome(scene.truth(scene.parameters, scene.duration)))]
     curves = [judged(scene, r, scene.parameters, np.array(scene.truth(scene.parameters, scene.duration)), runs, 4)
               for r in (its_own, runner)]
-    assert [c["reference"] for c in curves] == [True, False] and curves[0]["message"] == REFERENCE
-    assert curves[0]["verdict"] is Verdict.UNDECIDED
-    rows = [{"label": runner.label, "speed": "engine", "error": 0.01, "seconds": 1.0},
-            {"label": "Verlet", "speed": "plain", "error": 0.01, "seconds": 0.1}]
-    raced = [advantage(rows, {"ours": [{}], "engines": [{**c, "product": "pymunk"}]}) for c in curves]
-    assert [len(found) for found in raced] == [0, 1]
+    assert [c["reference"] for c in curves] == [True, False] and curves[0]["message"] == ""
+    assert curves[0]["verdict"] is Verdict.REFERENCE
+    rows = [{"label": label, "speed": speed, "steps": 100, "error": 0.01, "seconds": 1.0, "low": 1.0, "high": 1.0}
+            for label, speed in ((runner.label, "engine"), ("Verlet", "plain"))]
+    ours = {"label": "Verlet", "verdict": "agrees", "rows": [], "expected": 2, "order": None}
+    raced = [races(rows, {"ours": [ours], "engines": [{**c, "verdict": verdict, "product": "pymunk", "variant": "",
+                           "substeps": 1}]},
+                   ["pymunk"], False, []) for c, verdict in zip(curves, (curves[0]["verdict"], "agrees"), strict=True)]
+    assert [len(found) for found in raced] == [0, 4]

@@ -14,7 +14,7 @@ from solutions import integrators
 from solutions.checks import BadInput
 from validate import measure, methods
 from validate.check import Verdict, is_right
-from validate.measure.accuracy import ASYMPTOTIC, engine_curve, theory
+from validate.measure.accuracy import ASYMPTOTIC, engine_curve, relative, run_to_end, theory
 from validate.measure.selection import select
 from validate.report import words
 from validate.scene import PRODUCTS, PYBULLET
@@ -126,6 +126,29 @@ def test_nothing_departs_from_truth_without_having_been_predicted(name):
             assert Verdict(curve["verdict"]) is not Verdict.DEPARTS, f"{curve['label']} {curve['message']}"
     first = result["picture"]["films"][0]
     assert first["role"] == ("ours" if modules.bind_scene(name).our_film else "truth") and first["frames"]
+
+
+UNFINISHED = [(name, r.label, case) for name in SCENES for r in modules.bind_scene(name).our_runners if r.unfinished
+              for case, p in modules.bind_scene(name).cases.items() if r.unfinished(p)]
+
+
+def test_a_method_that_does_not_arrive_has_its_row_in_the_table():
+    result = measure.errors("reach_2r", measure.Plan(speeds=("plain",), live=()))
+    curve = next(c for c in result["cases"]["near the hole"]["ours"] if c["label"] == "pseudo-inverse")
+    assert Verdict(curve["verdict"]) is Verdict.UNFINISHED and curve["rows"] == [] and "jumps" in curve["message"]
+    assert "1 of" in words.headline(result) and "do not arrive" in words.headline(result)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "label", "case"), UNFINISHED)
+def test_what_is_said_not_to_arrive_does_not(name, label, case):
+    """It fails, or it is off by more than theory allows a method that comes to rest."""
+    selection = select(name, measure.Plan(speeds=("compiled",), quick=False))
+    scene, p = selection.scene, selection.scene.cases[case]
+    runner = next(r for r in scene.our_runners if r.label == label)
+    bound, step = selection.bound(runner, "compiled")
+    outcome, truth = run_to_end(bound, step, p, 1), np.array(scene.truth(p, scene.duration), dtype=float)
+    assert outcome.failure or relative(outcome.observed, truth) > 10.0 * runner.largest_error(p, scene.duration)
 
 
 def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(tmp_path):

@@ -62,9 +62,17 @@ def case_errors(selection, case, p, with_engines):
         "params": p._asdict() if hasattr(p, "_asdict") else {},
         "truth": truth.tolist(),
         "quantities": scene.quantity_names(p) if scene.quantity_names else [],
-        "ours": [our_curve(selection, r, p, truth) for r in selection.ours_for(p)],
+        "ours": [*(our_curve(selection, r, p, truth) for r in selection.ours_for(p)),
+                 *(unfinished_curve(r, why) for r, why in selection.unfinished_for(p))],
         "engines": [engine_curve(selection, case, r, p, truth) for r in engines_here],
     }
+
+
+def unfinished_curve(runner, why):
+    """Return the curve of a method of ours that does not come to its end in a case: it has no runs, and says why."""
+    return {"label": runner.label, "rows": [], "order": None, "expected": runner.order, "verdict": Verdict.UNFINISHED,
+            "message": why, "departure_reason": "", "unpredicted": "", "measured": runner.measured, "reference": False,
+            **our_look(runner)}
 
 
 # ---------------------------------------------------------------------------------------------- runs
@@ -134,7 +142,12 @@ def our_curve(selection, runner, p, truth):
     scene, step = selection.fastest(runner)
     runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(runner, p))
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
-    return {**found, "role": Role.OURS, "colour": runner.who.colour, "marker": runner.who.marker, "line": "-"}
+    return {**found, **our_look(runner)}
+
+
+def our_look(runner):
+    """Return how the curve of a method of ours is drawn."""
+    return {"role": Role.OURS, "colour": runner.who.colour, "marker": runner.who.marker, "line": "-"}
 
 
 def engine_curve(selection, case, runner, p, truth):
@@ -142,7 +155,8 @@ def engine_curve(selection, case, runner, p, truth):
     scene, engine = selection.scene, runner.who
     colour, marker, line = engine_look(engine, [r.who for r in scene.engine_runners])
     about = {"role": Role.ENGINE, "product": engine.product.name, "variant": engine.variant,
-             "settings": engine.settings, "colour": colour, "marker": marker, "line": line}
+             "settings": engine.settings, "substeps": engine.substeps,
+             "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
         source = f"live, {engine.product} {engine.product.installed()}"
         runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(runner, p))
@@ -153,7 +167,8 @@ def engine_curve(selection, case, runner, p, truth):
             nothing = {"label": engine.label, "rows": [], "order": None, "expected": runner.order,
                        "verdict": Verdict.UNDECIDED}
             return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "",
-                    "unpredicted": reason(runner), "reference": runner.is_reference(p)}
+                    "unpredicted": reason(runner), "measured": runner.measured,
+                    "reference": runner.is_reference(p)}
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
@@ -201,9 +216,9 @@ def judged(scene, runner, p, truth, runs, enough):
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
     if runner.is_reference(p):
-        verdict, message = Verdict.UNDECIDED, REFERENCE
+        verdict, message = Verdict.REFERENCE, ""
     found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
-             "message": message, "departure_reason": "", "unpredicted": reason(runner),
+             "message": message, "departure_reason": "", "unpredicted": reason(runner), "measured": runner.measured,
              "reference": runner.is_reference(p)}
     if departure is None:
         return found

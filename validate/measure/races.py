@@ -49,6 +49,7 @@ class Race(NamedTuple):
     """One engine against our methods, to one error."""
     product: str
     variant: str             # of the engine's settings that race
+    substeps: int            # its steps in a call from Python
     level: float | None      # one of LEVELS, or BEST
     error: float | None      # relative error that both sides must reach; None where the engine has no run to race
     engine: Reach | None
@@ -146,11 +147,12 @@ def race(field, level):
     ours = None if error is None else quickest(field.ours, field.rows, error)
     outcome, why = why_undecided(field, theirs, error, engine, ours) or outcome_of(engine, ours)
     decided = engine is not None and ours is not None and outcome is not Outcome.UNDECIDED
-    variant = next((curve["variant"] for curve in field.engines if engine and curve["label"] == engine.label), "")
+    setting = next((curve for curve in field.engines if engine and curve["label"] == engine.label), None)
+    variant, substeps = (setting["variant"], setting["substeps"]) if setting else ("", 1)
     same, order = in_the_same_order(field, engine, ours, error)
-    return Race(field.product, variant, level, error, engine, ours, same, order, outcome, why,
+    return Race(field.product, variant, substeps, level, error, engine, ours, same, order, outcome, why,
                 *(ratios(engine, ours) if decided else (None,) * 3),
-                *(factors(field, engine, ours, same) if decided else (None,) * 3))
+                *(factors(field, engine, substeps, ours, same) if decided else (None,) * 3))
 
 
 def to_the_best(rows):
@@ -235,12 +237,12 @@ def in_the_same_order(field, engine, ours, error):
     return quickest([curve for curve in field.ours if order_of(curve) == order], rows, error), order
 
 
-def factors(field, engine, ours, same):
+def factors(field, engine, substeps, ours, same):
     """Return (order, loop, calls) of a ratio: order times loop is the ratio, and calls are a part of loop.
 
-    same: our quickest Reach with the engine's order
+    substeps: the engine's steps in a call;    same: our quickest Reach with the engine's order
     """
     order, loop = (same.seconds / ours.seconds, engine.seconds / same.seconds) if same else (None, None)
     cost = next((one["seconds"] for one in field.calls if one["product"] == field.product), None)
-    rest = engine.alone - engine.steps * cost if cost is not None else 0.0
+    rest = engine.alone - engine.steps // substeps * cost if cost is not None else 0.0
     return order, loop, engine.alone / rest if rest > 0.0 else None

@@ -68,6 +68,11 @@ class Selection(NamedTuple):
         """Return the methods of ours that support this case, and in a quick validation are not too slow in it."""
         return tuple(r for r in self.ours if can_do(r, p) and not (self.plan.quick and self.is_slow(r, p)))
 
+    def unfinished_for(self, p):
+        """Return [(runner, why)] of our methods that do not come to their end in this case."""
+        found = [(runner, runner.unfinished(p)) for runner in self.ours if runner.unfinished]
+        return [(runner, why) for runner, why in found if why]
+
     def engines_for(self, p):
         """Return the engines that support this case; an optional one only where it runs."""
         return tuple(r for r in self.scene.engine_runners if can_do(r, p) and not left_out(r.who, self.plan))
@@ -132,7 +137,9 @@ def left_out(engine, plan):
 
 
 def can_do(runner, p):
-    """Return whether a runner can do this case at all."""
+    """Return whether a runner can do this case at all, and comes to its end."""
+    if runner.unfinished is not None and runner.unfinished(p):
+        return False
     return runner.supports is None or runner.supports(p)
 
 

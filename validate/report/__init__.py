@@ -72,6 +72,7 @@ def environment():
     pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=numbers.known, percents=numbers.percents,
                          levels=LEVELS, targets=TARGETS, race_error=HEADLINE, level_name=races.level_name,
                          coarse=races.coarse, summary_ratio=races.summary_ratio, least=LEAST, most=MOST,
+                         measured_limits=words.measured_limits,
                          bars_most=BARS_MOST, cheap=choice.CHEAP, race_header=tables.RACES,
                          race_rows=lambda r: map(tables.race_row, races.of(r)),
                          legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,

@@ -12,7 +12,7 @@ LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for 
 
 def answers(results, stability, cores=None):
     """Return {question's name: what the front page says}: right, faster, departures, stable, which."""
-    return {"right": right(results), "faster": faster(results, cores), "departures": departures(results),
+    return {"right": right(results, stability), "faster": faster(results, cores), "departures": departures(results),
             "stable": stable(stability), "which": choice.by_lesson(results)}
 
 
@@ -21,8 +21,8 @@ def curves_of(results, role):
     return [(r, name, c) for r in results for name, case in r["cases"].items() for c in case[role]]
 
 
-def right(results):
-    """Return counts of the verdicts on our methods, and the number of orders that are as high as theory says."""
+def right(results, stability):
+    """Counts of the verdicts on our methods, and how many orders are as high as theory says."""
     every = curves_of(results, "ours")
     count = Counter(Verdict(c["verdict"]) for _, _, c in every)
     ordered = [c for _, _, c in every if c["order"] is not None and c["expected"] in (1, 2, 4)]
@@ -34,12 +34,21 @@ def right(results):
             predicted.add((r["scene"], c["label"]))
     return {
         "curves": len(curves), "curves_predicted": len(predicted),
-        "scenes": len(results), "runs": len(every), "agree": count[Verdict.AGREES],
-        "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
+        "scenes": len(results), "runs": len(every),
+        "judged": count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW] + count[Verdict.DEPARTS],
+        "agree": count[Verdict.AGREES], "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
+        "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
+        "truths": words.truths_by_engines(results),
         "orders": len(ordered), "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
         "exact": sum(c["expected"] == EXACT and Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in every),
     }
+
+
+def unfinished(every):
+    """[{label, case, scene, title}] of the curves of ours that do not come to their end."""
+    return [{"label": c["label"], "case": name, "scene": r["scene"], "title": r["title"]} for r, name, c in every
+            if Verdict(c["verdict"]) is Verdict.UNFINISHED]
 
 
 def faster(results, cores=None):
@@ -94,7 +103,7 @@ def departures(results):
                       "high": max(sizes, default=None), "places": {r["scene"]: r["title"] for r, _, _ in found},
                       "cases": len(found)})
     lines.sort(key=lambda line: (line["kind"] != "departs", -len(line["places"]), -(line["high"] or 0.0)))
-    compared = curves_of(results, "engines")
+    compared = [one for one in curves_of(results, "engines") if Verdict(one[2]["verdict"]) is not Verdict.REFERENCE]
     return {"lines": lines, "undecided": undecided, "runs": len(compared),
             "depart": sum(line["cases"] for line in lines),
             "open": sum(Verdict(c["verdict"]) is Verdict.UNDECIDED for _, _, c in compared),
@@ -107,4 +116,6 @@ def stable(stability):
     held = [f["holds"] for case in stability for f in case["findings"]]
     failing = {f"{case['lesson']}-{case['slug']}": case["title"] for case in stability
                if not all(f["holds"] for f in case["findings"])}
-    return {"findings": len(held), "hold": sum(held), "cases": len(stability), "failing": failing}
+    not_run = [one for case in stability for one in case["not_run"]]
+    return {"findings": len(held), "hold": sum(held), "cases": len(stability), "failing": failing,
+            "not_run": len(not_run), "why": list(dict.fromkeys(one["why"] for one in not_run))}

@@ -64,9 +64,11 @@ def of_curve(curve, case, result):
     """Yield what is wrong with the errors, the order and the verdict of one curve."""
     truth, rows, own = case["truth"], curve["rows"], curve.get("own_law")
     if not rows:
-        if Verdict(curve["verdict"]) is not Verdict.UNDECIDED:
+        if Verdict(curve["verdict"]) not in (Verdict.UNDECIDED, Verdict.UNFINISHED):
             yield f"the verdict {curve['verdict']!r} has no rows"
         return
+    if curve["reference"] != (Verdict(curve["verdict"]) is Verdict.REFERENCE):
+        yield "it is its own judge" if curve["reference"] else "it is called a reference, but the truth is no run of it"
     for row in rows:
         seen = row.get("observed")
         if (seen is None) == (row["failure"] is None) or (seen is not None and len(seen) != len(truth)):
@@ -87,9 +89,7 @@ def of_curve(curve, case, result):
     order = slope(judged, 10.0 * result["uncertainty"])
     if (order is None) != (curve["order"] is None) or (order is not None and abs(order - curve["order"]) > 1e-6):
         yield f"the order is {curve['order']}, but its rows show {order}"
-    verdict = verdict_of(judged, curve["expected"], order, own is not None)
-    if curve.get("reference"):
-        verdict = Verdict.UNDECIDED                      # its own run is the truth
+    verdict = None if curve["reference"] else verdict_of(judged, curve["expected"], order, own is not None)
     if verdict is not None and verdict is not Verdict(curve["verdict"]):
         yield f"the verdict is {curve['verdict']!r}, but its rows say {verdict.value!r}"
 
@@ -305,7 +305,7 @@ def of_ratio(race, times):
               "high": engine["high"] / ours["low"], "order": same and same["seconds"] / ours["seconds"],
               "loop": same and engine["seconds"] / same["seconds"]}
     cost = next((one["seconds"] for one in times["calls"] if one["product"] == race["product"]), None)
-    rest = None if cost is None else engine["alone"] - cost * engine["steps"]
+    rest = None if cost is None else engine["alone"] - cost * (engine["steps"] // race["substeps"])
     wanted["calls"] = engine["alone"] / rest if rest is not None and rest > 0.0 else None
     for key, value in wanted.items():
         if differs(race[key], value):
@@ -345,12 +345,16 @@ def of_limits(data, counts):
         for name, case in result["cases"].items():
             for curve in case["ours"] + case["engines"]:
                 runner = next(r for r in scene.runners if r.label == curve["label"])
+                place = f"{result['scene']}: {curve['label']}, {name}"
+                if curve["measured"] != runner.measured:
+                    yield f"{place}: whether its limit was measured is not what the scene says"
+                if curve["reference"] != runner.is_reference(scene.cases[name]):
+                    yield f"{place}: whether the truth is its own run is not what the scene says"
                 law = np.array(curve.get("own_law") or case["truth"])
                 for row in curve["rows"]:
                     counts["limits"] += 1
                     theory = jsonable(bound(runner, scene.cases[name], scene.duration / row["steps"], law))
                     if any(differs(row[key], theory[key]) for key in ("limit", "band")) or apart(row, theory):
-                        place = f"{result['scene']}: {curve['label']}, {name}"
                         yield f"{place}: the limit at {row['steps']} steps is not theory's"
                         break
 

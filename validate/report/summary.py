@@ -12,8 +12,9 @@ from . import races, words
 from .numbers import factor, percent, rounded
 
 SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"), Verdict.FOLLOWS_OWN_LAW: ("≈", "green"),
-         Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow")}
-LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided or not attempted\n"
+         Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow"),
+         Verdict.UNFINISHED: ("○", "yellow")}            # a reference counts nowhere
+LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided, unfinished, not attempted\n"
           f"order: the highest of ours.   faster: the engine's time to an error of {percent(HEADLINE)},\n"
           "over our time to the same error; the smallest of the engines' ratios.")
 
@@ -36,8 +37,10 @@ def show(console, results, stability):
 
     found = [(case, f) for case in stability for f in case["findings"]]
     failed = [(case, f) for case, f in found if not f["holds"]]
+    not_run = sum(len(case["not_run"]) for case in stability)
     if found:
-        console.print(f"Stability: {len(found) - len(failed)} of {len(found)} findings hold.")
+        console.print(f"Stability: {len(found) - len(failed)} of {len(found)} findings hold"
+                      f"{f'; {not_run} not run on this machine' if not_run else ''}.")
     for case, f in failed:
         console.print(f"  [bold red]{case['lesson']}/{case['slug']}[/bold red] {f['claim']} "
                       f"Predicted {f['predicted']}, measured {f['measured']}.")
@@ -46,7 +49,7 @@ def show(console, results, stability):
 
 def signs(curves):
     """Return how many of these curves have each verdict, such as ✓ 8 ≈ 1."""
-    count = Counter(SIGNS[Verdict(c["verdict"])] for c in curves)
+    count = Counter(SIGNS[verdict] for c in curves if (verdict := Verdict(c["verdict"])) in SIGNS)
     return " ".join(f"[{style}]{sign} {count[sign, style]}[/{style}]" for sign, style in dict.fromkeys(SIGNS.values())
                     if count[sign, style]) or "–"
 
@@ -85,11 +88,20 @@ def by_lesson(report):
     for lesson in dict.fromkeys(result["lesson"] for result in report["scenes"]):
         results = [result for result in report["scenes"] if result["lesson"] == lesson]
         findings = [f["holds"] for case in report["stability"] if case["lesson"] == lesson for f in case["findings"]]
-        hold = f"{sum(findings)} of {len(findings)}" if findings else "–"
+        not_run = sum(len(case["not_run"]) for case in report["stability"] if case["lesson"] == lesson)
+        hold = f"{sum(findings)} of {len(findings)}{f', {not_run} not run' if not_run else ''}" if findings else "–"
         cells = (f"`{lesson}`", len(results), plain_signs(results, "ours"), plain_signs(results, "engines"), hold,
                  spread([race for result in results if (race := hardest(result))]), not_won(results))
         lines.append(f"| {' | '.join(map(str, cells))} |")
-    return "\n".join([*lines, "", *said_of_all(report)]) + "\n"
+    return "\n".join([*lines, "", *said_of_all(report), *said_of_truths(report)]) + "\n"
+
+
+def said_of_truths(report):
+    """Yield a sentence about the truths that are an engine's own run, if there are any."""
+    if found := words.truths_by_engines(report["scenes"]):
+        where = "; ".join(f"`{one['scene']}`{' (' + one['cases'] + ')' if one['cases'] else ''}, {one['engine']}"
+                          for one in found)
+        yield f"The truth is an engine's own run, and that engine counts nowhere, in {where}."
 
 
 KEPT = ("date", "commit", "version", "engines", "compiler", "machine", "processor", "cores", "repeats")
@@ -138,7 +150,7 @@ def not_won(results):
 def plain_signs(results, kind):
     """Return how many curves of these results have each verdict, without colours: ✓ 8 ≈ 1."""
     verdicts = [Verdict(c["verdict"]) for result in results for case in result["cases"].values() for c in case[kind]]
-    count = Counter(SIGNS[v][0] for v in verdicts)
+    count = Counter(SIGNS[v][0] for v in verdicts if v in SIGNS)
     return " ".join(f"{sign} {count[sign]}" for sign, _ in dict.fromkeys(SIGNS.values()) if count[sign]) or "–"
 
 

@@ -21,8 +21,9 @@ RACES = ("scene", "lesson", "engine", "race to", "relative error [-]", "outcome"
 CHOICE = ("scene", "lesson", "speed", "cheapest at 1 %", "its time [s]", "cheapest at 0.01 %", "its time [s]",
           "safest at large steps", "its least number of steps, times 1 + error there [-]")
 PARTS = ("scene", "engine", "part", "steps", "time with it over time without it [-]", "relative change without it [-]")
-DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "whose", "scenes")
-FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation")
+DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "scenes")
+FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation",
+            "the tolerance was measured on")
 
 
 def text(header, rows):
@@ -80,7 +81,9 @@ def texts(results, stability):
     if stability:
         found["stability.csv"] = text(FINDINGS, [
             (c["lesson"], c["slug"], f["claim"], f["quantity"], f["predicted"], f["measured"], f["tolerance"],
-             "yes" if f["holds"] else "no", f["observation"]) for c in stability for f in c["findings"]])
+             yes(f["holds"]), f["observation"], f["tolerance_from"]) for c in stability for f in c["findings"]]
+            + [(c["lesson"], c["slug"], one["claim"], one["quantity"], None, None, None, "not run", one["why"], None)
+               for c in stability for one in c["not_run"]])
     for case in stability:
         if case["picture"]:
             found[f"stability-{case['lesson']}-{case['slug']}.csv"] = of_picture(case["picture"])

@@ -16,16 +16,20 @@ from . import races
 from .numbers import engine_name, number, percent, percents, rounded
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
-         Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open"}             # classes of the style sheet
+         Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open", Verdict.UNFINISHED: "open",
+         Verdict.REFERENCE: "reference"}                                       # classes of the style sheet
 SIGNS = {"agrees": "✓", "predicted": "≈", "departs": "✗", "open": "○"}         # as the style sheet draws them
 LEGEND = {                   # every verdict has one name and one sign
-    Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured.",
+    Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured, "
+                    "except where the page calls it measured.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
     Verdict.UNDECIDED: "No theory says how far it may be off, or every step was too coarse, or the engine is missing "
                        "here. The error is shown and not judged.",
     Verdict.NOT_ATTEMPTED: "The exercise behind this method has no answer yet.",
+    Verdict.UNFINISHED: "The method does not come to its end in this case, as the scene says and a test confirms.",
+    Verdict.REFERENCE: "The truth of this case is a run of the engine itself. It is not judged and counts nowhere.",
 }
 ARROWS = {"ω": "angular velocity ω", "L": "angular momentum L", "v": "velocity v of the centre", "τ": "torque τ",
           "Rω": "speed Rω of the rim"}                                        # what the arrows of a film in 3D mean
@@ -61,7 +65,8 @@ def verdicts(curves):
     """Return [(text, kind, count)] of several curves at once."""
     count = Counter(Verdict(c["verdict"]) for c in curves)
     return [(one.value, KINDS[one], count[one]) for one in
-            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED)
+            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED,
+             Verdict.UNFINISHED, Verdict.REFERENCE)
             if count[one]]
 
 
@@ -73,6 +78,28 @@ def verdict(curves):
 def named(curve):
     """Return a curve's name inside a sentence: pybullet (default)."""
     return engine_name(curve["product"], curve["variant"]) if "product" in curve else curve["label"]
+
+
+def measured_limits(results, stability):
+    """[(place, what it was measured on)] of all limits and tolerances that no theory gives, each once."""
+    limits = [(f"{r['scene']}: {c['label']}", c["measured"]) for r in results for one in r["cases"].values()
+              for c in one["ours"] + one["engines"] if c["measured"]]
+    tolerances = [(f"{case['lesson']}/{case['slug']}: {f['quantity']}", f["tolerance_from"]) for case in stability
+                  for f in case["findings"] if f["tolerance_from"]]
+    return list(dict.fromkeys([*limits, *tolerances]))
+
+
+def truths_by_engines(results):
+    """[{scene, title, engine, cases}] of the scenes in which the truth is an engine's own run; cases: "" for all."""
+    found = []
+    for r in results:
+        by = {}
+        for name, one in r["cases"].items():
+            for engine in dict.fromkeys(c["product"] for c in one["engines"] if c["reference"]):
+                by.setdefault(engine, []).append(name)
+        found += [{"scene": r["scene"], "title": r["title"], "engine": engine,
+                   "cases": "" if len(cases) == len(r["cases"]) else ", ".join(cases)} for engine, cases in by.items()]
+    return found
 
 
 def own_errors(curve):
@@ -304,6 +331,8 @@ def headline(result):
     if count[Verdict.NOT_ATTEMPTED]:
         return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
     said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
+    if count[Verdict.UNFINISHED]:
+        said += f"; {count[Verdict.UNFINISHED]} of {len(ours)} do not arrive"
     predicted = {named(c): None for c in ours + engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
     if predicted:
         rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"

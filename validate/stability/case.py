@@ -16,16 +16,35 @@ EDGE = 1e-6                  # relative width at which bisection stops [-]
 LINE, DOTS = "line", "dots"
 
 
-class Checks(list):
-    """The findings of one case, in the order in which it makes them."""
+class NotRun(NamedTuple):
+    """A statement of theory that this machine cannot try."""
+    claim: str               # as in Finding
+    quantity: str
+    why: str                 # the end of a sentence that begins with "because"
 
-    def __call__(self, claim, quantity, *, law, found, within, saw):
+
+class Checks(list):
+    """The findings of one case, as it makes them, and those that this machine cannot make."""
+
+    def __init__(self):
+        super().__init__()
+        self.not_run = []                # of NotRun
+
+    def __call__(self, claim, quantity, *, law, found, within, saw, within_from=""):
         """Add a Finding: theory says `law`, the experiment found `found`, and they may differ by `within`.
 
         claim, quantity   as in Finding
         saw               the result of the experiment, in one sentence
+        within_from       the measurement that `within` was taken from, where it was not derived
         """
-        self.append(Finding(claim, quantity, float(law), float(found), float(within), saw))
+        self.append(Finding(claim, quantity, float(law), float(found), float(within), saw, within_from))
+
+    def by(self, product, claim, quantity, experiment):
+        """Add what `experiment` says of an engine, {law, found, within, saw}; where it is not installed, a NotRun."""
+        if product.installed():
+            self(claim, quantity, **experiment())
+        else:
+            self.not_run.append(NotRun(claim, quantity, f"{product} is not installed here"))
 
     def agree(self, claim, quantity, error, within):
         """Add a Finding that a function errs by no more than `within`; error is the largest in many random cases."""
@@ -84,6 +103,7 @@ class Examined(NamedTuple):
     lesson: str
     findings: list
     picture: Picture | None
+    not_run: list            # of NotRun
 
 
 CASES: dict[str, dict[str, Case]] = {}                   # {lesson: {slug: Case}} of the files imported so far

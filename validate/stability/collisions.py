@@ -118,13 +118,16 @@ def tunnelling(lesson, check):
         check("The continuous test misses no ball at any speed.",
               f"share of 10⁴ balls of {speed:g} m/s that get past, continuous [-]", law=0.0, found=missed, within=0.0,
               saw=f"At {speed:g} m/s {round(THROWN * missed)} of 10⁴ get past the continuous test.")
-    if PYBULLET.installed():
-        missed = passed_bullet(50.0, phases(FEW))
-        check("pybullet without continuous detection misses the same share.",
-              "pybullet: share of 60 balls of 50 m/s that get past [-]",
-              law=share_missed(50.0), found=missed, within=1.0 / FEW + 1e-9,
-              saw=f"In pybullet {100.0 * missed:.1f} % of 60 balls of 50 m/s get past.")
+    check.by(PYBULLET, "pybullet without continuous detection misses the same share.",
+             "pybullet: share of 60 balls of 50 m/s that get past [-]", missed_by_pybullet)
     return shares_by_speed(lesson)
+
+
+def missed_by_pybullet():
+    """Return what share of balls gets past a wall in pybullet, for Checks.by."""
+    missed = passed_bullet(50.0, phases(FEW))
+    return {"law": share_missed(50.0), "found": missed, "within": 1.0 / FEW + 1e-9,
+            "saw": f"In pybullet {100.0 * missed:.1f} % of 60 balls of 50 m/s get past."}
 
 
 def shares_by_speed(lesson):

@@ -632,8 +632,11 @@ def sliding(lesson, shape, degrees, mu, seconds):
     return np.linalg.norm(end.v[0]), end.q[0] - q
 
 
-def wedges(lesson, check, shape, name, angles, seconds, within):
-    """Put a disc or a ball between two walls without friction; return the mean forces over the weight."""
+def wedges(lesson, check, shape, name, angles, seconds, within, within_from):
+    """Put a disc or a ball between two walls without friction; return the mean forces over the weight.
+
+    within, within_from: as in Checks
+    """
     d, means = 2 if shape is DISC else 3, []
     for degrees in angles:
         law = 0.5 / np.cos(np.radians(degrees))
@@ -643,7 +646,8 @@ def wedges(lesson, check, shape, name, angles, seconds, within):
         means.append(np.mean(forces))
         check("In a wedge of slope θ each wall carries 1/(2 cos θ) weights.",
               f"force over the weight of a {name} at {degrees:g}° [-]", law=law,
-              found=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan, within=within * law,
+              found=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan,
+              within=within * law, within_from=within_from,
               saw=f"At {degrees:g}° the walls carry {' and '.join(f'{f:.4f}' for f in forces)} weights.")
     return means
 
@@ -704,7 +708,8 @@ def extremes(lesson, check):
               law=0.0 if mu else G * np.sin(np.radians(degrees)), found=speed, within=1e-10,
               saw=f"On {degrees:g}° with μ = {mu:g} its speed is {speed:.4g} m/s; it turns by {turned:.0e} rad.")
     angles = (45.0, 80.0, 89.0)
-    means = wedges(lesson, check, DISC, "disc", angles, 3.0, 1e-7)
+    means = wedges(lesson, check, DISC, "disc", angles, 3.0, 1e-7,
+                    within_from="sixteen times the rest of the force that the sweeps left at 89°, 6e-9")
     moved = small_beside_large(lesson, DISC, [(1.5 + 0.05 * k, 0.01) for k in range(5)], 1e4, 1.0)
     check("Discs of 1 cm beside one of 1 m, 10,000 times as heavy, sag like any other.",
           "largest way of a disc in 1 s, sizes 1 : 100 [m]", law=G / (480.0 * np.pi) ** 2, found=moved, within=1e-12,
@@ -712,6 +717,7 @@ def extremes(lesson, check):
     error = np.max(np.abs(carried(lesson, 5, 1.0 / 30.0, substeps=8, hertz=80.0) - np.arange(5.0, 0.0, -1.0)))
     check("Steps of 1/30 s hold a stack, if they have substeps.",
           "largest error of the forces in a stack of five, over a weight [-]", law=0.0, found=error, within=3e-3,
+          within_from="ten times the sway of this stack, 3e-4 weights",
           saw=f"With 1/30 s in 8 substeps the forces of five boxes are right to {error:.0e} of a weight.")
     refusals(lesson, check)
     return wedge_picture("A disc between two walls", 89.0, angles, means,
@@ -762,7 +768,8 @@ def extremes_in_space(lesson, check):
               law=0.0 if mu else 0.25 * G * np.sin(np.radians(40.0)), found=speed, within=1e-9,
               saw=f"On 40° with μ = {mu:g} its speed is {speed:.4g} m/s after ¼ s.")
     angles = (30.0, 60.0, 80.0)
-    means = wedges(lesson, check, BALL, "ball", angles, 1.0, 1e-6)
+    means = wedges(lesson, check, BALL, "ball", angles, 1.0, 1e-6,
+                    within_from="fourteen times the rest of the force that the sweeps left at 80°, 7e-8")
     moved = small_beside_large(lesson, BALL, [(1.5, 0.0, 0.01), (0.0, 1.5, 0.01)], 1e6, 0.5)
     check("Balls of 1 cm beside one of 1 m, a million times as heavy, sag like any other.",
           "largest way of a ball in ½ s, sizes 1 : 100 [m]", law=G / (480.0 * np.pi) ** 2, found=moved, within=1e-11,
@@ -846,18 +853,16 @@ def disc_of_friction(lesson, check):
           saw="No contact of our 12 spheres has more friction than the cone allows.")
 
 
-def pyramid_of_pybullet(check):
-    """Let 27 spheres roll in pybullet."""
+def pyramid_of_pybullet():
+    """Let 27 spheres roll in pybullet; return what it says of friction, for Checks.by."""
     kind, slopes = KINDS["spheres"]._replace(across=3), []
     world = BulletPile(kind, *fallen(kind, 27), 50)
     for _ in range(12):
         world.run(60)
         slopes.append(steepest(world.judged()))
     world.close()
-    check("pybullet's friction is a pyramid: it reaches √2 μ along the diagonal.",
-          "largest |J_t|/(μ J_n) of 27 spheres in pybullet [-]",
-          law=np.sqrt(2.0), found=max(slopes) / MU, within=0.01,
-          saw=f"pybullet's friction reaches {max(slopes) / MU:.4f} μ times the normal force.")
+    return {"law": np.sqrt(2.0), "found": max(slopes) / MU, "within": 0.01,
+            "saw": f"pybullet's friction goes up to {max(slopes) / MU:.4f} μ times the normal force."}
 
 
 @case("judge", "A judge for any solver, an engine's included", compiled=False)
@@ -876,8 +881,8 @@ def judge(lesson, check):
     converged_impulses(lesson, check, record, seen[-1])
     impulse_left_out(lesson, check, record)
     disc_of_friction(lesson, check)
-    if PYBULLET.installed():
-        pyramid_of_pybullet(check)
+    check.by(PYBULLET, "pybullet's friction is a pyramid: it reaches √2 μ along the diagonal.",
+             "largest |J_t|/(μ J_n) of 27 spheres in pybullet [-]", pyramid_of_pybullet)
     return Picture("pymunk's impulses, judged", "time [s]", "log₁₀ of the residual over g dt", [
         series("30 discs, 200 iterations", times, np.log10(np.maximum(seen, 1e-16)), DOTS)],
         "While discs fall and roll, the impulses are not those of rest; then the residual falls to round-off.")

@@ -28,9 +28,10 @@ def subject_of(case, of="solutions", compiled=True):
 
 
 def examine(case, of="solutions", compiled=True):
-    """Return the findings and the picture of one case."""
-    with np.errstate(all="ignore"):              # an unstable run overflows
-        return Examined(case.slug, case.title, case.lesson, *found_by(case, subject_of(case, of, compiled)))
+    """The findings and the picture of one case."""
+    with np.errstate(all="ignore"):              # overflow is what an unstable run does
+        found, picture = found_by(case, subject_of(case, of, compiled))
+        return Examined(case.slug, case.title, case.lesson, found, picture, found.not_run)
 
 
 def found_by(case, lesson):
@@ -59,11 +60,12 @@ def broken_off(case, error):
     check = Checks()
     check(f"The case runs without an error; here it ended in {words}.", "cases without an error [of 1]",
           law=1, found=0, within=0.0, saw=words)
-    return Examined(case.slug, case.title, case.lesson, check, None)
+    return Examined(case.slug, case.title, case.lesson, check, None, [])
 
 
 def stored(examined):
     """Return an examined case as data that JSON can hold."""
     findings = [{**f._asdict(), "holds": f.holds} for f in examined.findings]
     picture = examined.picture._asdict() if examined.picture else None
-    return jsonable({**examined._asdict(), "findings": findings, "picture": picture})
+    return jsonable({**examined._asdict(), "findings": findings, "picture": picture,
+                     "not_run": [one._asdict() for one in examined.not_run]})

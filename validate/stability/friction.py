@@ -4,6 +4,7 @@ Edges are found by bisection of runs from rest, never from a formula.  A body th
 counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the other numbers.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -91,6 +92,14 @@ def least_friction_of_an_engine(make, degrees):
 
 # ---------------------------------------------------------------------------------------------- stick and slip
 
+def held_by_an_engine(engine, make):
+    """Return what bisection finds of a block on 30° in an engine, for Checks.by."""
+    found = least_friction_of_an_engine(make, 30.0)
+    return {"law": np.tan(np.radians(30.0)), "found": found,
+            "within": EDGE + 2.0 * ENGINE_WAY / (G * np.cos(np.radians(30.0))),
+            "saw": f"By bisection {engine} holds a block at 30° from μ = {found:.5f} on."}
+
+
 @case("stick-threshold", "Stick and slip on a slope", compiled=False)
 def stick_threshold(lesson, check):
     """Check that a block at rest on a slope of angle θ holds from μ = tan θ on.
@@ -110,12 +119,8 @@ def stick_threshold(lesson, check):
                       f"tan θ is {bound:.6f}.")
         drawn.append(series(f"{method.label}, measured", angles, edges.values(), DOTS))
     for engine, make in MAKERS.items():
-        if engine.installed():
-            found = least_friction_of_an_engine(make, 30.0)
-            check("An engine's block holds from μ = tan θ on, to the accuracy of its position.",
-                  f"{engine}: least friction that holds at 30° [-]", law=np.tan(np.radians(30.0)), found=found,
-                  within=EDGE + 2.0 * ENGINE_WAY / (G * np.cos(np.radians(30.0))),
-                  saw=f"By bisection {engine} holds a block at 30° from μ = {found:.5f} on.")
+        check.by(engine, "An engine's block holds from μ = tan θ on, to the accuracy of its position.",
+                 f"{engine}: least friction that holds at 30° [-]", partial(held_by_an_engine, engine, make))
     fine = np.linspace(0.0, 62.0, 125)
     return Picture(
         "Stick or slip on a slope", "slope θ [°]", "least friction that holds [-]",

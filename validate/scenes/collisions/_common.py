@@ -18,9 +18,9 @@ PLACE_APART = 1.0            # metre between two copies along the x axis
 SHARES = (0.8, 0.95, 0.99, 0.999)  # radii that pybullet sweeps, over that of the ball [-]: our choices
 ENGINE_SPEEDS = (1.0, 1e2, 1e4)  # of the balls in an engine [m/s]: the lowest, the middle, the highest
 
-# pybullet's rays may end this far in front of a round shape [m], measured, not derived.  Rays come from outside;
-# twenty tested beforehand ended up to 1.2 mm early, and this permits eight times that
-RAY_ENDS = 1e-2
+# how far from a round shape pybullet's rays and sweeps may end [m].  Both advance while the distance is larger than
+# this.  Source: Bullet, btGjkConvexCast, which rayTestBatch asks for, and btContinuousConvexCollision: radius = 0.001
+RAY_ENDS = 1e-3
 
 
 class Flight(NamedTuple):

@@ -89,14 +89,16 @@ def limits(p, dt):
 
 
 def ray_limit(p, dt):
-    """A ray may end up to 1 cm in front of a round shape.  This distance is measured and not derived."""
+    """A ray may end up to 1 mm from a round shape, and along its path that is 1 mm over the cosine of the angle between
+    its path and the normal.
+    """
     return per_ball(p, common.RAY_ENDS / STEEP) + rounding(p, dt)
 
 
 RUNNERS = common.ball_runners(
     place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
     "GEOM_CYLINDER of radius R + r",
-    rays={"order": 0, "limit": ray_limit, "predicted": "where its rays end is measured and not derived"},
+    rays={"order": 0, "limit": ray_limit, "predicted": "where in this millimetre a ray ends depends on its search"},
     swept=common.swept_runner(FLIGHT, when, swept_band))
 
 

@@ -329,6 +329,11 @@ def up_to(**most):
     return lambda p: p.r <= most.get(p.kind, 0.0)
 
 
+def too_many(p):
+    """A million is too much for the sweeps."""
+    return "it would take 6.9 million sweeps, and ends in Diverged after 50,000" if p.r > 1e3 else ""
+
+
 ANY = np.inf
 SPRINGS = Departure("its contacts are springs with dampers, whose stiffness is not ours: the impedance "
                     f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly, Whose.LAW)
@@ -336,8 +341,9 @@ PHASE = "only the size of its rocking is known, because its phase depends on the
 RUNNERS = (
     ours(DIRECT, limit=solved_limit, order=EXACT, supports=up_to(forces=ANY),
          predicted="it solves a linear system: only round-off is left, and the limit bounds it"),
-    ours(SWEEPS, limit=swept_limit, order=EXACT, supports=up_to(forces=1e3, refused=ANY),
-         predicted="its sweeps stop at a residual, and the limit bounds the remaining error"),
+    ours(SWEEPS, limit=swept_limit, order=EXACT, supports=up_to(forces=ANY, refused=ANY),
+         unfinished=lambda p: too_many(p) if p.kind == "forces" else "",
+         predicted="its sweeps stop at a residual, and the limit bounds what is left"),
     ours(PILE, limit=pile_limit, order=EXACT, predicted=PHASE,
          supports=up_to(forces=1e3, overlap=ANY, stands=ANY, refused=ANY)),
     ours(COUNTED_SWEEPS, limit=count_limit, order=EXACT, supports=up_to(sweeps=ANY, relaxed=ANY),
