@@ -194,7 +194,7 @@ def why_not_reached(curves, error, quick, side):
     """Return why no timed run of these curves reaches an error, where longer runs do or might; None where none does."""
     if any(row["error"] is not None and row["error"] <= error for curve in curves for row in curve["rows"]):
         return f"{side} reaches it, in a run that is too long to be timed here"
-    return f"a quick validation has no run of {side} that is that accurate" if quick else None
+    return f"no run of {side} here is that accurate, and a full validation has longer ones" if quick else None
 
 
 def outcome_of(engine, ours):

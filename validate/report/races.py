@@ -61,9 +61,8 @@ def coarse(race):
         return ""
     if len({side["steps"] for _, side in sides}) == 1 and len(sides) == 2:
         return f"Both meet {level_name(race['level'])} already in {steps(sides[0][1]['steps'])}."
-    said = " and ".join(f"{name} in {steps(side['steps'])}" for name, side in sides)
-    verb = "meet" if len(sides) == 2 else "meets"
-    return f"{said[:1].upper()}{said[1:]} {verb} {level_name(race['level'])} with the coarsest timed run."
+    said = " and of ".join(f"{name} ({steps(side['steps'])})" for name, side in sides)
+    return f"{level_name(race['level'])} is met already by the coarsest timed run of {said}."
 
 
 def steps(count):
@@ -104,7 +103,8 @@ def level_text(race):
 def counted(races):
     """Return a list with a record for each level: how many races ended how, and the median ratio with its interval.
 
-    low, high: the medians of the lowest and of the highest ratios that the repeats of each race allow.
+    low, high  the medians of the lowest and of the highest ratios that the repeats of each race allow
+    decided    races that were won, tied or lost; lost are also those to an error that we do not reach
     """
     found = []
     for level in (*LEVELS, BEST):
@@ -112,8 +112,10 @@ def counted(races):
         decided = [race for race in mine if race["ratio"]]
         quarters = quantiles([race["ratio"] for race in decided], n=4) if len(decided) > 1 else (None,) * 3
         middle = {key: median(race[key] for race in decided) if decided else None for key in ("ratio", "low", "high")}
-        found.append({"level": level, "name": level_name(level), "races": len(mine), "decided": len(decided), **middle,
-                      "lower": quarters[0], "upper": quarters[2], **outcomes(mine)})
+        ended = outcomes(mine)
+        found.append({"level": level, "name": level_name(level), "races": len(mine), **ended, **middle,
+                      "decided": ended["faster"] + ended["tie"] + ended["slower"],
+                      "lower": quarters[0], "upper": quarters[2]})
     return found
 
 
