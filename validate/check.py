@@ -16,7 +16,7 @@ class Finding(NamedTuple):
     quantity: str            # the measured quantity [unit]
     predicted: float         # the value from theory
     measured: float          # the value from the experiment
-    tolerance: float         # derived before the experiment, in the unit of the quantity
+    tolerance: float         # derived before the experiment, or measured; in the unit of the quantity
     observation: str         # the result of the experiment, in one sentence
     tolerance_from: str = ""  # the measurement that the tolerance was taken from; empty where it was derived
 

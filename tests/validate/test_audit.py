@@ -112,6 +112,8 @@ FAULTS = {
     "what a call costs": lambda d: d["scenes"][0]["times"]["calls"][0].update(seconds=1.0),
     "a ratio that is left out": lambda d: race(d).update(ratio=None),
     "a loss that is called undecided": lambda d: race(d).update(ratio=None, outcome="undecided"),
+    "a compilation of another method": lambda d: d["scenes"][0]["times"].update(
+        compilation={"label": "no method", "cold": 4.0, "cached": 0.3}),
     "an outcome": lambda d: race(d).update(outcome="a tie" if race(d)["outcome"] == "faster" else "faster"),
     "a time to an error": lambda d: d["scenes"][0]["times"]["time_to_error"][0]["seconds"].__setitem__(1, 1.0),
     "a finding": lambda d: d["stability"][0]["findings"][0].update(holds=False),

@@ -5,11 +5,15 @@ import math
 import pytest
 
 from validate.measure import calls, races
+from validate.measure.compilation import compilation
 from validate.measure.races import BEST, HEADLINE, LEVELS, Outcome
+from validate.measure.selection import Plan, select
 from validate.measure.timing import times_to_error
 from validate.products import PYMUNK
 from validate.report import choice
 from validate.report import races as words
+from validate.subject import modules
+from validate.subject.numba_twins import CACHE
 
 COST = {"product": "pymunk", "seconds": 1e-6, "how": "an empty step", "called": [1e-6], "alone": []}
 
@@ -192,6 +196,22 @@ def test_compilation_has_paid_when_the_engine_has_lost_as_much_time():
     still, lost = {**result, "moves": False}, held([engine(1e-8)], [EULER])[0.01]
     assert words.compiling(race, {"label": "Euler", "cold": 4.0, "cached": 0.3}, still)["paid"] is None
     assert words.compiling(lost, {"label": "Euler", "cold": 4.0, "cached": 0.3}, result)["paid"] is None
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not modules.can_compile(), reason="numba is not installed here")
+def test_a_method_compiles_longer_than_it_loads_and_leaves_no_cache_behind():
+    before = set(CACHE.glob("*")) if CACHE.is_dir() else set()
+    selection = select("throw", Plan(quick=False))
+    ours = {"label": "midpoint", "speed": "compiled", "steps": 10, "alone": 1e-6}
+    found = compilation(selection, selection.first[1], [{"level": HEADLINE, "ours": ours}])
+    assert found["label"] == "midpoint" and found["cold"] > 2.0 * found["cached"] > 0.0
+    assert not set(CACHE.glob("anew-*")) - before
+
+
+def test_plain_python_compiles_nothing():
+    for ours in (None, {"label": "midpoint", "speed": "plain", "steps": 10, "alone": 1e-6}):
+        assert compilation(None, None, [{"level": HEADLINE, "ours": ours}]) is None
 
 
 @pytest.mark.skipif(not PYMUNK.installed(), reason="pymunk is not installed here")

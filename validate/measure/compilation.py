@@ -14,15 +14,16 @@ def compilation(selection, p, races):
     """Return {"label", "cold", "cached"} [s] of the method that runs our race at the headline's error.
 
     None where plain Python runs it, or where there is no such race.  cold: with an empty cache, numba being imported;
-    cached: with everything that the same method needs in the cache.
+    cached: with everything that the same method needs in the cache.  Both are times of a first run without the time of
+    a second one.
     """
     ours = next((one["ours"] for one in races if one["level"] == HEADLINE and one["ours"]), None)
     if ours is None or ours["speed"] != "compiled":
         return None
     runner = next(r for r in selection.ours_for(p) if r.label == ours["label"])
-    cold, cached = (first_run(compiled.scene(selection.name), runner, p, selection.scene.steps[0])
+    cold, cached = (first_run(compiled.scene(selection.name), runner, p, ours["steps"]) - ours["alone"]
                     for compiled in modules.compiled_twice(selection.plan.of))
-    return {"label": runner.label, "cold": cold, "cached": cached}
+    return {"label": runner.label, "cold": max(0.0, cold), "cached": max(0.0, cached)}
 
 
 def first_run(scene, runner, p, steps):

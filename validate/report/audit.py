@@ -13,7 +13,7 @@ import numpy as np
 from .. import report
 from ..check import Verdict, jsonable
 from ..measure.accuracy import ASYMPTOTIC, bound
-from ..measure.races import EXACTLY, NEARLY, TIE, Outcome
+from ..measure.races import EXACTLY, HEADLINE, NEARLY, TIE, Outcome
 from ..measure.timing import SAME, TARGETS
 from ..run.store import code_digest
 from ..scene import ROUND_OFF
@@ -156,6 +156,7 @@ def of_times(result, counts):
         for problem in of_race(race, times, case):
             yield f"the race with {race['product']} to {race['error']}: {problem}"
     yield from of_calls(times)
+    yield from of_compilation(times)
     yield from of_costs(times)
 
 
@@ -224,6 +225,18 @@ def of_calls(times):
         alone = median(one["alone"]) if one["alone"] else 0.0
         if not one["called"] or differs(one["seconds"], max(0.0, median(one["called"]) - alone)):
             yield f"the cost of a call of {one['product']} does not follow from its repeats"
+
+
+def of_compilation(times):
+    """Yield what is wrong with the times of compilation: they belong to the method that runs the headline's race."""
+    one = times.get("compilation")
+    if not one:
+        return
+    quickest = {race["ours"]["label"] for race in times["races"] if race["level"] == HEADLINE and race["ours"]}
+    if one["label"] not in quickest:
+        yield f"the compilation is timed of {one['label']}, which runs no race"
+    if not 0.0 <= one["cached"] <= one["cold"]:
+        yield "to load a method from the cache takes longer than to compile it"
 
 
 def of_race(race, times, case):
