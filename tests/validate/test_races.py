@@ -2,9 +2,10 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from validate.measure import calls, races
+from validate.measure import calls, races, timing
 from validate.measure.compilation import compilation
 from validate.measure.races import BEST, HEADLINE, LEVELS, Outcome
 from validate.measure.selection import Plan, select
@@ -65,6 +66,22 @@ def test_an_error_that_the_coarsest_run_meets_is_said_as_such():
     assert words.coarse(one) == \
         "10 % is met already by the coarsest timed run of pymunk (10 steps) and of our method (one step)."
     assert words.coarse(held([engine()], [EULER])[0.001]) == ""
+
+
+def test_errors_that_the_same_coarsest_run_meets_share_a_sentence():
+    theirs = list(held([engine(constant=1e-9)], [EULER]).values())
+    assert list(words.coarse_runs(theirs)) == [
+        "Both meet 10 % already in 10 steps.",
+        "1 % and 0.1 % are met already by the coarsest timed run of pymunk (10 steps)."]
+
+
+def test_the_interval_of_a_median_leaves_out_one_repeat_on_either_side_of_nine():
+    assert timing.interval([5.0, 1.0, 9.0, 3.0, 2.0, 4.0, 8.0, 6.0, 7.0]) == {"low": 2.0, "high": 8.0}
+    assert timing.interval([3.0, 1.0, 2.0]) == {"low": 1.0, "high": 3.0}
+    drawn = np.random.default_rng(1).exponential(size=(20_000, 9))           # its median is log 2
+    ends = np.sort(drawn, axis=1)[:, [1, 7]]
+    inside = np.mean((ends[:, 0] <= np.log(2.0)) & (np.log(2.0) <= ends[:, 1]))
+    assert inside == pytest.approx(1.0 - 20.0 / 2.0**9, abs=0.006)           # four standard deviations
 
 
 def test_there_is_a_race_to_each_error_and_to_the_engines_best():

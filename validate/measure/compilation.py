@@ -13,9 +13,10 @@ from .races import HEADLINE
 def compilation(selection, p, races):
     """Return {"label", "cold", "cached"} [s] of the method that runs our race at the headline's error.
 
-    None where plain Python runs it, or where there is no such race.  cold: with an empty cache, numba being imported;
-    cached: with everything that the same method needs in the cache.  Both are times of a first run without the time of
-    a second one.
+    None where plain Python runs it, or where there is no such race.  Both are times of a first run without that of a
+    second one, in a process in which numba runs already.
+
+    cold: with an empty cache;    cached: with all that the method needs in the cache
     """
     ours = next((one["ours"] for one in races if one["level"] == HEADLINE and one["ours"]), None)
     if ours is None or ours["speed"] != "compiled":

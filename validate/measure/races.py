@@ -26,7 +26,7 @@ EXACTLY = 1e-11              # a smaller relative error is round-off, and counts
 class Outcome(StrEnum):
     """How a race ended, seen from our side."""
     FASTER = "faster"
-    TIE = "a tie"                            # less than a factor of TIE, or within the spread of the repeats
+    TIE = "a tie"                            # less than a factor of TIE, or 1 is within its interval
     SLOWER = "slower"                        # or none of our runs is that accurate
     ENGINE_FAILS = "the engine does not reach it"
     NEITHER = "neither side reaches it"
@@ -40,8 +40,8 @@ class Reach(NamedTuple):
     steps: int               # of the cheapest timed run that is accurate enough
     alone: float             # median time of that run [s]
     seconds: float           # to the error, read between that run and a coarser one [s]
-    low: float               # the same with the shortest of the repeats [s]
-    high: float              # and with the longest [s]
+    low: float               # the same with the lower ends of the times of both runs [s]
+    high: float              # and with the upper ones [s]
     coarsest: bool           # whether already the coarsest timed run is accurate enough
 
 
@@ -59,7 +59,7 @@ class Race(NamedTuple):
     outcome: Outcome
     why: str                 # why there is no ratio; empty where there is one
     ratio: float | None      # the engine's time over ours [-]
-    low: float | None        # the lowest and the highest ratio that the repeats allow [-]
+    low: float | None        # the lowest and the highest ratio that the intervals of both times allow [-]
     high: float | None
     order: float | None      # our time with the engine's order over our quickest [-]
     loop: float | None       # the engine's time over ours with its order [-]
@@ -210,7 +210,7 @@ def outcome_of(engine, ours):
 
 
 def ratios(engine, ours):
-    """Return the ratio of two times, and the lowest and the highest that their repeats allow."""
+    """Return the ratio of two times, and the lowest and the highest that their intervals allow."""
     return engine.seconds / ours.seconds, engine.low / ours.high, engine.high / ours.low
 
 

@@ -71,8 +71,8 @@ def environment():
     pages.tests["reaches"] = lambda row: any(t is not None for t in row["seconds"])
     pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=numbers.known, percents=numbers.percents,
                          levels=LEVELS, targets=TARGETS, race_error=HEADLINE, level_name=races.level_name,
-                         coarse=races.coarse, summary_ratio=races.summary_ratio, least=LEAST, most=MOST,
-                         measured_limits=words.measured_limits,
+                         coarse=races.coarse, coarse_runs=races.coarse_runs, summary_ratio=races.summary_ratio,
+                         measured_limits=words.measured_limits, least=LEAST, most=MOST,
                          bars_most=BARS_MOST, cheap=choice.CHEAP, race_header=tables.RACES,
                          race_rows=lambda r: map(tables.race_row, races.of(r)),
                          legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,

@@ -46,23 +46,42 @@ def level_name(level):
 # ---------------------------------------------------------------------------------------------- one race
 
 def ratio(race):
-    """Return a ratio of times with the range that the repeats allow, or why there is none; all have two digits."""
+    """Return a ratio of times with its interval, or why there is none; all have two digits."""
     if not race["ratio"]:
         return race["outcome"] if race["outcome"] in (Outcome.ENGINE_FAILS, Outcome.NEITHER) else race["why"]
     low, middle, high = (rounded(race[key]) for key in ("low", "ratio", "high"))
     return f"{middle}× ({low} to {high})"
 
 
+def coarse_runs(races):
+    """Yield sentences about the races of one engine in which a side runs its coarsest timed run, each run once."""
+    groups = {}
+    for race in races:
+        if sides := coarse_sides(race):
+            groups.setdefault(sides, []).append(race["level"])
+    for sides, levels in groups.items():
+        yield coarse_sentence(levels, sides)
+
+
 def coarse(race):
-    """Return a sentence about sides that meet the error already with their coarsest timed run; else nothing."""
-    sides = [(name, race[side]) for name, side in ((race["product"], "engine"), ("our method", "ours"))
-             if race["level"] is not BEST and race[side] and race[side]["coarsest"]]
-    if not sides:
-        return ""
-    if len({side["steps"] for _, side in sides}) == 1 and len(sides) == 2:
-        return f"Both meet {level_name(race['level'])} already in {steps(sides[0][1]['steps'])}."
-    said = " and of ".join(f"{name} ({steps(side['steps'])})" for name, side in sides)
-    return f"{level_name(race['level'])} is met already by the coarsest timed run of {said}."
+    """Return the sentence about one race; nothing where both sides need more than their coarsest timed run."""
+    sides = coarse_sides(race)
+    return coarse_sentence([race["level"]], sides) if sides else ""
+
+
+def coarse_sides(race):
+    """((name, number of steps), …) of the sides that meet a fixed error already with their coarsest timed run."""
+    return tuple((name, race[side]["steps"]) for name, side in ((race["product"], "engine"), ("our method", "ours"))
+                 if race["level"] is not BEST and race[side] and race[side]["coarsest"])
+
+
+def coarse_sentence(levels, sides):
+    """Return a sentence: these sides meet these errors already with their coarsest timed runs."""
+    errors = " and ".join(map(level_name, levels))
+    if len(sides) == 2 and sides[0][1] == sides[1][1]:
+        return f"Both meet {errors} already in {steps(sides[0][1])}."
+    said = " and of ".join(f"{name} ({steps(count)})" for name, count in sides)
+    return f"{errors} {'are' if len(levels) > 1 else 'is'} met already by the coarsest timed run of {said}."
 
 
 def steps(count):
@@ -103,7 +122,7 @@ def level_text(race):
 def counted(races):
     """Return a list with a record for each level: how many races ended how, and the median ratio with its interval.
 
-    low, high  the medians of the lowest and of the highest ratios that the repeats of each race allow
+    low, high  the medians of the lower and of the upper ends of the intervals of the races
     decided    races that were won, tied or lost; lost are also those to an error that we do not reach
     """
     found = []
@@ -133,7 +152,7 @@ def rows(races):
 def parts(race):
     """[(name, kind, value)] of what the ratio of a race is made of; a value is None where it is not known."""
     return [(f"order, at {percent(HEADLINE)}", "order", race["order"]), ("loop", "loop", race["loop"]),
-            ("of it calls", "calls", race["calls"])]
+            ("calls from Python, in it", "calls", race["calls"])]
 
 
 def outcomes(races):

@@ -120,7 +120,7 @@ def said_of_all(report):
     if not counts:
         return
     yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
-           "is what the repeats of the measurement allow. Medians of all races, with losses, ties and undecided ones:")
+           "is what the intervals of both times allow. Medians of all races, with losses, ties and undecided ones:")
     yield "; ".join(f"at {count['name']} {races.summary_ratio(count)}, {count['slower']}, {count['tie']}, "
                     f"{count['undecided']} of {count['races']}" for count in counts) + "."
     made = races.median_factors(every)

@@ -9,7 +9,8 @@ from .answers import departures
 
 RUNS = ("case", "method or engine", "role", "steps", "dt [s]", "relative error [-]", "limit [-]",
         "error from its own law [-]", "order", "expected order", "verdict", "failure")
-TIMES = ("method or engine", "speed", "steps", "relative error [-]", "median time [s]", "shortest [s]", "longest [s]")
+TIMES = ("method or engine", "speed", "steps", "relative error [-]", "median time [s]", "lower end of its interval [s]",
+         "upper end [s]")
 SCENES = ("scene", "lesson", "side", "verdict", "comparisons")
 RACES = ("scene", "lesson", "engine", "race to", "relative error [-]", "outcome", "why there is no ratio",
          "engine's settings", "engine's time [s]", "our method", "our speed", "our time [s]",
