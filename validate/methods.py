@@ -124,7 +124,8 @@ TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_
          COMPOSED_SPLITTING, COMPOSED_MIDPOINT)
 
 VARIANT_LINES = {"": "-", "default": ":"}
-OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"))  # line, marker in place of the engine's own
+# line, marker in place of the engine's own
+OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"), ("-.", "^"))
 
 
 def engine_look(engine, engines):

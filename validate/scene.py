@@ -39,6 +39,7 @@ class Engine(NamedTuple):
     settings: str            # what was set, and to what, for people
     most_steps: int | None = None            # the largest number of steps that is worth the engine's time
     substeps: int = 1                        # steps in a call from Python: `make` gives a world that makes so many
+    recorded_as: str | None = None           # the variant whose recorded runs are bitwise its own
 
     @property
     def label(self):

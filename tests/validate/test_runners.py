@@ -7,11 +7,11 @@ import pytest
 
 from solutions.checks import BadInput
 from validate import measure, methods
-from validate.check import Verdict
+from validate.check import Verdict, Whose
 from validate.measure.accuracy import Outcome, judged
 from validate.measure.races import races
 from validate.methods import INTEGRATORS, RK4, VERLET
-from validate.scene import PYMUNK, Method, Runner, no_limit, ours
+from validate.scene import PYMUNK, Departure, Method, Runner, no_limit, ours
 from validate.subject import modules
 
 PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)

@@ -111,6 +111,17 @@ def _kind(argument):
 
 
 @cache
+def _make_dispatcher_constants_cacheable():
+    """Let numba cache functions that pass a function on: it refuses to,
+    because it would store an address, which is never read.
+    """
+    import numba.experimental.function_type  # noqa: F401
+    from numba import types
+    from numba.core.imputils import lower_constant
+    lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
+
+
+@cache
 def _pass_checked_functions_on():
     """Let a compiled function take a CheckedFirst or a CachedDispatch as an argument: the twin in it is meant."""
     from numba.extending import typeof_impl
@@ -142,6 +153,7 @@ def use_cache(digest):
     """Return the cache folder of this digest, as text, and delete those that were not used for long."""
     import numba
     from numba.core.config import _OptLevel
+    _make_dispatcher_constants_cacheable()
     _pass_checked_functions_on()
     _save_one_at_a_time()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
