@@ -257,8 +257,8 @@ class Motion(NamedTuple):
         return table_model(scheme, law or self.law, self.begin, self.seen, order, ahead, self.march)
 
     def predict(self, scheme, law=None, follows=None, ahead=0.0, finest=None, powers=None):
-        """Return the field `predicted` of a Runner that follows a scheme, as `predict_model` does."""
-        return self.predict_model(self.model(scheme, law, ahead), follows, finest, powers)
+        """Return the field `predicted` of a Runner that does what a scheme does, as `predict_model` does."""
+        return shared_prediction(self, scheme, law, follows, ahead, finest, powers)
 
     def predict_model(self, model, follows=None, finest=None, powers=None):
         """Return the field `predicted` of a Runner.
@@ -281,6 +281,12 @@ class Motion(NamedTuple):
             """
             return error_law(p).prediction(dt, self.floor(p, dt))
         return predicted_error
+
+
+@cache
+def shared_prediction(motion, scheme, law, follows, ahead, finest, powers):
+    """Return Motion.predict, the same for a method and an engine with one scheme: they share the runs of its table."""
+    return motion.predict_model(motion.model(scheme, law, ahead), follows, finest, powers)
 
 
 def summed(velocity, T, dt, new):
