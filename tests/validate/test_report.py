@@ -203,6 +203,7 @@ def test_a_quick_report_shows_no_tick_while_races_are_undecided_and_the_last_ful
     counts = races.counted([])
     counts[1].update(ratio=31.0, low=28.0, high=35.0, slower=2, tie=5, races=55)
     other = json.loads(json.dumps(data))
+    assert section.count("<div>") == section.count("</div>") == 1           # a grid has room for three parts only
     other["run"]["full_run"] = {"date": "2026-11-30", "commit": "abc1234", "machine": "Linux", "processor": "P",
                                 "counts": counts}
     section = front_of(other).partition('id="faster"')[2].partition("</section>")[0]

@@ -68,7 +68,8 @@ def times(name, plan, result):
         "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
         "others": others if items else None,
         "time_to_error": times_to_error(rows),
-        "races": races(rows, result["cases"][case], [product.name for product in plan.live], plan.quick, calls),
+        "races": races(rows, result["cases"][case], [product.name for product in plan.live], plan.quick, calls)
+                 if items else [],
         "ablations": ablations(selection, p, labels_that_agree(result)),
     })
 
