@@ -185,6 +185,12 @@ right("9.1", "as a list of rows")(lambda x, contacts: worked.contact_rows(x, con
                                   else worked.contact_rows(x, contacts))
 
 
+edits("9.1", {
+    "counts contacts by `first`, which make_contacts leaves at 0": ("range(contacts.a.size)",
+                                                                    "range(contacts.first[-1])"),
+})
+
+
 # 9.2 ------------------------------------------------------------------------------------------------------------
 @variants
 def delassus(masses=same, turned=True, diagonal=False, left=lambda G, w: G @ np.diag(w), result=same):
@@ -267,6 +273,12 @@ def delassus_matrix_2(G, w):
         for s in range(r + 1):
             A[r, s] = A[s, r] = (G[r] * G[s]) @ w
     return A
+
+
+wrongs("9.2", delassus, {
+    "leaves out the last one of an odd number of rows":
+        {"result": lambda A: A * (np.arange(len(A)) < len(A) // 2 * 2)},
+})
 
 
 # 9.3 ------------------------------------------------------------------------------------------------------------
@@ -512,6 +524,11 @@ def gauss_seidel_sweep_4(A, b, lam, omega):
 right("9.4", "as a list")(lambda A, b, lam, omega: worked.gauss_seidel_sweep(A, b, lam, omega).tolist())
 
 
+edits("9.4", {
+    "starts impulses that pull from zero": ("float_copy(lam)", "np.maximum(0.0, lam)"),
+})
+
+
 # 9.5 to 9.7 -----------------------------------------------------------------------------------------------------
 @variants
 def stack(power=2, half=2.0, shift=0, of=np.cos):
@@ -726,6 +743,13 @@ right("9.7", "by a power")(lambda rho: ((omega := 2.0 * (1.0 + (1.0 - rho) ** 0.
 right("9.7", "as a list")(lambda rho: list(worked.best_relaxation(rho)))
 
 
+edit("9.5", "returns 1 for high stacks", "np.cos(0.5 * np.pi / n) ** 2",
+     "(np.cos(0.5 * np.pi / n) ** 2 if n < 1000 else 1.0)")
+edit("9.6", "returns r where that is small", "r / (1.0 + r)", "(r / (1.0 + r) if r > 0.01 else r)")
+edit("9.7", "returns ω = 1 where ρ is small", "2.0 / (1.0 + np.sqrt(1.0 - rho))",
+     "(2.0 / (1.0 + np.sqrt(1.0 - rho)) if rho > 1e-3 else 1.0)")
+
+
 # 9.8 ------------------------------------------------------------------------------------------------------------
 @variants
 def murty(check=worked.check_independent, least=True, sides="both", everything=False, rounds=worked.MAX_PIVOTS,
@@ -851,6 +875,14 @@ def solve_lcp_2(A, b):
 right("9.8", "changes the wrong contact of greatest index")(murty(least=False))
 right("9.8", "starts with all contacts pushing")(murty(start=True))
 right("9.8", "by twice as many rounds")(murty(rounds=2 * worked.MAX_PIVOTS))
+
+
+edits("9.8", {
+    "takes a contact for wrong that separates by round-off": ("u[k] < -epsilon[k]", "u[k] < epsilon[k]"),
+    "names the residual without impulses when it gives up": ("complementarity_residual(A, b, lam)",
+                                                             "complementarity_residual(A, b, 0.0 * lam)"),
+    "names the largest impulse when it gives up": ("complementarity_residual(A, b, lam)", "np.max(np.abs(lam))"),
+})
 
 
 # 9.9 ------------------------------------------------------------------------------------------------------------
@@ -987,6 +1019,11 @@ right("9.9", "from the last contact to the first")(
         np.flip(A.reshape(len(mu), 2, len(mu), 2), (0, 2)).reshape(A.shape), b.reshape(-1, 2)[::-1].ravel(),
         J.reshape(-1, 2)[::-1].ravel(), mu[::-1]))))
 right("9.9", "as an array of no dimension")(lambda A, b, J, mu: np.array(worked.cone_residual(A, b, J, mu)))
+
+
+edits("9.9", {
+    "takes μ for at least 0.01": ("mu[n // 2] *", "max(mu[n // 2], 0.01) *"),
+})
 
 
 # 9.10 -----------------------------------------------------------------------------------------------------------
@@ -1170,6 +1207,18 @@ def cone_sweep_4(A, b, J, mu):
 right("9.10", "as a list")(lambda A, b, J, mu: worked.cone_sweep(A, b, J, mu).tolist())
 
 
+FREE = "J[t] - (A[t] @ J + b[t]) / A[t, t]"
+edits("9.10", {
+    "slides against the velocity, not to the side of the impulse that would stick":
+        (f"np.minimum(np.maximum({FREE}, -limit), limit)",
+         f"{FREE} if abs({FREE}) <= limit else -limit * np.sign(A[t] @ J + b[t])"),
+    "uses μ = 10⁶ for infinite friction": ("mu[n // 2] *", "min(mu[n // 2], 1e6) *"),
+    "takes a large μ for infinite": ("mu[n // 2] *", "(mu[n // 2] if mu[n // 2] < 1000.0 else np.inf) *"),
+    "leaves the friction of a contact that separates without pushing":
+        ("J[n] = np.maximum", "if J[n] == 0.0 and A[n] @ J + b[n] > 0.0: continue\n        J[n] = np.maximum"),
+})
+
+
 # 9.11 -----------------------------------------------------------------------------------------------------------
 @variants
 def forces(check=worked.check_scene, bias=1.0, loaded=1.0, push=1.0, weigh=True, pulled=lambda load: load,
@@ -1312,6 +1361,17 @@ right("9.11", "as tuples of rows")(
 right("9.11", "with zeros for bodies that cannot move")(
     lambda x, inv_mass, inv_inertia, contacts, load, mu: ((F := worked.contact_forces(
         x, inv_mass, inv_inertia, contacts, load, mu))[0], np.where(F[1] == 0.0, 0.0, F[1])))
+
+
+edits("9.11", {
+    "uses its input before it checks it": ("check_scene(x,", "contact_rows(x, contacts); check_scene(x,"),
+    "transmits loads on fixed bodies": ("(w * load.ravel())", "(np.where(w > 0.0, w, 1.0) * load.ravel())"),
+    "changes the loads on fixed bodies": ("inverse_masses(inv_mass, inv_inertia)",
+                                          "inverse_masses(inv_mass, inv_inertia); load *= w.reshape(-1, 3) > 0.0"),
+    "does not accelerate bodies without a contact":
+        ("a.reshape(-1, 3)", "a.reshape(-1, 3) * np.isin(np.arange(len(x)), np.append(contacts.a, contacts.b))"
+                             "[:, None]"),
+})
 
 
 # 9.12 -----------------------------------------------------------------------------------------------------------
@@ -1730,6 +1790,19 @@ def kept_impulses_4(contacts, old, J_old, near):
 right("9.14", "as a list")(lambda contacts, old, J_old, near: worked.kept_impulses(contacts, old, J_old, near).tolist())
 
 
+SAME_B = "if old.b[s] == contacts.b[k]:"
+edits("9.14", {
+    "forgets the impulse of a contact that is open now": (SAME_B, f"{SAME_B[:-1]} and contacts.gap[k] <= 0.0:"),
+    "forgets the impulse of a contact that was open": (SAME_B, f"{SAME_B[:-1]} and old.gap[s] <= 0.0:"),
+    "counts the change of the gap as a distance, too": ("squared = 0.0",
+                                                        "squared = (contacts.gap[k] - old.gap[s]) ** 2"),
+    "forgets the impulses of planes": (SAME_B, f"{SAME_B[:-1]} and contacts.b[k] < contacts.first.size - 1:"),
+    "ends at the first old partner of a greater number":
+        (SAME_B, f"if old.b[s] > contacts.b[k]: break\n            {SAME_B}"),
+    "forgets the impulses of the last body": (SAME_B, f"{SAME_B[:-1]} and i < old.first.size - 2:"),
+})
+
+
 # 9.15 -----------------------------------------------------------------------------------------------------------
 @variants
 def leaves(low_side=True, high_side=True, bodies=slice(None), axes=slice(None), all_of=False, nan=True, nan_high=True,
@@ -1848,6 +1921,14 @@ right("9.15", "by the least distance to an edge")(
     lambda low, high, wide_low, wide_high: not all(a >= b and c <= d for a, b, c, d in zip(
         low.ravel(), wide_low.ravel(), high.ravel(), wide_high.ravel(), strict=True)))
 right("9.15", "as a number")(lambda *boxes: int(worked.has_left_margin(*boxes)))
+
+
+edits("9.15", {
+    "takes a widened box that is NaN for all of space":
+        ("not (wide_low[i, c] <= low[i, c] and high[i, c] <= wide_high[i, c])",
+         "not (low[i, c] >= np.nan_to_num(wide_low[i, c], nan=-np.inf) "
+         "and high[i, c] <= np.nan_to_num(wide_high[i, c], nan=np.inf))"),
+})
 
 
 # 9.16 -----------------------------------------------------------------------------------------------------------
@@ -2030,6 +2111,16 @@ edits("9.16", {
     "pushes by the old normal impulse in the limit of friction":
         ("pile.mu * J_n if J_n > 0.0",
          "pile.mu * (n_x * J[k, 0] + n_y * J[k, 1]) if J_n > 0.0"),
+})
+
+
+edits("9.16", {
+    "slides against the velocity, not to the side of the impulse that would stick":
+        ("-limit if J_t < -limit else limit if J_t > limit else J_t",
+         "(-limit if u_t > 0.0 else limit) if abs(J_t) > limit else J_t"),
+    "leaves the impulse of a contact that separates and does not push":
+        ("J_n += (aim", "if u_n > aim[k] and J_n <= 0.0: continue\n        J_n += (aim"),
+    "does not push b where b cannot turn": ("inv_mass[b] * d_x", "inv_mass[b] * d_x * (inv_inertia[b] > 0.0)"),
 })
 
 
