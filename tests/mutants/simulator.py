@@ -177,11 +177,16 @@ edits("10.1 10.2",
 edits("10.1",
       ("changes the torques that the load has returned", "p.inv_inertia * tau",
        "np.multiply(p.inv_inertia, tau, out=tau)"),
+      ("evaluates the load for bodies that do not turn", "q, v, omega, p)", "q, v, 0.0 * omega, p)"),
+      ("evaluates the load in the middle of the step", "load(t, x", "load(t + 0.5 * dt, x"),
       ("multiplies the columns of two rows by their inverse masses", "p.inv_mass[:, None] * F",
        "(p.inv_mass if len(v) == 2 else p.inv_mass[:, None]) * F"))
 edits("10.2",
       ("limits the spin to 10 rad/s in the gyroscopic term", "omega[i], tau[i], 1.0",
        "np.clip(omega[i], -10.0, 10.0), tau[i], 1.0"),
+      ("uses the spin of the first row for all", "omega[i], tau[i], 1.0", "omega[0], tau[i], 1.0"),
+      ("evaluates the load for bodies that do not turn", "q, v, omega, p)", "q, v, 0.0 * omega, p)"),
+      ("evaluates the load for bodies that turn and do not move", "q, v, omega, p)", "q, 0.0 * v, omega, p)"),
       ("sorts the moments of inertia", "1.0 / p.inv_inertia[i]", "np.sort(1.0 / p.inv_inertia[i])"))
 
 
@@ -431,6 +436,10 @@ edits("10.5",
       ("finds gaps a little larger than the margin", "pairs, p.margin)", "pairs, p.margin * (1.0 + 1e-6))"),
       ("finds gaps a little smaller than the margin only", "pairs, p.margin)", "pairs, p.margin * (1.0 - 1e-6))"),
       ("takes heavy bodies for immovable", ", p.inv_mass)", ", np.where(p.inv_mass > 1e-3, p.inv_mass, 0.0))"),
+      ("doubles the sizes of the bodies", "turn, p.half", "turn, 2.0 * p.half"),
+      ("uses the sizes of the first body for all", "turn, p.half", "turn, 0.0 * p.half + p.half[0]"),
+      ("uses the planes from the last to the first", "p.half, p.planes, pairs",
+       "p.half, np.ascontiguousarray(p.planes[::-1]), pairs"),
       ("uses the rotation of the first body for all", "turn, p.half", "0.0 * turn + turn[:1], p.half"))
 
 
@@ -502,6 +511,14 @@ for number, name, dimension, moved, apply, sweep in (
            "for k in np.flatnonzero(contacts.gap < 0.0): x = x - 0.2 * contacts.gap[k] * np.outer(np.arange(len(x)) == "
            f"contacts.a[k], contacts.n[k])\n    {ends}"),
           ("limits velocities to 100 m/s", ends, f"v = np.clip(v, -100.0, 100.0); {ends}"),
+          ("uses the gaps for the speeds at which they close", "closing_speeds(contacts.gap, dt)",
+           "np.minimum(-contacts.gap, 0.0)"),
+          ("moves with the mean of old and new velocities", ends,
+           ends.replace("x + dt * v", "x + 0.5 * dt * (v + state.v)")),
+          ("stops rows of infinite mass at the end", ends, f"v[p.inv_mass == 0.0] = 0.0; {ends}"),
+          ("keeps half of the distance of the margin only", "J, p.margin)", "J, 0.5 * p.margin)"),
+          ("takes two bodies of 1 kg for the arms", f"{arms}x, p.inv_mass,", f"{arms}x, np.ones(p.inv_mass.size),"),
+          ("uses the contacts of the last step", DETECT, f"{DETECT}; contacts = old if old.a.size else contacts"),
           ("uses the weight in place of the load", "(load, t", "(weight, t"),
           ("omits the forces", loads, "v, omega = v.copy(), omega.copy()"),
           ("adds the load twice", loads, f"{loads}; {loads}"),
@@ -700,6 +717,10 @@ def support_velocity(place, ball):
 SUPPORT, WAY = "point_velocity(ball.floor_v, ball.floor_omega, place - ball.centre)", "place - ball.centre"
 edits("10.8",
       ("multiplies by μ where that is below 1", "return point", "return min(ball.mu, 1.0) * point"),
+      ("multiplies the rotation by the radius", "ball.floor_omega, place", "ball.radius * ball.floor_omega, place"),
+      ("takes ω for turns per second", "ball.floor_omega, place", "2.0 * np.pi * ball.floor_omega, place"),
+      ("uses the way along x only", "place - ball.centre)", "(place - ball.centre) * np.array([1.0, 0.0, 0.0]))"),
+      ("uses the way along y only", "place - ball.centre)", "(place - ball.centre) * np.array([0.0, 1.0, 0.0]))"),
       ("takes slow floors for floors at rest", "return point_velocity(ball.floor_v,",
        "return point_velocity(np.where(np.abs(ball.floor_v) > 1e-9, ball.floor_v, 0.0),"))
 edits("10.8",
