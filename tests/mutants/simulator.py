@@ -171,6 +171,25 @@ edits("10.2",
       ("returns omega before v", "return v, omega", "return omega, v"))
 
 
+edits("10.1 10.2",
+      ("changes the forces that the load has returned", "p.inv_mass[:, None] * F",
+       "np.multiply(p.inv_mass[:, None], F, out=F)"))
+edits("10.1",
+      ("changes the torques that the load has returned", "p.inv_inertia * tau",
+       "np.multiply(p.inv_inertia, tau, out=tau)"),
+      ("evaluates the load for bodies that do not turn", "q, v, omega, p)", "q, v, 0.0 * omega, p)"),
+      ("evaluates the load in the middle of the step", "load(t, x", "load(t + 0.5 * dt, x"),
+      ("multiplies the columns of two rows by their inverse masses", "p.inv_mass[:, None] * F",
+       "(p.inv_mass if len(v) == 2 else p.inv_mass[:, None]) * F"))
+edits("10.2",
+      ("limits the spin to 10 rad/s in the gyroscopic term", "omega[i], tau[i], 1.0",
+       "np.clip(omega[i], -10.0, 10.0), tau[i], 1.0"),
+      ("uses the spin of the first row for all", "omega[i], tau[i], 1.0", "omega[0], tau[i], 1.0"),
+      ("evaluates the load for bodies that do not turn", "q, v, omega, p)", "q, v, 0.0 * omega, p)"),
+      ("evaluates the load for bodies that turn and do not move", "q, v, omega, p)", "q, 0.0 * v, omega, p)"),
+      ("sorts the moments of inertia", "1.0 / p.inv_inertia[i]", "np.sort(1.0 / p.inv_inertia[i])"))
+
+
 # 10.3 and 10.4 --------------------------------------------------------------------------------------------------
 @right("10.3", "changes of positions apart")
 def free_step_2d(load, t, x, q, v, omega, dt, p):
@@ -323,6 +342,11 @@ edits("10.4",
        "v, omega = v + dt * p.inv_mass[:, None] * F, omega + dt * p.inv_inertia * tau"))
 
 
+edit("10.3", "leaves out ways below 1 nm", "x + dt * v", "np.where(np.abs(dt * v) > 1e-9, x + dt * v, x)")
+edit("10.4", "leaves out spins below 1 µrad/s", "q[i] = quaternion",
+     "if dot(omega[i], omega[i]) > 1e-12: q[i] = quaternion")
+
+
 # 10.5 -----------------------------------------------------------------------------------------------------------
 @right("10.5", "tries all pairs")
 def find_contacts(narrow, x, low, high, turn, p):
@@ -407,6 +431,18 @@ edits("10.5",
       ("returns the gaps only", NARROW, f"{NARROW}.gap"))
 
 
+edits("10.5",
+      ("widens the boxes by 1 m, whatever the margin is", "low - p.margin, high + p.margin", "low - 1.0, high + 1.0"),
+      ("finds gaps a little larger than the margin", "pairs, p.margin)", "pairs, p.margin * (1.0 + 1e-6))"),
+      ("finds gaps a little smaller than the margin only", "pairs, p.margin)", "pairs, p.margin * (1.0 - 1e-6))"),
+      ("takes heavy bodies for immovable", ", p.inv_mass)", ", np.where(p.inv_mass > 1e-3, p.inv_mass, 0.0))"),
+      ("doubles the sizes of the bodies", "turn, p.half", "turn, 2.0 * p.half"),
+      ("uses the sizes of the first body for all", "turn, p.half", "turn, 0.0 * p.half + p.half[0]"),
+      ("uses the planes from the last to the first", "p.half, p.planes, pairs",
+       "p.half, np.ascontiguousarray(p.planes[::-1]), pairs"),
+      ("uses the rotation of the first body for all", "turn, p.half", "0.0 * turn + turn[:1], p.half"))
+
+
 # 10.6 and 10.7 --------------------------------------------------------------------------------------------------
 @right("10.6", "impulses once more from the start")
 def contact_step_2d(load, bounds, narrow, t, state, dt, p):
@@ -459,6 +495,30 @@ for number, name, dimension, moved, apply, sweep in (
     edits(number,
           ("evaluates the load at time 0", "(load, t, x", "(load, 0.0, x"),
           ("evaluates the load at t + dt", "(load, t, x", "(load, t + dt, x"),
+          ("evaluates the load at the next positions", "(load, t, x,", "(load, t, x + dt * v,"),
+          ("applies the old impulses before the loads", apply,
+           f"v, omega = state.v.copy(), state.omega.copy(); {apply}; {loads}"),
+          ("remembers impulses only where the number of contacts has not changed", KEEP,
+           f"{KEEP} if old.a.size == contacts.a.size else 0.0 * contacts.p"),
+          ("forgets impulses that would pull now", KEEP,
+           f"{KEEP}; J = J * (np.sum(J * contacts.n, axis=1)[:, None] > 0.0)"),
+          ("ends the sweeps where impulses change by less than 1 nN s", LOOP,
+           f"{LOOP}\n        if _ and np.max(np.abs(J - last), initial=0.0) < 1e-9: break\n        last = J.copy()"),
+          ("makes one sweep only where there is one body", "range(p.sweeps)",
+           "range(p.sweeps if len(p.half) > 1 else 1)"),
+          ("makes 50 sweeps at most", "range(p.sweeps)", "range(min(p.sweeps, 50))"),
+          ("moves bodies apart that overlap", ends,
+           "for k in np.flatnonzero(contacts.gap < 0.0): x = x - 0.2 * contacts.gap[k] * np.outer(np.arange(len(x)) == "
+           f"contacts.a[k], contacts.n[k])\n    {ends}"),
+          ("limits velocities to 100 m/s", ends, f"v = np.clip(v, -100.0, 100.0); {ends}"),
+          ("uses the gaps for the speeds at which they close", "closing_speeds(contacts.gap, dt)",
+           "np.minimum(-contacts.gap, 0.0)"),
+          ("moves with the mean of old and new velocities", ends,
+           ends.replace("x + dt * v", "x + 0.5 * dt * (v + state.v)")),
+          ("stops rows of infinite mass at the end", ends, f"v[p.inv_mass == 0.0] = 0.0; {ends}"),
+          ("keeps half of the distance of the margin only", "J, p.margin)", "J, 0.5 * p.margin)"),
+          ("takes two bodies of 1 kg for the arms", f"{arms}x, p.inv_mass,", f"{arms}x, np.ones(p.inv_mass.size),"),
+          ("uses the contacts of the last step", DETECT, f"{DETECT}; contacts = old if old.a.size else contacts"),
           ("uses the weight in place of the load", "(load, t", "(weight, t"),
           ("omits the forces", loads, "v, omega = v.copy(), omega.copy()"),
           ("adds the load twice", loads, f"{loads}; {loads}"),
@@ -621,6 +681,7 @@ edits("10.7",
        f"arms, p.inv_mass, {BODY})"),
       ("uses the inertia in body axes for the sweeps", "inv_inertia, p.mu)", f"{BODY}, p.mu)"),
       ("transposes the rotations", "world_inertia(turn,", "world_inertia(turn.transpose(0, 2, 1),"),
+      ("uses the rotation of the first body for all", "world_inertia(turn,", "world_inertia(0.0 * turn + turn[:1],"),
       ("uses the inertia of the orientation after the step", "world_inertia(turn,",
        "world_inertia(bounds(x, turn_quaternions(q, omega, dt), p.half)[2],"),
       ("uses the inertia in place of its inverse", MATRICES,
@@ -654,6 +715,14 @@ def support_velocity(place, ball):
 
 
 SUPPORT, WAY = "point_velocity(ball.floor_v, ball.floor_omega, place - ball.centre)", "place - ball.centre"
+edits("10.8",
+      ("multiplies by μ where that is below 1", "return point", "return min(ball.mu, 1.0) * point"),
+      ("multiplies the rotation by the radius", "ball.floor_omega, place", "ball.radius * ball.floor_omega, place"),
+      ("takes ω for turns per second", "ball.floor_omega, place", "2.0 * np.pi * ball.floor_omega, place"),
+      ("uses the way along x only", "place - ball.centre)", "(place - ball.centre) * np.array([1.0, 0.0, 0.0]))"),
+      ("uses the way along y only", "place - ball.centre)", "(place - ball.centre) * np.array([0.0, 1.0, 0.0]))"),
+      ("takes slow floors for floors at rest", "return point_velocity(ball.floor_v,",
+       "return point_velocity(np.where(np.abs(ball.floor_v) > 1e-9, ball.floor_v, 0.0),"))
 edits("10.8",
       ("rotates about the origin", WAY, "place"),
       ("adds the centre", WAY, "place + ball.centre"),
