@@ -1344,3 +1344,58 @@ edits("10.16",
       ("returns the ratio before the difference", "return difference, np.median(ratios)",
        "return np.median(ratios), difference"),
       ("returns the ratio only", "return difference, np.median(ratios)", "return np.median(ratios)"))
+
+
+# 10.8 to 10.16: right for inputs of the usual size only ---------------------------------------------------------
+edits("10.8",
+      ("takes a slow rotation for none", "return",
+       "if norm(ball.floor_omega) < 1e-6: return ball.floor_v.copy()\n    return"),
+      ("cuts the way from the centre off at 100 m", WAY, f"np.clip({WAY}, -100.0, 100.0)"),
+      ("takes places within a radius of the centre for the centre", "return",
+       f"if norm({WAY}) < ball.radius: return ball.floor_v.copy()\n    return"))
+edits("10.9",
+      ("evaluates the load at t + dt/2", "rigid_body_step(load, t, x", "rigid_body_step(load, t + 0.5 * dt, x"),
+      ("evaluates the load with the velocities before friction", "rigid_body_step(load,",
+       "rigid_body_step(lambda t, x, q, a, b, ball: load(t, x, q, v, omega, ball),"),
+      ("evaluates the load with q = 1", "t, x, q, pushed", "t, x, np.array([1.0, 0.0, 0.0, 0.0]), pushed"),
+      ("evaluates the load with the spin before friction", "rigid_body_step(load,",
+       "rigid_body_step(lambda t, x, q, a, b, ball: load(t, x, q, a, omega, ball),"),
+      ("applies the load in two halves", LOADED,
+       f"{LOADED.replace('pushed, turned, dt', '*' + LOADED.replace(' dt,', ' 0.5 * dt,') + '[2:], 0.5 * dt')}"))
+edits("10.10",
+      ("takes a slip below 1e-12 m/s for none", "size == 0.0", "size < 1e-12"),
+      ("limits the time to 10 s", ENDS, "min(10.0, size / rate) if rate > 0.0 else np.inf"),
+      ("takes a small rate for none", "if rate > 0.0", "if rate > 1e-6"),
+      ("takes large friction for infinite", "along =", "if ball.mu > 10.0: return 0.0\n    along ="),
+      ("limits finite friction to 100", "-ball.mu *", "-(ball.mu if np.isinf(ball.mu) else min(ball.mu, 100.0)) *"))
+edits("10.11",
+      ("omits a second part that is short", f"return {TWO}",
+       f"return {TWO} if dt - first > 1e-5 else (x, q, v, omega)"),
+      ("evaluates the second load in the middle of the second part", "load, t + first, x",
+       "load, t + 0.5 * (dt + first), x"))
+edits("10.12",
+      ("changes nothing where the corner moves up", ANGULAR,
+       f"if v[1] + omega * r[0] > 0.0: return v.copy(), omega\n    {ANGULAR}"),
+      ("changes nothing where the corner moves towards the centre", ANGULAR,
+       f"if (v + omega * np.array([-r[1], r[0]])) @ r < 0.0: return v.copy(), omega\n    {ANGULAR}"),
+      ("takes a slow spin for none", AFTER, f"omega = 0.0 if abs(omega) < 1e-6 else omega; {AFTER}"),
+      ("lets no body be heavier than 100 kg beside r × v", "cross_2d(r, v) / inv_mass",
+       "cross_2d(r, v) / max(inv_mass, 1e-2)"),
+      ("lets no moment of inertia be above 1000 kg m² beside ω", "omega / inv_inertia",
+       "omega / max(inv_inertia, 1e-3)"),
+      ("cuts r off at 1 m", ANGULAR, f"r = r / max(1.0, np.sqrt(r @ r)); {ANGULAR}"))
+edits("10.13 10.14",
+      ("sorts the moments of inertia", "p.inv_inertia[i])", "np.sort(p.inv_inertia[i])[::-1])"),
+      ("takes heavy bodies for immovable", COUNTS, "if p.inv_mass[i] > 1e-6:"),
+      ("omits light bodies", COUNTS, "if 0.0 < p.inv_mass[i] < 1e6:"),
+      ("omits the rotation of heavy bodies", ROTATES, "if p.inv_inertia[i, 0] > 1e-6:"))
+edits("10.15",
+      ("needs two times", OVER, f"rest = energies[1] - work[1]\n    {OVER}"),
+      ("looks back over a hundred times only", OVER, "e = energies - work\n    return "
+       f"max(e[k] - np.min(e[max(0, k - 100):k + 1]) for k in range(e.size))\n    {OVER}"),
+      ("takes gains below 1e-10 of the energy for none", DONE,
+       "return gain if gain > 1e-10 * abs(energies[0]) else 0.0"))
+edits("10.16",
+      ("takes differences below 1e-9 for none", "return difference,", "return difference * (difference > 1e-9),"),
+      ("compares the first eight numbers only", LARGEST, "np.max(np.abs(slow - quick).ravel()[:8])"),
+      ("takes times below a millisecond for one", RATIO, "(between - began) / max(clock() - between, 1e-3)"))
