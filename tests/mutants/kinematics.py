@@ -1739,3 +1739,88 @@ edit("11.16", "uses a pull of at most 1", "arm.pull *", "min(arm.pull, 1.0) *")
 edit("11.16", "divides by the pull, which may be 0", "arm.pull *", "arm.pull * (arm.pull / np.float64(arm.pull)) *")
 edit("11.16", "keeps only three null vectors", PULLED, "theta + pseudo_inverse(J) @ e + (lambda N: N.T @ (N @ z))("
      "np.linalg.svd(J)[2][np.linalg.matrix_rank(J, 1e-9):][:3])")
+
+
+# everyday mistakes ----------------------------------------------------------------------------------------------
+edit("11.1", "computes in single precision", "(theta.size + 1, 2))", "(theta.size + 1, 2), np.float32)")
+edit("11.1", "puts all links at the base in x", "x[k, 0] +", "x[0, 0] +")
+edit("11.1", "puts all links at the base in y", "x[k, 1] +", "x[0, 1] +")
+edit("11.1", "uses the mean length for all links", "lengths[k] * np.cos", "np.mean(lengths) * np.cos")
+edit("11.1", "cuts the sum of the angles off at half a turn", "phi += theta[k]",
+     "phi = min(max(phi + theta[k], -np.pi), np.pi)")
+edit("11.1", "returns the end relative to the last joint", "return x", "x[-1] -= x[-2].copy(); return x")
+edit("11.2", "computes in single precision", "np.empty((2, n))", "np.empty((2, n), np.float32)")
+edit("11.2", "returns half of the velocity", "return J", "return 0.5 * J")
+edit("11.2", "takes the size of r_x", "x[n, 0] - x[k, 0]", "abs(x[n, 0] - x[k, 0])")
+edit("11.3", "returns the angle of the short axis, to the other side", TURN, "0.5 * np.arctan2(-2.0 * b, c - a)")
+edit("11.3", "takes the size of a − c in the angle", TURN, "0.5 * np.arctan2(2.0 * b, abs(a - c))")
+edit("11.3", "returns the root of a + c for the longer axis", "longer = np.sqrt(0.5 * (a + c) + np.sqrt(",
+     "longer = np.sqrt((a + c) + 0.0 * np.sqrt(")
+edit("11.3", "normalises the columns of J", "a, b, c, squared",
+     "J = J / np.maximum(np.linalg.norm(J, axis=0), 1e-300); a, b, c, squared")
+edit("11.4", "computes r² − a², which loses digits near the inner edge", "(r - least) * (r + least)",
+     "r * r - least * least")
+edit("11.4", "takes the root of the size of a negative number at the inner edge", "np.maximum(inner, 0.0)",
+     "np.abs(inner)")
+edit("11.4", "adds the coordinates of the target for its distance", "np.hypot(target[0], target[1])",
+     "abs(target[0]) + abs(target[1])")
+edit("11.4", "brings θ₁ back only where it is below −π", "wrapped(np.arctan2(target[1], target[0]) - back)",
+     "(lambda angle: angle + 2.0 * np.pi * (angle < -np.pi))(np.arctan2(target[1], target[0]) - back)")
+edit("11.5", "returns the arcsine of the sine for θ₃", "wrapped(phi - theta[0] - theta[1])",
+     "np.arcsin(np.sin(phi - theta[0] - theta[1]))")
+edit("11.5", "wraps φ and the sum of the other angles, not their difference", "wrapped(phi - theta[0] - theta[1])",
+     "wrapped(phi) - wrapped(theta[0] + theta[1])")
+edit("11.5", "measures the hand from the direction of the wrist", "wrapped(phi - theta[0] - theta[1])",
+     "wrapped(phi - np.arctan2(wrist[1], wrist[0]))")
+edit("11.6", "takes every offset along x", "rotate(q, row(offsets, k))",
+     "rotate(q, (np.sqrt(np.sum(offsets[k] ** 2)), 0.0, 0.0))")
+edit("11.6", "returns the axes in the frame of the last link", "return x, a, q",
+     "return x, np.stack([rotate(np.array((q[0], -q[1], -q[2], -q[3])), one) for one in a]), q")
+edit("11.6", "takes the last axis in its own frame", "return x, a, q", "a[n - 1] = axes[n - 1]; return x, a, q")
+edit("11.7", "computes in single precision", "np.empty((6, n))", "np.empty((6, n), np.float32)")
+edit("11.7", "takes the first joint to be at the origin", "minus(row(x, n), row(x, k))",
+     "(minus(row(x, n), row(x, k)) if k else row(x, n))")
+edit("11.7", "returns zeros for the velocity due to the last joint", "return J", "J[:3, n - 1] = 0.0; return J")
+edit("11.7", "exchanges y and z of the velocity of the end", "v[c], a[k, c]", "v[(0, 2, 1)[c]], a[k, c]")
+edit("11.8", "conjugates x only", "-q[1], -q[2], -q[3]", "-q[1], q[2], q[3]")
+edit("11.8", "decides by the sign of x, not of w, which way is the shorter one", "d[0] < 0.0", "d[1] < 0.0")
+edit("11.8", "decides by w of the target which way is the shorter one", "d[0] < 0.0", "q_target[0] < 0.0")
+edit("11.8", "takes the first three numbers of d for its vector", "factor * d[1:]", "factor * d[:3]")
+edit("11.8", "limits the angle to 3 rad", "return factor * d[1:]",
+     "return min(factor, 3.0 / max(size, 1e-300)) * d[1:]")
+edit("11.9", "brings the angles into [0, 2π)", "return theta + arm.gain * (e @ J)",
+     "return (theta + arm.gain * (e @ J)) % (2.0 * np.pi)")
+edit("11.9", "divides the change by the number of rows", "arm.gain *", "arm.gain / e.size *")
+edit("11.9", "computes J anew after the step", "return theta + arm.gain",
+     "_, J = task(theta + arm.gain * (e @ J), target, arm); return theta + arm.gain")
+edit("11.9", "computes e anew after half of the step", "return theta + arm.gain",
+     "e, _ = task(theta + 0.5 * arm.gain * (e @ J), target, arm); return theta + arm.gain")
+for number, step in (("11.9", PUSHED), ("11.11", SOLVED), ("11.16", PULLED)):
+    edit(number, "limits each change to π", f"return {step}", f"return theta + np.clip({step} - theta, -np.pi, np.pi)")
+edit("11.10", "damps the singular values a little", "/ sigma[i]", "* sigma[i] / (sigma[i] ** 2 + 1e-12)")
+edit("11.10", "does not let singular values be below 1e-6", "/ sigma[i]", "/ max(sigma[i], 1e-6)")
+edit("11.11", "uses half of λ", "arm.damping * arm.damping", "0.25 * arm.damping * arm.damping")
+edit("11.11", "limits the damping to ½ m", "arm.damping * arm.damping", "min(arm.damping, 0.5) ** 2")
+edit("11.11", "uses a damping that is not below 0.01 m", "arm.damping * arm.damping", "max(arm.damping, 0.01) ** 2")
+edit("11.12", "divides by the sum of all σ²", "(sigma**2 + damping**2)", "(np.sum(sigma**2) + damping**2)")
+edit("11.12", "returns 0 for the damped step where σ is 0", "damping**2 / (sigma**2 + damping**2)",
+     "np.where(sigma == 0.0, 0.0, damping**2 / (sigma**2 + damping**2))")
+edit("11.13", "takes the direction of the target for the angle of the joint", "wish = theta[k] + np.arctan2(",
+     "wish = np.arctan2(s_y, s_x) + 0.0 * np.arctan2(")
+edit("11.13", "limits each turn to a right angle", NEW,
+     f"wish = theta[k] + np.clip(wish - theta[k], -0.5 * np.pi, 0.5 * np.pi); {NEW}")
+edit("11.14", "sweeps forth first, and then back", SET,
+     f"for k in range(n): x[k + 1] = point_at(x[k], x[k + 1], lengths[k])\n    {SET}\n"
+     "    for k in range(n - 1, -1, -1): x[k] = point_at(x[k + 1], x[k], lengths[k])\n    return x")
+edit("11.14", "brings the target into the reach", SET, "x[n] = base + (target - base) * min(1.0, np.sum(lengths) / "
+     "max(np.sqrt(np.sum((target - base) ** 2)), 1e-300))")
+CHANGE = "theta + sum_of_rows(J, solve_symmetric(A, e))"
+edit("11.15", "limits the change, not the angle", f"np.minimum(np.maximum({CHANGE}, arm.low), arm.high)",
+     f"theta + np.minimum(np.maximum({CHANGE} - theta, arm.low), arm.high)")
+edit("11.15", "multiplies the step by the gain", "theta + sum_of_rows", "theta + arm.gain * sum_of_rows")
+edit("11.15", "never blocks the first joint", "for k in range(theta.size):", "for k in range(1, theta.size):")
+edit("11.15", "never blocks the last joint", "for k in range(theta.size):", "for k in range(theta.size - 1):")
+edit("11.15", "takes the upper limit of the first joint for all when it blocks", "arm.high[k] and", "arm.high[0] and")
+edit("11.16", "limits the pull to 1 rad", PULLED, f"(lambda z: {PULLED})(np.clip(z, -1.0, 1.0))")
+edit("11.16", "normalises a pull that is longer than 1", PULLED, f"(lambda z: {PULLED})(z / max(1.0, np.sqrt(z @ z)))")
+edit("11.16", "uses a pull of at most ½", "arm.pull *", "min(arm.pull, 0.5) *")
