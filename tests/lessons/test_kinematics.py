@@ -16,7 +16,9 @@ exercise = pytest.mark.exercise
 EDGE = 1e-12                 # as in the lesson
 # Everything drawn is below 10 in its unit.  A comparison takes a few dozen operations, each rounded by 1.1e-16 of that.
 ROUND_OFF = 1e-12
+MANY = 1e-10                 # the same where it is divided by a hundredth
 NARROW = {"low": -0.3, "high": 0.3}      # limits that all these arms are beyond: few methods keep any [rad]
+FAR = 1.0, 1e-9              # from a target: on the way, and almost there [m]
 DIFFERENCE = 1e-5            # of angles in central differences [rad]: leaves its square, and round-off over it
 SLOPE = 1e-8                 # of such a difference: 1e-10 times third derivatives below 20, and 1e-14/1e-5
 SOLVED = 1e-10               # of linear systems with a condition below 1e5
@@ -81,9 +83,9 @@ def pose(theta, target, arm):
     return np.array((target[0] - x, target[1] - y, target[2] - phi)), J
 
 
-def posed(draw, n):
-    """(lengths, θ, target, e, J) of such a task."""
-    lengths, theta, e = lengths_of(draw, n), turned(draw, n), draw(0.3, 1.0, 3)
+def posed(draw, n, far=1.0):
+    """(lengths, θ, target, e, J) of such a task, with a target that is so far away."""
+    lengths, theta, e = lengths_of(draw, n), turned(draw, n), far * draw(0.3, 1.0, 3)
     return (lengths, theta, np.append(joints(theta, lengths)[-1], theta.sum()) + e, e,
             np.vstack((slopes(theta, lengths), np.ones(n))))
 
@@ -110,6 +112,11 @@ def turned(draw, n):
     return np.append(draw(3.5, 9.0), draw(0.4, 1.2, n - 1))
 
 
+def around(theta):
+    """Limits between which an arm is, and which its next step leaves."""
+    return {"low": theta - 1e-11, "high": theta + 1e-11}
+
+
 def unit(draw, size=3):
     """A unit vector with no entry near 0."""
     r = draw(0.3, 1.0, size) * np.array([2.0 * draw.whole(0, 1) - 1.0 for _ in range(size)])
@@ -121,8 +128,8 @@ def quaternion(axis, angle):
 
 
 def chain(draw, n):
-    """(θ, axes, offsets) of an arm in space."""
-    return draw(-2.0, 2.0, n), np.stack([unit(draw) for _ in range(n)]), draw(-1.0, 1.0, (n, 3))
+    """(θ, axes, offsets) of an arm in space, with angles beyond half a turn."""
+    return draw(-5.0, 5.0, n), np.stack([unit(draw) for _ in range(n)]), draw(-1.0, 1.0, (n, 3))
 
 
 def frames(theta, axes, offsets):
@@ -146,10 +153,11 @@ def with_singular_values(draw, sigma, columns):
 
 @exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
 def test_links_add_up_from_the_base(lesson, draw):
-    for n in (1, 2, draw.whole(3, 8)):
-        theta, lengths = draw(-5.0, 5.0, n), lengths_of(draw, n)
+    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9)):     # the last one has links of nanometres
+        theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)
+        theta[6:8] = 0.0                                                 # two links that go straight on
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
-              ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
+              size * ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
 
 @exercise("11.1", points=0.5,
@@ -181,26 +189,57 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    x = draw(-2.0, 2.0, (draw.whole(3, 6), 2))
-    r = x[-1] - x[:-1]
-    close("J of joints in any place [m/rad]", lesson.jacobian_2d(x), np.stack((-r[:, 1], r[:, 0])), ROUND_OFF,
-          given=f"joints and end at {x} m")
+    for rows, size in ((draw.whole(3, 6), 1.0), (12, 1e-6)):             # and an arm with links of micrometres
+        x = size * draw(-2.0, 2.0, (rows, 2))
+        x[1, 1] = x[-1, 1]                                               # this joint is as high as the end
+        r = x[-1] - x[:-1]
+        close("J of joints in any place [m/rad]", lesson.jacobian_2d(x), np.stack((-r[:, 1], r[:, 0])),
+              size * ROUND_OFF, given=f"joints and end at {x} m")
 
 
 @exercise("11.3", points=0.5, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
 def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
-    for n in (2, draw.whole(3, 6)):
-        sigma = draw(1.5, 3.0), draw(0.3, 1.2)
+    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6)):      # the last arm has links of micrometres
+        sigma = size * np.array([draw(1.5, 3.0), draw(0.3, 1.2)])
         J, u = with_singular_values(draw, sigma, n)
         for mirror in (1.0, -1.0):                                       # the longer axis points upwards, and downwards
             mirrored, y = J * [[1.0], [mirror]], mirror * u[1, 0]
             longer, shorter, angle = lesson.velocity_ellipse(mirrored)
-            close("half axes of the ellipse [m]", (longer, shorter), sigma, ROUND_OFF, given=f"J = {mirrored}")
+            close("half axes of the ellipse [m]", (longer, shorter), sigma, size * ROUND_OFF, given=f"J = {mirrored}")
             close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - y * np.cos(angle), 0.0,
                   ROUND_OFF, given=f"J = {mirrored}")
 
 
-@exercise("11.3", points=0.5,
+def shown(ellipse):
+    """(σ₁, σ₂, tangent of the angle): the angle is that of an axis, which has no sense."""
+    longer, shorter, angle = ellipse
+    return longer, shorter, np.tan(angle)
+
+
+@exercise("11.3", points=0.25, hint="for a = c the angle is ±45°; for one joint there is no pair of columns, so D = 0")
+def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
+    """The longer axis of (p, q), (±q, ±p) is at ±45°; a hundredth of a per cent makes a circle an ellipse."""
+    p, q = draw(1.0, 2.0), draw(0.2, 0.8)
+    for mirror in (1.0, -1.0):
+        J = np.array([[p, q], [mirror * q, mirror * p]])
+        close("half axes, and tangent of the angle, of an ellipse at 45° [m, m, -]", shown(lesson.velocity_ellipse(J)),
+              (p + q, p - q, mirror), MANY, given=f"J = {J}")
+    angle, size = draw(0.3, 1.2), draw(1.0, 2.0)
+    along, across = np.array([[np.cos(angle)], [np.sin(angle)]]), np.array([[-np.sin(angle)], [np.cos(angle)]])
+    J = size * np.hstack((1.0001 * along, across))
+    close("half axes, and tangent of the angle, of an ellipse that is almost a circle [m, m, -]",
+          shown(lesson.velocity_ellipse(J)), (1.0001 * size, size, np.tan(angle)), MANY, given=f"J = {J}")
+    J = size * along
+    close("half axes, and tangent of the angle, for a single joint [m, m, -]", shown(lesson.velocity_ellipse(J)),
+          (size, 0.0, np.tan(angle)), MANY, given=f"J = {J}")
+    small = draw(1e-14, 1e-13)                                            # each product of this determinant is exact
+    J = np.array([[p, q], [0.0, small]])
+    _, shorter, _ = lesson.velocity_ellipse(J)
+    close("short half axis over what it should be [-]", shorter * np.hypot(p, q) / (p * small), 1.0, MANY,
+          given=f"J = {J}")
+
+
+@exercise("11.3", points=0.25,
           hint="σ₂ from D, the root of a sum of squares of 2 × 2 determinants: a difference would lose digits")
 def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson, draw):
     """Both columns are rounded, which changes what is nine digits shorter by 1e-16/1e-9."""
@@ -211,7 +250,7 @@ def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson
     close("half axes over what they should be [-]", (longer / size, shorter * size / (small * (a - b))), (1.0, 1.0),
           1e-5, given=f"J = {J}")
     close("angle of the longer axis [rad]", np.tan(found), np.tan(angle), 1e-6, given=f"J = {J}")
-    J = np.array([[0.0, 0.0, 0.0], [a, b, 0.5 * b]])
+    J = np.array([[0.0, 0.0, 0.0], [0.0, a, b]])
     _, shorter, found = lesson.velocity_ellipse(J)
     close("short half axis of an arm that is straight [m]", shorter, 0.0, 1e-15, given=f"J = {J}")
     close("cosine of the angle of a longer axis along y [-]", np.cos(found), 0.0, ROUND_OFF, given=f"J = {J}")
@@ -232,9 +271,12 @@ def test_both_elbows_reach_the_target(lesson, draw):
             other = np.asarray(lesson.solve_2r(target, lengths, -elbow))
             close("end of the arm with the other elbow [m]", joints(other, lengths)[-1], target, SOLVED, given=given)
             close("other elbow [rad]", other[1], -theta[1], SOLVED, given=given)
-    lengths, theta = lengths_of(draw, 2), np.array([draw(2.9, 3.1), draw(2.0, 2.9)])
-    theta_1 = lesson.solve_2r(joints(theta, lengths)[-1], lengths, -1.0)[0]
-    between("θ₁ with the other elbow, wrapped [rad]", theta_1, -np.pi, np.pi)
+    for elbow in (1.0, -1.0):                                            # bearing − (the part due to θ₂) is beyond ±π
+        lengths, bearing, bend = lengths_of(draw, 2), -elbow * draw(2.9, 3.1), elbow * draw(1.0, 2.0)
+        way = lengths[0] + lengths[1] * np.exp(1j * bend)
+        theta = np.array([bearing - np.angle(way) + elbow * 2.0 * np.pi, bend])
+        got = lesson.solve_2r(abs(way) * np.array([np.cos(bearing), np.sin(bearing)]), lengths, elbow)
+        close("θ, with a θ₁ that is wrapped [rad]", got, theta, SOLVED, given=f"bearing {bearing} rad, elbow {elbow:g}")
 
 
 def whole_lengths(draw, size):
@@ -256,13 +298,13 @@ def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
             theta = np.asarray(lesson.solve_2r(edge * way, lengths, 1.0))
             close("end of the arm at the edge of its reach, over the reach [-]", joints(theta, lengths)[-1] / most,
                   edge / most * way, SOLVED, given=f"distance {edge} m, lengths {lengths} m")
-        for off in (most * draw(1.01, 3.0), least * draw(0.1, 0.99), most * (1.0 + draw(1.2, 1.9) * EDGE),
-                    least - draw(1.2, 1.9) * EDGE * most):
+        for off in (most * draw(1.01, 3.0), least * draw(0.1, 0.99), most * (1.0 + draw(1.01, 1.05) * EDGE),
+                    least - draw(1.01, 1.05) * EDGE * most):
             raises("a target out of reach", BadInput, lesson.solve_2r, off * way, lengths, 1.0, naming=(off,),
                    thing="distance of the target")
         elbow = 2.0 * draw.whole(0, 1) - 1.0
-        for beyond, straight in ((most * (1.0 + draw(0.6, 0.8) * EDGE), 0.0),
-                                 (least - draw(0.6, 0.8) * EDGE * most, elbow * np.pi)):
+        for beyond, straight in ((most * (1.0 + draw(0.95, 0.99) * EDGE), 0.0),
+                                 (least - draw(0.95, 0.99) * EDGE * most, elbow * np.pi)):
             close("θ₂ for a target that is out of reach by round-off [rad]",
                   lesson.solve_2r(beyond * way, lengths, elbow)[1], straight, ROUND_OFF,
                   given=f"distance {beyond} m, lengths {lengths} m, elbow {elbow:g}")
@@ -305,7 +347,7 @@ def test_three_links_end_in_a_place_with_a_direction(lesson, draw):
         for elbow in (1.0, -1.0):
             lengths = np.append(draw(1.2, 1.5, 2), hand * draw(0.9, 1.1))
             theta = np.array([draw(-3.1, 3.1), elbow * draw(*bend), draw(-3.1, 3.1)])
-            for turns in (0, draw.whole(1, 2), -draw.whole(1, 2)):
+            for turns in (0, draw.whole(1, 2), -draw.whole(5, 9)):
                 target = np.append(joints(theta, lengths)[-1], theta.sum() + 2.0 * np.pi * turns)
                 close("θ [rad]", lesson.solve_3r(target, lengths, elbow), theta, SOLVED,
                       given=f"target {target}, lengths {lengths} m, elbow {elbow:g}")
@@ -333,8 +375,9 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=1, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n in (draw.whole(3, 7), 1):
+    for n in (draw.whole(3, 7), 9, 2, 1):
         theta, axes, offsets = chain(draw, n)
+        theta[n // 2] *= 1e-4                                            # this joint turns by less than a milliradian
         x, a, q = lesson.joint_frames(theta, axes, offsets)
         x_true, a_true, R = frames(theta, axes, offsets)
         given = f"θ = {theta}"
@@ -358,19 +401,20 @@ def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
 
 @exercise("11.7", points=1, hint="rows 0 to 2: a_k × (x_n − x_k), rows 3 to 5: a_k")
 def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
-    n = draw.whole(3, 7)
-    theta, axes, offsets = chain(draw, n)
-    x, a, R = frames(theta, axes, offsets)
-    J = np.asarray(lesson.jacobian_3d(x, a))
-    close("shape of J [-]", J.shape, (6, n), 0.0)
-    for k in range(n):
-        step = DIFFERENCE * np.eye(n)[k]
-        (ahead, _, R_ahead), (behind, _, R_behind) = (frames(theta + s * step, axes, offsets) for s in (1.0, -1.0))
-        spin = 0.5 * (R_ahead - R_behind) / DIFFERENCE @ R.T
-        close("velocity of the end [m/s]", J[:3, k], 0.5 * (ahead[-1] - behind[-1]) / DIFFERENCE, SLOPE,
-              given=f"joint {k} turns with 1 rad/s")
-        close("angular velocity of the last link [rad/s]", J[3:, k], (spin[2, 1], spin[0, 2], spin[1, 0]), SLOPE,
-              given=f"joint {k} turns with 1 rad/s")
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (1, 1.0), (4, 1e-6)):      # the last one has micrometres
+        theta, axes, offsets = chain(draw, n)
+        offsets *= size
+        x, a, R = frames(theta, axes, offsets)
+        J = np.asarray(lesson.jacobian_3d(x, a))
+        close("shape of J [-]", J.shape, (6, n), 0.0)
+        for k in range(n):
+            step, given = DIFFERENCE * np.eye(n)[k], f"joint {k} of {n} turns with 1 rad/s"
+            (ahead, _, R_ahead), (behind, _, R_behind) = (frames(theta + s * step, axes, offsets) for s in (1.0, -1.0))
+            spin = 0.5 * (R_ahead - R_behind) / DIFFERENCE @ R.T
+            close("velocity of the end [m/s]", J[:3, k], 0.5 * (ahead[-1] - behind[-1]) / DIFFERENCE, size * SLOPE,
+                  given=given)
+            close("angular velocity of the last link [rad/s]", J[3:, k], (spin[2, 1], spin[0, 2], spin[1, 0]), SLOPE,
+                  given=given)
 
 
 @exercise("11.7", points=0.5, hint="a × r is perpendicular to both, right-handed; r leads from the joint to the end")
@@ -408,17 +452,21 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
     still = np.array([1.0, 0.0, 0.0, 0.0])
     close("rotation vector from an orientation to itself [rad]", lesson.rotation_error(q, q), np.zeros(3), 1e-15)
     close("rotation vector of no rotation at all [rad]", lesson.rotation_error(still, still), np.zeros(3), 0.0)
-    for least in (3e-8, 1e-9, 1e-13, 1e-5, 1e-3, 1e-2):
+    for least in (3e-8, 1e-9, 1e-13, 1e-18, 1e-5, 1e-3, 1e-2):
         angle = draw(least, 1.3 * least)
-        close("rotation vector over its small angle [-]",
-              np.asarray(lesson.rotation_error(still, quaternion(axis, angle))) / angle, axis, ROUND_OFF,
-              given=f"angle {angle} rad")
+        for sign in (1.0, -1.0):                                         # of a quaternion: both are this orientation
+            close("rotation vector over its small angle [-]",
+                  np.asarray(lesson.rotation_error(still, sign * quaternion(axis, angle))) / angle, axis, ROUND_OFF,
+                  given=f"angle {angle} rad, q_target {'with' if sign > 0.0 else 'with −'}cos ½φ")
     angle = np.pi - draw(1e-7, 1e-6)
     close("rotation vector of nearly half a turn [rad]", lesson.rotation_error(still, quaternion(axis, angle)),
           angle * axis, ROUND_OFF, given=f"angle {angle} rad about {axis}")
     got = np.asarray(lesson.rotation_error(still, np.append(0.0, axis)))
     close("rotation vector of half a turn, in one sense or the other [rad]", got * np.sign(got @ axis), np.pi * axis,
           ROUND_OFF, given=f"half a turn about {axis}")
+    w = draw(1e-12, 1e-11)
+    close("rotation vector of hardly more than half a turn [rad]", lesson.rotation_error(still, np.append(-w, axis)),
+          (2.0 * w - np.pi) * axis, 1e-14, given=f"half a turn, and {2.0 * w} rad more, about {axis}")
     angle = draw(3.3, 6.0)
     close("rotation vector by the shorter way [rad]", lesson.rotation_error(still, quaternion(axis, angle)),
           (angle - 2.0 * np.pi) * axis, SOLVED, given=f"angle {angle} rad about {axis}")
@@ -429,10 +477,10 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
 @exercise("11.9", points=0.5, hint="θ + α Jᵀ e with all rows of e and J, and no limits; e @ J is Jᵀ e")
 def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
     for (task, count), n in zip((*TASKS, TASKS[0]), (draw.whole(3, 6), draw.whole(3, 5), 2), strict=True):
-        lengths, theta, gain = lengths_of(draw, n), turned(draw, n), draw(0.05, 0.5)
+        lengths, theta, gain = lengths_of(draw, n), turned(draw, n), draw(0.7, 3.0)
         here, bearing = points_of(theta, lengths, count), draw(-3.0, 3.0, count)
         way = np.stack((np.cos(bearing), np.sin(bearing)), axis=1).ravel()
-        for away in (draw(0.1, 1.0), draw(5.0, 6.0)):                    # near, and so far that a cautious step shows
+        for away in (draw(0.1, 1.0), draw(30.0, 40.0)):                  # near, and far beyond the reach
             target = here + away * way
             errors = [[target - points_of(theta + s * d, lengths, count) for s in (1.0, -1.0)]
                       for d in DIFFERENCE * np.eye(n)]
@@ -441,10 +489,11 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
             close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain,
                   -0.5 * np.array(slope) / DIFFERENCE, 1e-6,
                   given=f"θ = {theta}, target {target} m, α = {gain}, {2 * count} rows")
-    lengths, theta, target, e, J = posed(draw, 4)
-    got = lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=gain, **NARROW))
-    close("change of θ towards a place and a direction, over the gain [-]", (np.asarray(got) - theta) / gain, e @ J,
-          SOLVED, given=f"θ = {theta}, target {target}, α = {gain}, 3 rows")
+    for far in FAR:
+        lengths, theta, target, e, J = posed(draw, 4, far)
+        got = lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=gain, **around(theta)))
+        close("change of θ towards a place and a direction, over the gain [-]", (np.asarray(got) - theta) / gain, e @ J,
+              SOLVED, given=f"θ = {theta}, target {target}, α = {gain}, 3 rows")
 
 
 @exercise("11.9", points=0.5,
@@ -463,11 +512,11 @@ def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
 
 @exercise("11.10", points=0.5, hint="v_i u_iᵀ/σ_i, added up; the result has as many rows as J has columns")
 def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
-    for m, n in ((2, 5), (3, 3), (4, 2), (6, 7), (6, 4)):
-        J, _ = with_singular_values(draw, draw(0.5, 3.0, min(m, n)), max(m, n))
+    for m, n, size in ((2, 5, 1.0), (3, 3, 1.0), (4, 2, 1.0), (8, 9, 1.0), (6, 4, 1.0), (2, 3, 1e-13)):
+        J, _ = with_singular_values(draw, size * draw(0.5, 3.0, min(m, n)), max(m, n))
         J = np.ascontiguousarray(J if m <= n else J.T)
         expected = np.stack([np.linalg.lstsq(J, e, rcond=None)[0] for e in np.eye(m)], axis=1)
-        close("J⁺", lesson.pseudo_inverse(J), expected, SOLVED, given=f"J = {J}")
+        close("J⁺", np.asarray(lesson.pseudo_inverse(J)) * size, size * expected, SOLVED, given=f"J = {J}")
 
 
 @exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of a round-off would spoil the answer")
@@ -475,16 +524,18 @@ def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
     straight = np.array([[0.0, 0.0, 0.0], [4.0, 2.0, 1.0]])
     close("J⁺ of a straight arm along x", lesson.pseudo_inverse(straight), straight.T / 21.0, SOLVED,
           given=f"J = {straight}")
+    tall = np.ascontiguousarray(straight.T)
+    close("J⁺ of its transpose", lesson.pseudo_inverse(tall), straight / 21.0, SOLVED, given=f"J = {tall}")
     for size, small, n in ((1.0, 0.0, 5), (1.0, draw(1e-14, 1e-12), 3), (1e6, draw(1e-14, 1e-12), 5),
-                           (1e-3, draw(2e-11, 6e-11), 3)):               # parts of the largest σ, below SINGULAR
-        sigma = size * np.array([draw(1.0, 3.0), draw(0.5, 0.9), small])
+                           (1e-3, draw(9e-11, 9.9e-11), 3)):             # parts of the largest σ, below SINGULAR
+        sigma = size * draw(1.0, 3.0) * np.array([1.0, draw(0.5, 0.9), small])
         J, u = with_singular_values(draw, sigma, n)
         got = np.asarray(lesson.pseudo_inverse(J))
         close("J⁺ applied to the lost direction, times σ₁ [-]", sigma[0] * got @ u[:, 2], np.zeros(n), SOLVED,
               given=f"σ = {sigma}")
         close("J J⁺ applied to the others [-]", J @ got @ u[:, :2], u[:, :2], SOLVED, given=f"σ = {sigma}")
-    for size, large in ((1.0, 1), (1e-3, 1), (1.0, 4)):                  # the sum of four large σ is 3.6 σ₁
-        sigma = size * np.append(draw(0.9, 1.0, large), draw(2e-10, 3e-10))
+    for size, large in ((1.0, 1), (1e-3, 1), (1.0, 4)):                  # four large σ have a larger sum and norm
+        sigma = size * np.append(1.0 - 0.1 * np.arange(large), draw(1.01e-10, 1.1e-10))
         J, u = with_singular_values(draw, sigma, large + 2)
         close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(large + 1),
               1e-4, given=f"σ = {sigma}")
@@ -502,17 +553,18 @@ def damped(J, e, damping):
 def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
     for task, count in TASKS:
         n = draw.whole(3, 6)
-        for size in (1.0, 1e-3, 1e3):                                    # arms of metres, millimetres, kilometres
+        for size in (1.0, 1e-9, 1e3):                                    # arms of metres, nanometres, kilometres
             lengths, theta, damping = size * lengths_of(draw, n), turned(draw, n), size * draw(0.5, 1.5)
             target = size * draw(-2.0, 2.0, 2 * count)
             e, J = target - points_of(theta, lengths, count), slopes_of(theta, lengths, count)
             got = lesson.damped_step(task, theta, target, arm_of(lesson, lengths, damping=damping, **NARROW))
             close("θ after a step [rad]", got, theta + damped(J, e, damping), SOLVED,
                   given=f"θ = {theta}, target {target} m, λ = {damping} m")
-    lengths, theta, target, e, J = posed(draw, 4)
-    got = lesson.damped_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7, **NARROW))
-    close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), SOLVED,
-          given=f"θ = {theta}, target {target}, λ = 0.7 m")
+    for far in FAR:
+        lengths, theta, target, e, J = posed(draw, 4, far)
+        got = lesson.damped_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7, **around(theta)))
+        close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), 0.01 * SOLVED,
+              given=f"θ = {theta}, target {target}, λ = 0.7 m")
     lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
     expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
     got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
@@ -530,6 +582,12 @@ def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
         across = np.array([-np.sin(theta[0]), np.cos(theta[0])])
         close("size of the step of a straight arm [rad]", np.linalg.norm(got),
               abs(across @ e) * sigma / (sigma**2 + damping**2), SOLVED, given=f"θ₁ = {theta[0]}, λ = {damping} m")
+    lengths, theta, damping = lengths_of(draw, 3), np.append(draw(-3.0, 3.0), draw(1e-4, 2e-4, 2)), draw(1e-4, 2e-4)
+    e, J = draw(0.5, 1.0, 2), slopes(theta, lengths)                          # nearly straight: σ₂ is as small as λ
+    got = lesson.damped_step(reach, theta, joints(theta, lengths)[-1] + e, arm_of(lesson, lengths, damping=damping))
+    # J Jᵀ is rounded by 1e-15 of 50 m², and σ₂² + λ² is 1e-8 m²
+    close("change of θ of an arm that is nearly straight, times λ [m]", damping * (np.asarray(got) - theta),
+          damping * damped(J, e, damping), 1e-4, given=f"θ = {theta}, λ = {damping} m")
 
 
 @exercise("11.12", points=0.5, hint="return 1 − α σ² and λ²/(σ² + λ²) for every σ")
@@ -545,12 +603,11 @@ def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
 
 @exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
 def test_factors_at_the_ends_of_their_range(lesson, draw):
-    size, ratio = draw(0.3, 3.0), draw(1.5, 3.0)
-    sigma = np.array([0.0, size, ratio * size])
-    factors = lesson.contraction_factors(sigma, 1.0 / size**2, size)
-    ends = (1.0, 0.0, 1.0 - ratio**2), (1.0, 0.5, 1.0 / (1.0 + ratio**2))
-    for got, expected in zip(factors, ends, strict=True):
-        close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {sigma}, α = 1/σ², λ = σ, for the middle one")
+    size, ratio, small = draw(0.3, 3.0), draw(5.0, 9.0), draw(1e-4, 2e-4)
+    for parts in (np.array([0.0, small, 1.0, ratio]), np.array([ratio])):                # of what α and λ are made of
+        factors = lesson.contraction_factors(size * parts, 1.0 / size**2, size)
+        for got, expected in zip(factors, (1.0 - parts**2, 1.0 / (1.0 + parts**2)), strict=True):
+            close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {size * parts} m, α = 1/λ², λ = {size} m")
 
 
 # ---------------------------------------------------------------------------------------------- methods without
@@ -574,9 +631,12 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm), expected, 1e-9,
               given=f"θ = {theta}, target {target} m, lengths {lengths} m")
-    target = joints(theta, lengths)[-1] + draw(-1e-3, 1e-3, 2)
-    close("θ after a sweep near the target [rad]", lesson.ccd_step(reach, theta, target, arm),
-          coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9, given=f"θ = {theta}, target {target} m")
+    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, 1e-6, 1.0), (3, 1.0, 30.0)):   # the last is out of reach
+        lengths, theta = size * lengths_of(draw, n), draw(-1.5, 1.5, n)
+        arm, target = arm_of(lesson, lengths), joints(theta, lengths)[-1] + size * near * unit(draw, 2)
+        close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm),
+              coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9,
+              given=f"θ = {theta}, target {target} m, lengths {lengths} m")
     lengths, theta = lengths_of(draw, 3), draw(-1.5, 1.5, 3)
     arm = arm_of(lesson, lengths)
     got = np.asarray(lesson.ccd_step(reach, theta, np.zeros(2), arm))    # where the first joint is: it may turn anyhow
@@ -594,6 +654,10 @@ def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
         around = draw(0.9, 1.5, n) * (-1.0) ** (np.arange(n) + trial)
         around[0] += 2.0 * np.pi * draw.whole(0, 1)
         theta, low, high = theta + around, around + draw(-0.9, -0.3, n), around + draw(0.3, 0.9, n)
+        if trial > 3:                                                    # some begin beyond a limit, some have one only
+            k = np.arange(n)
+            theta = np.where(k % 3 == 0, high + 1.5, theta) if trial % 2 else np.where(k % 3 == 0, low - 1.5, theta)
+            low, high = np.where(k % 3 == 1, -np.inf, low), np.where(k % 3 == 2, np.inf, high)
         arm = arm_of(lesson, lengths, low=low, high=high)
         got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
@@ -630,6 +694,12 @@ def test_a_sweep_projects_there_and_back(lesson, draw):
         expected = there_and_back(x, target, lengths)
         close("positions after a sweep [m]", lesson.fabrik_sweep(x, target, lengths), expected, ROUND_OFF,
               given=f"joints at {x} m, target {target} m, lengths {lengths} m")
+    x, lengths = draw(0.3, 1.0, (4, 2)) + np.arange(4.0)[:, None], np.array([3.0, 0.5, 0.5])
+    for parts, target in ((4, x[3]), (4, x[0]), (4, x[0] + 0.1), (2, x[3])):  # the end, the base, too near; one link
+        got = lesson.fabrik_sweep(x[:parts].copy(), target.copy(), lengths[:parts - 1])
+        close("positions after a sweep to a special target [m]", got,
+              there_and_back(x[:parts], target, lengths[:parts - 1]), ROUND_OFF,
+              given=f"joints at {x[:parts]} m, target {target} m, lengths {lengths[:parts - 1]} m")
     size, half = draw(0.5, 2.0), np.sqrt(0.5)                                 # for a target at a joint two points
     last = np.array([-half, 1.0 - half]) / np.hypot(half, 1.0 - half)         # coincide: point_at goes along axis 0
     for way, expected in (((1.0, 0.0), ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0))),
@@ -670,17 +740,19 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
             arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
             got = lesson.limited_step(task, theta, target, arm)
             close("θ after a step [rad]", got, theta + free, SOLVED, given=f"θ = {theta}, limits {low} to {high}")
-    lengths, theta, target, e, J = posed(draw, 4)
-    got = lesson.limited_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7))
-    close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), SOLVED,
-          given=f"θ = {theta}, target {target}, λ = 0.7 m")
+    for far in FAR:
+        lengths, theta, target, e, J = posed(draw, 4, far)
+        got = lesson.limited_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7))
+        close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), 0.01 * SOLVED,
+              given=f"θ = {theta}, target {target}, λ = 0.7 m")
     size, far = 2.0 ** draw.whole(-1, 1), draw(0.5, 3.0)                      # θ = 0 and whole numbers: (Jᵀ e)_1 is 0
-    lengths, theta, e = np.full(3, size), np.zeros(3), size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
-    free = damped(slopes_of(theta, lengths, 3), e, size)
-    low, high = np.where(free > 0.0, (-9.0, 0.0, -9.0), -9.0), np.where(free > 0.0, 9.0, (9.0, 0.0, 9.0))
-    arm, target = arm_of(lesson, lengths, damping=size, low=low, high=high), e + points_of(theta, lengths, 3)
-    close("θ after a step, with a joint at its limit that Jᵀ e does not push [rad]",
-          lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
+    for side in (1.0, -1.0):
+        lengths, theta, e = np.full(3, size), np.zeros(3), side * size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
+        free = damped(slopes_of(theta, lengths, 3), e, size)
+        low, high = np.where(free > 0.0, (-9.0, 0.0, -9.0), -9.0), np.where(free > 0.0, 9.0, (9.0, 0.0, 9.0))
+        arm, target = arm_of(lesson, lengths, damping=size, low=low, high=high), e + points_of(theta, lengths, 3)
+        close("θ after a step, with a joint at its limit that Jᵀ e does not push [rad]",
+              lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
 
 
 @exercise("11.15", points=0.5,
@@ -694,7 +766,7 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
             target = draw(-2.0, 2.0, 2 * count)
             e = target - points_of(theta, lengths, count)
             wish = e @ J
-        low, high = np.full(n, -50.0), np.full(n, 50.0)
+        low, high = np.full(n, -np.inf), np.full(n, np.inf)                   # most joints have one limit, or none
         beyond = 0.0 if exactly else draw(0.0, 0.2)                           # a joint may begin outside its limits
         high[blocked & (wish > 0.0)] = theta[blocked & (wish > 0.0)] - beyond
         low[blocked & (wish < 0.0)] = theta[blocked & (wish < 0.0)] + beyond
@@ -706,12 +778,26 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
             low[k] = 0.5 * (free[k] + theta[k])
         near = int(np.argmin(np.where(blocked | (np.arange(n) == k), np.inf, np.arange(n))))
         if wish[near] > 0.0:                                                  # one that is almost at its limit
-            high[near] = theta[near] + 1e-6
+            high[near] = theta[near] + 1e-10
         else:
-            low[near] = theta[near] - 1e-6
+            low[near] = theta[near] - 1e-10
         arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
         close("θ after a step [rad]", lesson.limited_step(task, theta, target, arm), np.clip(free, low, high), SOLVED,
               given=f"θ = {theta}, limits {low} to {high}, target {target} m")
+    size = 1e-6                                                               # an arm of micrometres
+    lengths, theta, e = size * lengths_of(draw, 4), turned(draw, 4), size * draw(-2.0, 2.0, 2)
+    J, target = slopes(theta, lengths), e + points_of(theta, lengths)
+    wish, stiff = e @ J, np.array([True, False, True, False])                 # these joints have no room at all
+    low, high = np.where(stiff, theta, -np.inf), np.where(stiff, theta, np.inf)
+    out = np.arange(4) == 3                                                   # and this one is at one of its limits
+    low, high = np.where(out & (wish < 0.0), theta, low), np.where(out & (wish > 0.0), theta, high)
+    for blocked, above in ((stiff | out, 0.0), (np.full(4, True), 0.1)):
+        if above:                                                             # all are beyond one of their limits
+            low, high = np.where(wish < 0.0, theta + above, -np.inf), np.where(wish > 0.0, theta - above, np.inf)
+        free = theta + damped(np.where(blocked, 0.0, J), e, 0.5 * size)
+        close("θ after a step of an arm with stiff joints [rad]",
+              lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, 0.1, 0.5 * size, low, high)),
+              np.clip(free, low, high), SOLVED, given=f"θ = {theta}, limits {low} to {high}, target {target} m")
 
 
 @exercise("11.15", points=0.5,
@@ -732,21 +818,23 @@ def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
 @exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: it cancels the motion of the end due to z")
 def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
     for task, count in TASKS:
-        n, pull = draw.whole(5, 6), draw(0.2, 1.0)
+        n, pull = draw.whole(7, 8), draw(0.2, 1.0)
         lengths, theta, rest = lengths_of(draw, n), turned(draw, n), draw(-5.0, 5.0, n)
         J, here = slopes_of(theta, lengths, count), points_of(theta, lengths, count)
         arm, z = arm_of(lesson, lengths, rest=rest, pull=pull, **NARROW), pull * (rest - theta)
-        for e in (np.zeros(2 * count), draw(-0.5, 0.5, 2 * count), draw(3.5, 5.0, 2 * count)):
+        for e in (np.zeros(2 * count), draw(-0.5, 0.5, 2 * count), draw(20.0, 30.0, 2 * count)):
             change = np.asarray(lesson.null_space_step(task, theta, here + e, arm)) - theta
             close("Jᵀ (J Δθ − e), zero where |J Δθ − e| is smallest [m²]", J.T @ (J @ change - e), np.zeros(n), 1e-9,
                   given=f"e = {e} m")
             shortest = np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]          # from z to the nearest such Δθ
             close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
-    lengths, theta, target, e, J = posed(draw, 5)
-    arm, z = arm_of(lesson, lengths, rest=rest[:5], pull=pull, **NARROW), pull * (rest[:5] - theta)
-    got = np.asarray(lesson.null_space_step(pose, theta, target, arm)) - theta
-    close("change of θ towards a place and a direction [rad]", got,
-          z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9, given=f"θ = {theta}, rest {rest[:5]}, κ = {pull}")
+    for far, much in zip((*FAR, 1.0), (pull, draw(1.2, 2.0), 0.0), strict=True):
+        lengths, theta, target, e, J = posed(draw, 5, far)
+        arm, z = arm_of(lesson, lengths, rest=rest[:5], pull=much, **around(theta)), much * (rest[:5] - theta)
+        got = np.asarray(lesson.null_space_step(pose, theta, target, arm)) - theta
+        close("change of θ towards a place and a direction [rad]", got,
+              z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], SOLVED,
+              given=f"θ = {theta}, rest {rest[:5]}, κ = {much}")
     for n, bend in ((2, 1e-13), (4, 1e-13), (2, 1.5e-11), (4, 1.5e-11)):      # σ₂ is below SINGULAR σ₁
         lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), bend * draw(1.0, 2.0, n - 1))
         e, z = draw(-0.5, 0.5, 2), pull * (rest[:n] - theta)
@@ -755,6 +843,13 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e, arm)
         close("change of θ of an arm that is straight [rad]", np.asarray(got) - theta,
               z + r * (sideways @ e - r @ z) / (r @ r), 1e-9, given=f"θ = {theta}, rest {rest[:n]}, e = {e} m")
+    theta = np.append(draw(-3.0, 3.0), draw(1e-4, 2e-4, 3))              # a little bent
+    e, J, z = draw(-0.5, 0.5, 2), slopes(theta, lengths), pull * (rest[:4] - theta)
+    got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e,
+                                 arm_of(lesson, lengths, rest=rest[:4], pull=pull))
+    close("change of θ of an arm that is hardly bent, times its smallest angle [rad²]",
+          1e-4 * (np.asarray(got) - theta), 1e-4 * (z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]), 1e-8,
+          given=f"θ = {theta}, rest {rest[:4]}, e = {e} m")
     theta = np.array([draw(-3.0, 3.0), draw(1e-8, 2e-8)])                # nearly straight: σ₂ is above SINGULAR σ₁
     e, J, arm = draw(0.2, 0.5, 2), slopes(theta, lengths[:2]), arm_of(lesson, lengths[:2], rest=rest[:2], pull=pull)
     change = np.asarray(lesson.null_space_step(reach, theta, joints(theta, lengths[:2])[-1] + e, arm)) - theta

@@ -191,12 +191,12 @@ def by_vectors(axis=0, direction=lambda u, v: u):
     def velocity_ellipse(J):
         u, sigma, v = np.linalg.svd(J, full_matrices=False)
         x, y = direction(u, v)[:2, axis]
-        return sigma[0], sigma[1], np.arctan2(y, x)
+        return sigma[0], np.append(sigma, 0.0)[1], np.arctan2(y, x)      # a single joint has one singular value
     return velocity_ellipse
 
 
 @variants
-def by_eigenvalues(half_axes=lambda values, J: np.linalg.svd(J)[1], column=1):
+def by_eigenvalues(half_axes=lambda values, J: np.append(np.linalg.svd(J)[1], 0.0)[:2], column=1):
     def velocity_ellipse(J):
         values, u = np.linalg.eigh(J @ J.T)
         longer, shorter = half_axes(values, J)
@@ -1615,3 +1615,212 @@ edit("11.16", "computes J after the step towards the target", "z = arm.pull * (a
      "    e, J = task(theta, target, arm); e = 0.0 * e")
 edit("11.16", "computes e and J after the pull to rest", "z = arm.pull * (arm.rest - theta)",
      "z = arm.pull * (arm.rest - theta); theta = theta + z; e, J = task(theta, target, arm); z = 0.0 * z")
+
+
+# right for most arms only ---------------------------------------------------------------------------------------
+# They fail for tiny arms, for a single joint or many, for one limit, or for targets that are very near or very far.
+edit("11.1", "takes small coordinates for zero", "return x", "x[np.abs(x) < 1e-6] = 0.0; return x")
+edit("11.1", "rounds the positions to 12 digits", "return x", "return np.round(x, 12)")
+edit("11.1", "counts from the x axis again after an angle of 0", "phi += theta[k]",
+     "phi = phi + theta[k] if theta[k] or not k else 0.0")
+edit("11.2", "takes small entries for zero", "return J", "J[np.abs(J) < 1e-6] = 0.0; return J")
+edit("11.2", "returns zeros from the sixth joint on", "return J", "J[:, 5:] = 0.0; return J")
+edit("11.2", "returns zeros where the joint is as high as the end", "return J",
+     "return np.where(J[0] == 0.0, 0.0, J)")
+TURN = "0.5 * np.arctan2(2.0 * b, a - c)"
+edit("11.3", "takes two singular values, which a single joint does not have",
+     "return longer, np.sqrt(squared) / longer,", "return longer, np.linalg.svd(J)[1][1],")
+edit("11.3", "takes +45° for a = c, whatever b is", TURN, f"({TURN} if abs(a - c) > 1e-6 else 0.25 * np.pi)")
+edit("11.3", "chooses between two arctangents by a > c", TURN,
+     "0.5 * np.arctan(2.0 * b / (a - c)) + (0.0 if a > c else 0.5 * np.pi)")
+edit("11.3", "takes a short axis below 1e-10 σ₁ for zero", "np.sqrt(squared) / longer,",
+     "(np.sqrt(squared) / longer if squared > 1e-20 * longer**4 else 0.0),")
+edit("11.3", "adds a small number to what it divides by", "np.sqrt(squared) / longer",
+     "np.sqrt(squared) / (longer + 1e-12)")
+edit("11.3", "takes an ellipse that is almost a circle for a circle", "np.sqrt(squared) / longer,",
+     "(np.sqrt(squared) / longer if np.sqrt(squared) < 0.999 * longer**2 else longer),")
+edit("11.4", "brings θ₁ back only where it is above π", "wrapped(np.arctan2(target[1], target[0]) - back)",
+     "(lambda angle: angle - 2.0 * np.pi * (angle > np.pi))(np.arctan2(target[1], target[0]) - back)")
+edit("11.4", "allows a tenth more than EDGE (l₁ + l₂) at the outer edge of the reach",
+     "(1.0 + EDGE)", "(1.0 + 1.1 * EDGE)")
+edit("11.5", "wraps θ₃ by at most four turns", "wrapped(phi - theta[0] - theta[1])",
+     "(lambda a: a - 2.0 * np.pi * np.clip(np.round(a / (2.0 * np.pi)), -4, 4))(phi - theta[0] - theta[1])")
+edit("11.5", "cuts φ off at three turns", "phi = target[2]", "phi = min(max(target[2], -6.0 * np.pi), 6.0 * np.pi)")
+edit("11.6", "cuts the angles off at half a turn", "scaled(theta[k], axis)",
+     "scaled(min(max(theta[k], -np.pi), np.pi), axis)")
+edit("11.6", "takes the positive root for the cosine of half the angle", "exponential(scaled(theta[k], axis))",
+     "np.append(np.abs(np.cos(0.5 * theta[k])), np.sin(0.5 * theta[k]) * axes[k])")
+edit("11.6", "does not turn by small angles", "scaled(theta[k], axis)",
+     "scaled(theta[k] if abs(theta[k]) > 1e-3 else 0.0, axis)")
+edit("11.6", "rotates the first six axes only", "put(a, k, rotate(q, axis))",
+     "put(a, k, rotate(q, axis) if k < 6 else axis)")
+edit("11.6", "brings the angles of its input into (−π, π]", "put(a, k, rotate(q, axis))",
+     "theta[k] = wrapped(theta[k]); put(a, k, rotate(q, axis))")
+edit("11.7", "returns zeros for a single joint", "return J", "return J if n > 1 else 0.0 * J")
+edit("11.7", "returns zeros from the eighth joint on", "return J", "J[:, 7:] = 0.0; return J")
+edit("11.7", "takes small velocities for zero", "v[c], a[k, c]", "(v[c] if abs(v[c]) > 1e-6 else 0.0), a[k, c]")
+edit("11.8", "wraps the angle in place of taking −d, which loses digits", "if d[0] < 0.0:",
+     "size = np.sqrt(d[1:] @ d[1:])\n    if size > 0.0: return wrapped(2.0 * np.arctan2(size, d[0])) / size * d[1:]\n"
+     "    if d[0] < 0.0:")
+edit("11.8", "takes the shorter way only where w is clearly below 0", "if d[0] < 0.0:", "if d[0] < -0.1:")
+edit("11.8", "takes the shorter way only where w is below −1e-9", "if d[0] < 0.0:", "if d[0] < -1e-9:")
+edit("11.8", "does not let |𝐝| be below 1e-14", "d[0]) / size", "d[0]) / max(size, 1e-14)")
+REACH = "min(1.0, np.sum(arm.lengths) / np.sqrt(e @ e + 1e-300))"
+WITHIN = "(lambda a: np.where((theta > arm.low) & (theta < arm.high), np.clip(a, arm.low, arm.high), a))"
+PUSHED, SOLVED = "theta + arm.gain * (e @ J)", "theta + sum_of_rows(J, solve_symmetric(A, e))"
+PULLED = "theta + z + pseudo_inverse(J) @ (e - J @ z)"
+for number, step in (("11.9", PUSHED), ("11.11", SOLVED), ("11.16", PULLED)):
+    edit(number, "keeps limits between which the arm is", f"return {step}", f"return {WITHIN}({step})")
+    edit(number, "shortens an error that is longer than the arm", f"return {step}",
+         f"return (lambda e: {step})(e * {REACH})")
+for number, step in (("11.9", PUSHED), ("11.11", SOLVED)):
+    edit(number, "does not move when the target is very near", f"return {step}",
+         f"return theta + ({step} - theta) * (e @ e > 1e-16)")
+edit("11.9", "limits the gain to ½", "arm.gain *", "min(arm.gain, 0.5) *")
+CUTOFF = "SINGULAR * sigma[0]"
+edit("11.10", "compares with the root of the sum of all σ²", CUTOFF, "SINGULAR * np.sqrt(np.sum(sigma * sigma))")
+edit("11.10", "compares with the mean of all σ", CUTOFF, "SINGULAR * np.mean(sigma)")
+edit("11.10", "uses twice the cutoff", CUTOFF, f"2.0 * {CUTOFF}")
+edit("11.10", "uses half of the cutoff", CUTOFF, f"0.5 * {CUTOFF}")
+edit("11.10", "takes a J of small numbers for zero", CUTOFF, f"max({CUTOFF}, 1e-12)")
+edit("11.10", "inverts JᵀJ where J has more rows than columns", "u, sigma, v = np.linalg.svd(J, False)",
+     "u, sigma, v = np.linalg.svd(J, False)\n    if len(J) > J.shape[1]: return np.linalg.inv(J.T @ J) @ J.T")
+edit("11.11", "uses a damping that is not below 1e-6 m", "arm.damping * arm.damping", "max(arm.damping, 1e-6) ** 2")
+edit("11.11", "limits the damping to ten times |e|", "arm.damping * arm.damping",
+     "min(arm.damping**2, 100.0 * (e @ e))")
+edit("11.11", "omits small singular values", "solve_symmetric(A, e)", "np.linalg.pinv(A, 1e-3) @ e")
+FACTORS = "return 1.0 - gain * sigma**2, damping**2 / (sigma**2 + damping**2)"
+edit("11.12", "takes only the first three σ", FACTORS, f"sigma = sigma[:3]; {FACTORS}")
+edit("11.12", "returns numbers for a single σ", FACTORS, f"sigma = sigma if len(sigma) > 1 else sigma[0]; {FACTORS}")
+edit("11.12", "takes a small σ for zero", FACTORS,
+     f"sigma = np.where(sigma < 1e-3 * np.max(sigma), 0.0, sigma); {FACTORS}")
+edit("11.12", "does not let the factor be below −9", "1.0 - gain * sigma**2", "np.maximum(1.0 - gain * sigma**2, -9.0)")
+BEGIN = "x, theta = joint_positions(theta, arm.lengths), float_copy(theta)"
+ENDS = "end_x, end_y = x[theta.size, 0], x[theta.size, 1]"
+NEW, FOUND = "new = np.minimum(np.maximum(wish, arm.low[k]), arm.high[k])", "r_x, r_y, s_x, s_y = "
+edit("11.13", "does not move for a target out of reach", ENDS,
+     f"{ENDS}\n    if np.hypot(target[0], target[1]) > np.sum(arm.lengths): return theta")
+edit("11.13", "brings the target into the reach", ENDS, f"{ENDS}; target = target * min(1.0, np.sum(arm.lengths) / "
+     "np.sqrt(target @ target + 1e-300))")
+edit("11.13", "leaves joints where they are that begin beyond a limit", NEW,
+     f"{NEW}; new = new if arm.low[k] <= theta[k] <= arm.high[k] else theta[k]")
+edit("11.13", "brings the angles between the limits before the sweep", BEGIN,
+     f"theta = np.clip(theta, arm.low, arm.high); {BEGIN}")
+edit("11.13", "keeps limits only where both are finite", NEW,
+     f"{NEW}; new = new if np.isfinite(arm.low[k] - arm.high[k]) else wish")
+edit("11.13", "keeps only the limit towards which the joint turns", NEW,
+     "new = np.minimum(wish, arm.high[k]) if wish > theta[k] else np.maximum(wish, arm.low[k])")
+edit("11.13", "turns the other way round where the limits allow only that", NEW,
+     "wish = wish - 2.0 * np.pi * np.sign(wish - theta[k]) * (not arm.low[k] <= wish <= arm.high[k] and arm.low[k] "
+     f"<= wish - 2.0 * np.pi * np.sign(wish - theta[k]) <= arm.high[k]); {NEW}")
+edit("11.13", "ends the sweep when the end is near the target", FOUND,
+     f"if np.hypot(end_x - target[0], end_y - target[1]) < 1e-4: break\n        {FOUND}")
+edit("11.13", "does not move joints that are near the target", "wish = theta[k] + ",
+     "wish = theta[k] + (np.hypot(s_x, s_y) > 1e-3) * ")
+SET = "x[n] = target"
+edit("11.14", "does nothing where the end is at the target", SET,
+     f"if np.sum((x[n] - target) ** 2) < 1e-12: return x\n    {SET}")
+edit("11.14", "does nothing for a target at the base", SET, f"if np.array_equal(target, base): return x\n    {SET}")
+edit("11.14", "does nothing for a target too near the base", SET,
+     f"if np.sqrt(np.sum((target - base) ** 2)) < 2.0 * np.max(lengths) - np.sum(lengths): return x\n    {SET}")
+edit("11.14", "does nothing with a single link", SET, f"if n == 1: return x\n    {SET}")
+SUM, CLIP = "A = row_products(J)", "return np.minimum(np.maximum("
+edit("11.15", "does not block a joint whose limits are equal", "wish[k] > 0.0)",
+     "wish[k] > 0.0 and arm.low[k] < arm.high[k])")
+edit("11.15", "keeps limits only where both are finite", CLIP,
+     "low, high = np.where(np.isinf(arm.high), -np.inf, arm.low), np.where(np.isinf(arm.low), np.inf, arm.high)\n"
+     f"    arm = arm._replace(low=low, high=high); {CLIP}")
+edit("11.15", "blocks joints only where the push is clearly above 0", "wish[k] > 0.0)", "wish[k] > 1e-3)")
+edit("11.15", "blocks joints at a lower limit that nothing pushes", "wish[k] < 0.0)", "wish[k] <= 0.0)")
+edit("11.15", "returns its input where all joints are blocked", SUM,
+     f"if not np.any(J): return theta.copy()\n    {SUM}")
+edit("11.15", "uses a damping that is not below 1e-3 m", "arm.damping * arm.damping", "max(arm.damping, 1e-3) ** 2")
+edit("11.16", "uses a pull of at most 1", "arm.pull *", "min(arm.pull, 1.0) *")
+edit("11.16", "divides by the pull, which may be 0", "arm.pull *", "arm.pull * (arm.pull / np.float64(arm.pull)) *")
+edit("11.16", "keeps only three null vectors", PULLED, "theta + pseudo_inverse(J) @ e + (lambda N: N.T @ (N @ z))("
+     "np.linalg.svd(J)[2][np.linalg.matrix_rank(J, 1e-9):][:3])")
+
+
+# everyday mistakes ----------------------------------------------------------------------------------------------
+edit("11.1", "computes in single precision", "(theta.size + 1, 2))", "(theta.size + 1, 2), np.float32)")
+edit("11.1", "puts all links at the base in x", "x[k, 0] +", "x[0, 0] +")
+edit("11.1", "puts all links at the base in y", "x[k, 1] +", "x[0, 1] +")
+edit("11.1", "uses the mean length for all links", "lengths[k] * np.cos", "np.mean(lengths) * np.cos")
+edit("11.1", "cuts the sum of the angles off at half a turn", "phi += theta[k]",
+     "phi = min(max(phi + theta[k], -np.pi), np.pi)")
+edit("11.1", "returns the end relative to the last joint", "return x", "x[-1] -= x[-2].copy(); return x")
+edit("11.2", "computes in single precision", "np.empty((2, n))", "np.empty((2, n), np.float32)")
+edit("11.2", "returns half of the velocity", "return J", "return 0.5 * J")
+edit("11.2", "takes the size of r_x", "x[n, 0] - x[k, 0]", "abs(x[n, 0] - x[k, 0])")
+edit("11.3", "returns the angle of the short axis, to the other side", TURN, "0.5 * np.arctan2(-2.0 * b, c - a)")
+edit("11.3", "takes the size of a − c in the angle", TURN, "0.5 * np.arctan2(2.0 * b, abs(a - c))")
+edit("11.3", "returns the root of a + c for the longer axis", "longer = np.sqrt(0.5 * (a + c) + np.sqrt(",
+     "longer = np.sqrt((a + c) + 0.0 * np.sqrt(")
+edit("11.3", "normalises the columns of J", "a, b, c, squared",
+     "J = J / np.maximum(np.linalg.norm(J, axis=0), 1e-300); a, b, c, squared")
+edit("11.4", "computes r² − a², which loses digits near the inner edge", "(r - least) * (r + least)",
+     "r * r - least * least")
+edit("11.4", "takes the root of the size of a negative number at the inner edge", "np.maximum(inner, 0.0)",
+     "np.abs(inner)")
+edit("11.4", "adds the coordinates of the target for its distance", "np.hypot(target[0], target[1])",
+     "abs(target[0]) + abs(target[1])")
+edit("11.4", "brings θ₁ back only where it is below −π", "wrapped(np.arctan2(target[1], target[0]) - back)",
+     "(lambda angle: angle + 2.0 * np.pi * (angle < -np.pi))(np.arctan2(target[1], target[0]) - back)")
+edit("11.5", "returns the arcsine of the sine for θ₃", "wrapped(phi - theta[0] - theta[1])",
+     "np.arcsin(np.sin(phi - theta[0] - theta[1]))")
+edit("11.5", "wraps φ and the sum of the other angles, not their difference", "wrapped(phi - theta[0] - theta[1])",
+     "wrapped(phi) - wrapped(theta[0] + theta[1])")
+edit("11.5", "measures the hand from the direction of the wrist", "wrapped(phi - theta[0] - theta[1])",
+     "wrapped(phi - np.arctan2(wrist[1], wrist[0]))")
+edit("11.6", "takes every offset along x", "rotate(q, row(offsets, k))",
+     "rotate(q, (np.sqrt(np.sum(offsets[k] ** 2)), 0.0, 0.0))")
+edit("11.6", "returns the axes in the frame of the last link", "return x, a, q",
+     "return x, np.stack([rotate(np.array((q[0], -q[1], -q[2], -q[3])), one) for one in a]), q")
+edit("11.6", "takes the last axis in its own frame", "return x, a, q", "a[n - 1] = axes[n - 1]; return x, a, q")
+edit("11.7", "computes in single precision", "np.empty((6, n))", "np.empty((6, n), np.float32)")
+edit("11.7", "takes the first joint to be at the origin", "minus(row(x, n), row(x, k))",
+     "(minus(row(x, n), row(x, k)) if k else row(x, n))")
+edit("11.7", "returns zeros for the velocity due to the last joint", "return J", "J[:3, n - 1] = 0.0; return J")
+edit("11.7", "exchanges y and z of the velocity of the end", "v[c], a[k, c]", "v[(0, 2, 1)[c]], a[k, c]")
+edit("11.8", "conjugates x only", "-q[1], -q[2], -q[3]", "-q[1], q[2], q[3]")
+edit("11.8", "decides by the sign of x, not of w, which way is the shorter one", "d[0] < 0.0", "d[1] < 0.0")
+edit("11.8", "decides by w of the target which way is the shorter one", "d[0] < 0.0", "q_target[0] < 0.0")
+edit("11.8", "takes the first three numbers of d for its vector", "factor * d[1:]", "factor * d[:3]")
+edit("11.8", "limits the angle to 3 rad", "return factor * d[1:]",
+     "return min(factor, 3.0 / max(size, 1e-300)) * d[1:]")
+edit("11.9", "brings the angles into [0, 2π)", "return theta + arm.gain * (e @ J)",
+     "return (theta + arm.gain * (e @ J)) % (2.0 * np.pi)")
+edit("11.9", "divides the change by the number of rows", "arm.gain *", "arm.gain / e.size *")
+edit("11.9", "computes J anew after the step", "return theta + arm.gain",
+     "_, J = task(theta + arm.gain * (e @ J), target, arm); return theta + arm.gain")
+edit("11.9", "computes e anew after half of the step", "return theta + arm.gain",
+     "e, _ = task(theta + 0.5 * arm.gain * (e @ J), target, arm); return theta + arm.gain")
+for number, step in (("11.9", PUSHED), ("11.11", SOLVED), ("11.16", PULLED)):
+    edit(number, "limits each change to π", f"return {step}", f"return theta + np.clip({step} - theta, -np.pi, np.pi)")
+edit("11.10", "damps the singular values a little", "/ sigma[i]", "* sigma[i] / (sigma[i] ** 2 + 1e-12)")
+edit("11.10", "does not let singular values be below 1e-6", "/ sigma[i]", "/ max(sigma[i], 1e-6)")
+edit("11.11", "uses half of λ", "arm.damping * arm.damping", "0.25 * arm.damping * arm.damping")
+edit("11.11", "limits the damping to ½ m", "arm.damping * arm.damping", "min(arm.damping, 0.5) ** 2")
+edit("11.11", "uses a damping that is not below 0.01 m", "arm.damping * arm.damping", "max(arm.damping, 0.01) ** 2")
+edit("11.12", "divides by the sum of all σ²", "(sigma**2 + damping**2)", "(np.sum(sigma**2) + damping**2)")
+edit("11.12", "returns 0 for the damped step where σ is 0", "damping**2 / (sigma**2 + damping**2)",
+     "np.where(sigma == 0.0, 0.0, damping**2 / (sigma**2 + damping**2))")
+edit("11.13", "takes the direction of the target for the angle of the joint", "wish = theta[k] + np.arctan2(",
+     "wish = np.arctan2(s_y, s_x) + 0.0 * np.arctan2(")
+edit("11.13", "limits each turn to a right angle", NEW,
+     f"wish = theta[k] + np.clip(wish - theta[k], -0.5 * np.pi, 0.5 * np.pi); {NEW}")
+edit("11.14", "sweeps forth first, and then back", SET,
+     f"for k in range(n): x[k + 1] = point_at(x[k], x[k + 1], lengths[k])\n    {SET}\n"
+     "    for k in range(n - 1, -1, -1): x[k] = point_at(x[k + 1], x[k], lengths[k])\n    return x")
+edit("11.14", "brings the target into the reach", SET, "x[n] = base + (target - base) * min(1.0, np.sum(lengths) / "
+     "max(np.sqrt(np.sum((target - base) ** 2)), 1e-300))")
+CHANGE = "theta + sum_of_rows(J, solve_symmetric(A, e))"
+edit("11.15", "limits the change, not the angle", f"np.minimum(np.maximum({CHANGE}, arm.low), arm.high)",
+     f"theta + np.minimum(np.maximum({CHANGE} - theta, arm.low), arm.high)")
+edit("11.15", "multiplies the step by the gain", "theta + sum_of_rows", "theta + arm.gain * sum_of_rows")
+edit("11.15", "never blocks the first joint", "for k in range(theta.size):", "for k in range(1, theta.size):")
+edit("11.15", "never blocks the last joint", "for k in range(theta.size):", "for k in range(theta.size - 1):")
+edit("11.15", "takes the upper limit of the first joint for all when it blocks", "arm.high[k] and", "arm.high[0] and")
+edit("11.16", "limits the pull to 1 rad", PULLED, f"(lambda z: {PULLED})(np.clip(z, -1.0, 1.0))")
+edit("11.16", "normalises a pull that is longer than 1", PULLED, f"(lambda z: {PULLED})(z / max(1.0, np.sqrt(z @ z)))")
+edit("11.16", "uses a pull of at most ½", "arm.pull *", "min(arm.pull, 0.5) *")

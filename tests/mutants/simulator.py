@@ -877,7 +877,7 @@ edits("10.10",
       ("uses the size of the slip along x only", "norm(slip)", "abs(slip[0])"),
       ("returns zero where nothing changes the slip", "np.inf", "(0.0 if rate == 0.0 else np.inf)"),
       ("returns infinity for infinite friction", "if rate > 0.0", "if 0.0 < rate < np.inf"),
-      ("uses the velocity of the highest point", "-ball.radius]", "ball.radius]"),
+      ("uses the velocity of the highest point, or reverses the spin", "-ball.radius]", "ball.radius]"),
       ("uses an arm of length 1 in place of the radius", "-ball.radius]", "-1.0]"),
       ("omits the spin", "point_velocity(v, omega,", "point_velocity(v, 0.0 * omega,"),
       ("omits the velocity of the centre", "point_velocity(v,", "point_velocity(0.0 * v,"),
@@ -1413,3 +1413,114 @@ edits("10.16",
       ("returns the ratio before the difference", "return difference, np.median(ratios)",
        "return np.median(ratios), difference"),
       ("returns the ratio only", "return difference, np.median(ratios)", "return np.median(ratios)"))
+
+
+# 10.8 to 10.16: right for inputs of the usual size only ---------------------------------------------------------
+edits("10.8",
+      ("takes a slow rotation for none", "return",
+       "if norm(ball.floor_omega) < 1e-6: return ball.floor_v.copy()\n    return"),
+      ("cuts the way from the centre off at 100 m", WAY, f"np.clip({WAY}, -100.0, 100.0)"),
+      ("takes places within a radius of the centre for the centre", "return",
+       f"if norm({WAY}) < ball.radius: return ball.floor_v.copy()\n    return"))
+edits("10.9",
+      ("evaluates the load at t + dt/2", "rigid_body_step(load, t, x", "rigid_body_step(load, t + 0.5 * dt, x"),
+      ("evaluates the load with the velocities before friction", "rigid_body_step(load,",
+       "rigid_body_step(lambda t, x, q, a, b, ball: load(t, x, q, v, omega, ball),"),
+      ("evaluates the load with q = 1", "t, x, q, pushed", "t, x, np.array([1.0, 0.0, 0.0, 0.0]), pushed"),
+      ("evaluates the load with the spin before friction", "rigid_body_step(load,",
+       "rigid_body_step(lambda t, x, q, a, b, ball: load(t, x, q, a, omega, ball),"),
+      ("applies the load in two halves", LOADED,
+       f"{LOADED.replace('pushed, turned, dt', '*' + LOADED.replace(' dt,', ' 0.5 * dt,') + '[2:], 0.5 * dt')}"))
+edits("10.10",
+      ("takes a slip below 1e-12 m/s for none", "size == 0.0", "size < 1e-12"),
+      ("limits the time to 10 s", ENDS, "min(10.0, size / rate) if rate > 0.0 else np.inf"),
+      ("takes a small rate for none", "if rate > 0.0", "if rate > 1e-6"),
+      ("takes large friction for infinite", "along =", "if ball.mu > 10.0: return 0.0\n    along ="),
+      ("limits finite friction to 100", "-ball.mu *", "-(ball.mu if np.isinf(ball.mu) else min(ball.mu, 100.0)) *"))
+edits("10.11",
+      ("omits a second part that is short", f"return {TWO}",
+       f"return {TWO} if dt - first > 1e-5 else (x, q, v, omega)"),
+      ("evaluates the second load in the middle of the second part", "load, t + first, x",
+       "load, t + 0.5 * (dt + first), x"))
+edits("10.12",
+      ("changes nothing where the corner moves up", ANGULAR,
+       f"if v[1] + omega * r[0] > 0.0: return v.copy(), omega\n    {ANGULAR}"),
+      ("changes nothing where the corner moves towards the centre", ANGULAR,
+       f"if (v + omega * np.array([-r[1], r[0]])) @ r < 0.0: return v.copy(), omega\n    {ANGULAR}"),
+      ("takes a slow spin for none", AFTER, f"omega = 0.0 if abs(omega) < 1e-6 else omega; {AFTER}"),
+      ("lets no body be heavier than 100 kg beside r × v", "cross_2d(r, v) / inv_mass",
+       "cross_2d(r, v) / max(inv_mass, 1e-2)"),
+      ("lets no moment of inertia be above 1000 kg m² beside ω", "omega / inv_inertia",
+       "omega / max(inv_inertia, 1e-3)"),
+      ("cuts r off at 1 m", ANGULAR, f"r = r / max(1.0, np.sqrt(r @ r)); {ANGULAR}"))
+edits("10.13 10.14",
+      ("sorts the moments of inertia", "p.inv_inertia[i])", "np.sort(p.inv_inertia[i])[::-1])"),
+      ("takes heavy bodies for immovable", COUNTS, "if p.inv_mass[i] > 1e-6:"),
+      ("omits light bodies", COUNTS, "if 0.0 < p.inv_mass[i] < 1e6:"),
+      ("omits the rotation of heavy bodies", ROTATES, "if p.inv_inertia[i, 0] > 1e-6:"))
+edits("10.15",
+      ("needs two times", OVER, f"rest = energies[1] - work[1]\n    {OVER}"),
+      ("looks back over a hundred times only", OVER, "e = energies - work\n    return "
+       f"max(e[k] - np.min(e[max(0, k - 100):k + 1]) for k in range(e.size))\n    {OVER}"),
+      ("takes gains below 1e-10 of the energy for none", DONE,
+       "return gain if gain > 1e-10 * abs(energies[0]) else 0.0"))
+edits("10.16",
+      ("takes differences below 1e-9 for none", "return difference,", "return difference * (difference > 1e-9),"),
+      ("compares the first eight numbers only", LARGEST, "np.max(np.abs(slow - quick).ravel()[:8])"),
+      ("takes times below a millisecond for one", RATIO, "(between - began) / max(clock() - between, 1e-3)"))
+
+
+# 10.9 to 10.16: everyday mistakes -------------------------------------------------------------------------------
+edits("10.9",
+      ("rotates with the mean of the spins before and after the load", "(omega + omega_new)", "(turned + omega_new)"),
+      ("returns the spin after friction, without the load", "q, v_new, omega_new", "q, v_new, turned"),
+      ("adds the velocity of the floor to that of the ball", "x + 0.5 * dt * (v + v_new)",
+       "x + dt * ball.floor_v + 0.5 * dt * (v + v_new)"),
+      ("loses the spin about the normal", "return x", "omega_new[2] = 0.0; return x"),
+      ("subtracts the old velocity from the new one", "(v + v_new)", "(v_new - v)"),
+      ("rotates by half steps with the old and with the new spin", ROTATED,
+       "quaternion_product(exponential(0.5 * dt * omega_new), quaternion_product(exponential(0.5 * dt * omega), q))"),
+      ("turns the ball with the floor", "return x", "omega_new[2] = ball.floor_omega[2]; return x"))
+edits("10.10",
+      ("subtracts the speed of the rim from that of the centre", "size = norm(slip)",
+       "size = abs(np.hypot(v[0], v[1]) - ball.radius * np.hypot(omega[0], omega[1]))"),
+      ("limits the friction to 1", "-ball.mu *", "-min(ball.mu, 1.0) *"),
+      ("limits the time to 1 s", ENDS, "min(1.0, size / rate) if rate > 0.0 else np.inf"))
+edits("10.11",
+      ("uses infinite friction in the second part", "dt - first, ball)", "dt - first, ball._replace(mu=np.inf))"),
+      ("omits gravity along the slope in the call of slip_time", "slip_time(v, omega, ball)",
+       "slip_time(v, omega, ball._replace(gravity=ball.gravity * np.array([0.0, 0.0, 1.0])))"),
+      ("moves with the new velocity in the second part", f"return {TWO}",
+       f"_, b, c, d = {TWO}; return x + (dt - first) * c, b, c, d"))
+edits("10.12",
+      ("uses the inverse mass in place of the mass in the inertia about the corner", f"{SQUARE} / inv_mass",
+       f"{SQUARE} * inv_mass"),
+      ("uses the inverse inertia in the inertia about the corner", "(1.0 / inv_inertia", "(inv_inertia"),
+      ("adds the new velocity to the old one", AFTER, f"return v + omega * {ACROSS}, omega"),
+      ("returns ω with the wrong sign", AFTER, f"return omega * {ACROSS}, -omega"),
+      ("does not let the body turn clockwise", AFTER, f"omega = max(omega, 0.0); {AFTER}"),
+      ("solves for each coordinate of the impulse alone", ANGULAR,
+       "lever = np.array([-r[1], r[0]]); J = -(v + omega * lever) / (inv_mass + inv_inertia * lever * lever); "
+       "return v + inv_mass * J, omega + inv_inertia * (lever @ J)"))
+edits("10.13",
+      ("does not let the energy be negative", "return energy", "return max(energy, 0.0)"),
+      ("measures heights from the mean of all places", POTENTIAL, "- dot(p.gravity, x[i] - np.mean(x, axis=0))"),
+      ("uses the mass of the first row for all", MASS, "x[i])) / p.inv_mass[np.argmax(p.inv_mass > 0.0)]"),
+      ("omits v_z", KINETIC, "0.5 * (v[i, 0] ** 2 + v[i, 1] ** 2)"),
+      ("keeps the last rotation only", "energy += 0.5 * np.sum", "energy = 0.5 * np.sum"))
+edits("10.14",
+      ("measures places from the mean of all places", "cross(x[i], v[i])", "cross(x[i] - np.mean(x, axis=0), v[i])"),
+      ("returns means over the rows", "return P, L", "return P / x.shape[0], L / x.shape[0]"))
+edits("10.15",
+      ("subtracts the work until the time before", REST, "energies[k] - work[max(k - 1, 0)]"),
+      ("takes the differences of the work, which is a sum", OVER, f"work = np.diff(work, prepend=0.0)\n    {OVER}"),
+      ("subtracts only work that is positive", REST, "energies[k] - max(work[k], 0.0)"),
+      ("uses the sizes of the energies", REST, "abs(energies[k]) - work[k]"),
+      ("returns the largest rise without a fall in between", OVER, "gain = now = 0.0; e = energies - work\n"
+       "    for k in range(1, e.size): now = now + e[k] - e[k - 1] if e[k] > e[k - 1] else 0.0; gain = max(gain, now)\n"
+       f"    return gain\n    {OVER}"))
+edits("10.16",
+      ("uses a mean without the smallest and the largest ratio", MEDIAN, "np.mean(np.sort(ratios)[1:-1])"),
+      ("divides by the median of the minimal times", "for k in range(runs):",
+       SEPARATE.format("np.median(a / np.median(b))")),
+      ("rounds the ratio", MEDIAN, "np.round(np.median(ratios), 2)"))
