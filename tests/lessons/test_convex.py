@@ -160,7 +160,9 @@ def test_moments_of_shapes_are_the_integrals_over_their_points(d):
     rng = np.random.default_rng(6)
     triangle = np.array([(1.0, 0.0), (-0.5, 0.9), (-0.7, -0.8)])
     triangle -= polygon_centre(triangle)
-    shapes = [Ball(0.7), Box((0.8, 0.3, 0.5)[:d]), Capsule(0.5, 0.3), *[Polygon(tuple(map(tuple, triangle)))] * (d == 2)]
+    shapes = [Ball(0.7), Box((0.8, 0.3, 0.5)[:d]), Capsule(0.5, 0.3)]
+    if d == 2:
+        shapes.append(Polygon(tuple(map(tuple, triangle))))
     for shape in shapes:
         size = size_of(shape)
         points = rng.uniform(-size, size, (400_000, d))
