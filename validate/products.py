@@ -1,4 +1,4 @@
-"""The physics engines: one record each.  A new engine is one record here and one adapter in `validate/engines/`."""
+"""The physics engines: one record each.  A new engine is one record here and one adapter in `validate/worlds/`."""
 
 import importlib
 from dataclasses import dataclass
@@ -12,21 +12,27 @@ class Product:
     """An engine."""
     name: str                # of its Python module, in commands and in stored results
     dimensions: int
-    file: str                # its adapter in validate/engines, which has empty_world() → EngineRun, and SWITCHES
+    file: str                # of its adapters: see `adapter` and `world`
     colour: str
     marker: str
     distribution: str        # what pip installs
     remedy: str              # what to do where it is not installed, for people
     recorded: bool = False   # its record stands in where it is not installed
     optional: bool = False   # it is left out where it is not installed
+    by_hand: bool = True     # scenes set it up by hand, with validate/engines; else all of it is in validate/worlds
 
     def __str__(self):
         return self.name
 
     @property
     def adapter(self):
-        """Its module in validate/engines."""
-        return importlib.import_module(f"validate.engines.{self.file}")
+        """Its module with empty_world() → EngineRun, and SWITCHES."""
+        return importlib.import_module(f"validate.{'engines' if self.by_hand else 'worlds'}.{self.file}")
+
+    @property
+    def world(self):
+        """Its module with build(model, dt, **settings) → World, and refuses(model)."""
+        return importlib.import_module(f"validate.worlds.{self.file}")
 
     def installed(self):
         """Return its version, or None."""
@@ -41,7 +47,9 @@ PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
                    "leave --engine out: its recorded traces stand in", recorded=True)
 MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core", "pip install -e '.[witness]' adds it",
                  optional=True)
-PRODUCTS = (PYMUNK, PYBULLET, MUJOCO)
+BOX2D = Product("pyb2d3", 2, "box2d", "#7A5C00", "2", "pyb2d3", "pip install -e '.[opponents]' adds it",
+                optional=True, by_hand=False)
+PRODUCTS = (PYMUNK, PYBULLET, MUJOCO, BOX2D)
 
 
 def product_named(name):
