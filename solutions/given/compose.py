@@ -109,6 +109,7 @@ class Loop(NamedTuple):
     state: PileState         # at the start
     p: Composed
     row: np.ndarray          # (bodies,) the row of each body of the model
+    joint_of: tuple          # the number of the model's joint that each row of p.joints belongs to
 
 
 # ---------------------------------------------------------------------------------------------- composition
@@ -144,7 +145,8 @@ def compose(model, settings=SETTINGS):
     else:
         parts = (*[Part(accelerate, reason_of_forces(model))] * forces, motion)
     bounds, narrow = shapes_of_loop(model)
-    return Loop(parts, load_of(model), bounds, narrow, state, p, row)
+    joint_of = tuple(k for k, joint in enumerate(model.joints) for _ in points_of(model, joint))
+    return Loop(parts, load_of(model), bounds, narrow, state, p, row, joint_of)
 
 
 def reason_of_forces(model):
@@ -277,15 +279,19 @@ def pairs_of(model, row, n):
     return Pairs(first, np.array([j for found in partners for j in sorted(found)], np.int64))
 
 
+def points_of(model, joint):
+    """Return the places (2,) that a joint holds together: one of a Hinge, and two of a Weld, which lie apart."""
+    place = np.array(joint.place)
+    if not isinstance(joint, Weld):
+        return [place]
+    sizes = [size_of(model.bodies[k].shape) for k in (joint.a, joint.b)
+             if k != WORLD and model.bodies[k].shape is not None]
+    return [place, place + np.array((min([*sizes, 1.0]), 0.0))]
+
+
 def joints_of(model, row, inv_mass):
-    """Return the Joints of a model: a Hinge is one point, and a Weld is two points that lie apart."""
-    points = []
-    for joint in model.joints:
-        points.append((joint.a, joint.b, np.array(joint.place)))
-        if isinstance(joint, Weld):
-            reach = max([size_of(model.bodies[k].shape) for k in (joint.a, joint.b)
-                         if k != WORLD and model.bodies[k].shape is not None] or [1.0])
-            points.append((joint.a, joint.b, np.array(joint.place) + np.array((min(reach, 1e3), 0.0))))
+    """Return the Joints of a model."""
+    points = [(joint.a, joint.b, place) for joint in model.joints for place in points_of(model, joint)]
     a = np.array([row[i] for i, _, _ in points], np.int64)
     b = np.array([row[j] if j != WORLD else inv_mass.size - 1 for _, j, _ in points], np.int64)
     r_a, r_b = (np.array([own_place(model, k, place) for k, place in ends]).reshape(-1, 2)
