@@ -264,9 +264,8 @@ def cores_of(bodies):
 
 
 def lines_of(bodies):
-    """Return rows (h, 3) of half-spaces in the world."""
-    rows = [(*body.shape.normal, body.shape.offset - np.dot(body.shape.normal, body.x)) for body in bodies]
-    return np.array(rows, float).reshape(-1, 3)
+    """Return rows (h, 3) of half-spaces."""
+    return np.array([(*body.shape.normal, body.shape.offset) for body in bodies], float).reshape(-1, 3)
 
 
 def pairs_of(model, row, n):

@@ -26,7 +26,7 @@ from .model_checks import (
     orientation,
     vector,
 )
-from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, moments_of_shape
+from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, moments_of_shape, outline_of
 
 WORLD = -1                   # in a joint or a spring: the world, which does not move
 
@@ -285,3 +285,45 @@ def friction_of(model, i, j):
 def restitution_of(model, i, j):
     """Return e of a pair of bodies [-]."""
     return model.bodies[i].e * model.bodies[j].e
+
+
+# ---------------------------------------------------------------------------------------------- judged and seen
+
+def model_energy(model, state):
+    """Return the energy [J] of motion, height and springs of all bodies that impulses move.
+
+    *Left out:* what function loads store; what drag and dampers have taken is gone.
+    """
+    energy = 0.0
+    for body, x, q, v, omega in zip(model.bodies, *state):
+        if can_move(body):
+            energy += body.m * (0.5 * v @ v - np.dot(model.gravity, x))
+        if can_turn(body):
+            w = omega if model.d == 2 else rotation_of(q).T @ omega                # about the axes of the body
+            energy += 0.5 * np.sum(np.multiply(body.inertia, w * w))
+    for spring in model.springs:
+        way = world_place(state, spring.a, spring.place_a) - world_place(state, spring.b, spring.place_b)
+        energy += 0.5 * spring.k * (np.sqrt(way @ way) - spring.rest) ** 2
+    return float(energy)
+
+
+def picture_of(model, state, width=3.0):
+    """Return (points (k, 2) [m], links) of the outlines of all shapes in the plane, for a film.
+
+    A half-space is a line, `width` [m] to both sides of its body's place at the start.
+    """
+    points, links = [], []
+    for body, x, q in zip(model.bodies, state.x, state.q):
+        if isinstance(body.shape, HalfSpace):
+            n = np.array(body.shape.normal)
+            middle = np.array(body.x) - body.shape.offset * n
+            line = middle + width * np.outer((-1.0, 1.0), (n[1], -n[0]))
+            links.append((len(points), len(points) + 1))
+        elif body.shape is not None:
+            line = x + outline_of(body.shape, 16)[:-1] @ rotation_of(q).T
+            k, last = len(points), len(points) + len(line) - 1
+            links += [*((i, i + 1) for i in range(k, last)), (last, k)]
+        else:
+            line = x[None]
+        points += list(line)
+    return np.array(points), links

@@ -27,7 +27,7 @@ class Polygon(NamedTuple):
 
 
 class HalfSpace(NamedTuple):
-    """All below a plane or line: n · p + offset ≤ 0.  For a body that nothing moves."""
+    """All places p of the world with n · p + offset ≤ 0, wherever its body is.  Only for a body that nothing moves."""
     normal: tuple            # (d,) unit vector, out of the half-space
     offset: float = 0.0      # [m]
 

@@ -23,7 +23,8 @@ from solutions.support.model import (
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 from validate.products import BOX2D, MUJOCO, PRODUCTS, PYBULLET, PYMUNK
 from validate.scene import by_order
-from validate.worlds import derived
+from validate.subject import modules
+from validate.worlds import chipmunk, derived, ours
 
 G = 9.81                     # [m/s²]
 SINGLE = 2e-6                # errors of an engine that computes in single precision: some ten spacings [-]
@@ -438,3 +439,76 @@ def test_a_four_bar_stays_closed(product):
     I = np.array([rod.inertia for rod in rods])
     energy = 0.5 * np.sum(state.v**2) + 0.5 * I @ state.omega**2 + G * np.sum(state.x[:, 1] - start_of(model).x[:, 1])
     assert abs(energy) <= 2.0 * G * 3.0 * T / steps * np.max(np.abs(state.v))     # order 1, with weight and speed
+
+
+# ---------------------------------------------------------------------------------------------- our loop beside them
+
+def belt_machine():
+    """Boxes on a plank on a belt, a capsule that falls on them, and a ball on a rod that hits them."""
+    bodies = [
+        FLOOR._replace(v=(-0.8, 0.0)),
+        Body((0.0, 0.05), 3.0, Box((0.6, 0.05)), mu=0.4),
+        Body((-0.3, 0.2), 1.0, Box((0.1, 0.1)), mu=0.4),
+        Body((0.0, 0.25), 1.0, Box((0.1, 0.15)), mu=0.4),
+        Body((0.3, 0.9), 0.5, Capsule(0.12, 0.06), mu=0.4, q=0.4),
+        Body((0.9, 0.9), 0.8, Ball(0.1), mu=0.3),
+        Body((0.6, 0.9), 0.2, inertia=0.2 * 0.6**2 / 12.0),
+    ]
+    return make_model(bodies, (0.0, -G), [Hinge(6, WORLD, (0.3, 0.9)), Hinge(5, 6, (0.9, 0.9))],
+                      [Spring(2, 3, (0.0, 0.0), (0.0, 0.0), 0.3, 50.0, 1.0)])
+
+
+def test_our_loop_and_pymunk_agree_the_longer_the_shorter_the_step():
+    """Two codes that share nothing but the Model: with a quarter of the step they are at most half as far apart."""
+    model, apart = belt_machine(), []
+    for rate in (240, 960):
+        dt = 1.0 / rate
+        worlds = ours.build(model, dt, sweeps=300, settled=1e-6), chipmunk.build(model, dt, ahead=1.0, iterations=300)
+        largest = 0.0
+        for _ in range(round(0.5 * rate)):
+            for world in worlds:
+                world.step()
+            x, other = (world.state().x[1:] for world in worlds)
+            largest = max(largest, np.max(np.hypot(*(x - other).T)))
+        apart.append(largest)
+    assert apart[1] < 0.03
+    assert apart[1] < 0.6 * apart[0]
+
+
+def test_our_loop_tells_the_forces_of_contacts_and_joints():
+    model = make_model([FLOOR, Body((0.0, 0.3), 2.0, Box((0.4, 0.3)), mu=0.5)], (0.0, -G))
+    world = ours.build(model, 1e-3, sweeps=1000, settled=1e-12)
+    for _ in range(50):
+        world.step()
+    on_box = sum((push.F if push.a == 1 else -push.F for push in world.pushes()), np.zeros(2))
+    assert on_box == pytest.approx((0.0, 2.0 * G), abs=1e-6)
+    hung = make_model([Body((0.0, -1.0), 2.0, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
+    world = ours.build(hung, 1e-3)
+    world.step()
+    (push,) = world.pushes()
+    assert (push.a, push.b, push.joint) == (0, WORLD, 0)
+    assert push.F == pytest.approx((0.0, 2.0 * G), abs=1e-9)
+    welded = make_model([Body((0.0, 0.0), 1.0, Box((0.1, 0.1))), Body((0.5, 0.0), 1.0, Box((0.1, 0.1)))], (0.0, -G),
+                        [Weld(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.25, 0.0))])
+    world = ours.build(welded, 1e-3)
+    world.step()
+    held = sum(push.F for push in world.pushes() if push.joint == 0)
+    assert held == pytest.approx((0.0, 2.0 * G), abs=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.xdist_group("compiled simulator")
+def test_our_compiled_loop_runs_every_part_as_the_plain_one_does():
+    if not modules.can_compile():
+        pytest.skip("numba has no wheel for this machine")
+    light = Body((0.0, 1.0), 1.0, Ball(0.2), e=0.5)
+    for model in (belt_machine(), make_model([light, FLOOR], (0.0, -G)),
+                  make_model([light._replace(mu=0.5), light._replace(x=(1.0, 1.0), mu=0.2), FLOOR], (0.0, -G)),
+                  make_model([light._replace(shape=None, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.5, 1.0))])):
+        worlds = [ours.build(model, 1e-3, compiled=kind) for kind in (False, True)]
+        for _ in range(700):
+            for world in worlds:
+                world.step()
+        plain, compiled = (world.state() for world in worlds)
+        assert compiled.x == pytest.approx(plain.x, abs=1e-9)
+        assert compiled.q == pytest.approx(plain.q, abs=1e-9)
