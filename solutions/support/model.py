@@ -39,7 +39,7 @@ class Body(NamedTuple):
     mu: float = 0.0          # friction [-]
     e: float = 0.0           # restitution [-]
     q: object = None         # orientation; None: it is not turned
-    v: tuple = None          # [m/s]; None: at rest
+    v: tuple | None = None   # [m/s]; None: at rest
     omega: object = None     # [rad/s]; None: at rest
     inertia: object = None   # moment about the centre, or (3,) about the axes of the body [kg m²]; ∞: it does not turn;
                              # None: that of its shape, filled evenly; ∞ without a shape
@@ -50,7 +50,7 @@ class Hinge(NamedTuple):
     a: int                   # number of a body
     b: int                   # number of a body, or WORLD
     place: tuple             # (d,) at the start [m]
-    axis: tuple = None       # (3,) in space, at the start; None in the plane
+    axis: tuple | None = None  # (3,) in space, at the start; None in the plane
 
 
 class BallJoint(NamedTuple):
