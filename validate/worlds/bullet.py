@@ -354,7 +354,11 @@ def push(parts, t):
 
 
 def pushes(parts):
-    """Return the contact forces, one for each point.  Of joints in maximal coordinates the engine tells nothing."""
+    """Return the contact forces, one for each point.
+
+    The engine tells no forces of joints in maximal coordinates.  In reduced ones its joint reaction forces are not
+    those of the constraint: two rods that swing gave 17 N where MuJoCo and Box2D have 12 N.
+    """
     number, found = {handle: k for k, handle in enumerate(parts.handles)}, []
     for c in parts.pb.getContactPoints() or ():
         if c[8] <= 0.0 or c[9] > 0.0:
