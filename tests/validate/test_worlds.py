@@ -78,6 +78,13 @@ def test_a_thrown_body_errs_by_half_a_step_of_its_velocity_at_most(product, sett
     assert np.max(np.abs(state.v[0] - (v + down * T))) <= noise
 
 
+@pytest.mark.parametrize("product", [PYMUNK, PYBULLET, BOX2D], ids=str)
+def test_a_leapfrog_start_makes_a_throw_exact(product):
+    T, steps, v = 1.0, 100, np.array((2.0, 3.0))
+    state, _ = run(product, make_model([Body((0.0, 0.0), 2.0, v=tuple(v))], (0.0, -G)), T, steps, ahead=0.5)
+    assert np.max(np.abs(state.x[0] - (v * T - (0.0, 0.5 * G * T * T)))) <= spacings(product, steps) * 10.0
+
+
 @every
 def test_drag_and_a_function_load_slow_a_body_as_the_exponential_does(product, settings):
     T, steps, k, m = 1.0, 200, 0.8, 2.0
@@ -142,9 +149,9 @@ def test_two_balls_exchange_the_momentum_of_newtons_impact_law(product, settings
     assert np.allclose(state.v[:, 1:], 0.0, atol=spacings(product, 400))
 
 
-def pendulum_angle(rate, start, T):
-    """The angle from the vertical after T of θ″ = −rate² sin θ, from rest."""
-    return solve_ivp(lambda t, y: (y[1], -rate**2 * np.sin(y[0])), (0.0, T), (start, 0.0), rtol=1e-12,
+def pendulum_angle(rate, start, T, first=0.0):
+    """The angle from the vertical after T of θ″ = −rate² sin θ, with the first rate θ′ [rad/s]."""
+    return solve_ivp(lambda t, y: (y[1], -rate**2 * np.sin(y[0])), (0.0, T), (start, first), rtol=1e-12,
                      atol=1e-12).y[0, -1]
 
 
@@ -158,19 +165,34 @@ def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings
         place, x, gravity, half = (0.0,) * 3, tuple(0.5 * np.array([0.8, -0.36, -0.48])), tuple(
             np.cross(e, (0.8, -0.36, -0.48)) * -G), (0.05, 0.04, 0.06)
         axis = tuple(e)
-    body = Body(x, 2.0, Box(half))
-    model = make_model([body], gravity, [Hinge(0, WORLD, place, axis)])
+    w = -1.5                                                 # it is pushed as it is let go
+    spin = w if d == 2 else tuple(w * np.array(axis))
+    v = (0.0, w * 0.5) if d == 2 else tuple(np.cross(spin, x))
+    model = make_model([Body(x, 2.0, Box(half), v=v, omega=spin)], gravity, [Hinge(0, WORLD, place, axis)])
+    sign = np.sign(np.dot(gravity, v))                       # towards the vertical
     I = (np.array(model.bodies[0].inertia) @ np.square(axis) if d == 3 else model.bodies[0].inertia) + 2.0 * 0.25
     rate, limits = np.sqrt(2.0 * G * 0.5 / I), []
     errors = []
     for steps in (500, 1000):
         state, _ = run(product, model, T, steps, **settings)
-        angle = pendulum_angle(rate, 0.5 * np.pi, T)
+        angle = pendulum_angle(rate, 0.5 * np.pi, T, -sign * abs(w))
         down = np.array(gravity) / G
         out = np.array(x) / 0.5
         errors.append(np.linalg.norm(state.x[0] - 0.5 * (np.cos(angle) * down + np.sin(angle) * out)))
         limits.append(0.5 * by_order(rate * np.sqrt(2.0), T, T / steps)[order_of(product)] + spacings(product, steps))
     assert np.all(np.array(errors) <= limits)
+
+
+@every
+def test_two_hinged_rods_that_turn_as_one_go_on_in_a_circle(product, settings):
+    """Without gravity.  The second rod has no rate relative to the first."""
+    T, steps, w = 1.0, 1000, 2.0
+    rods = [Body((x, 0.0), 1.0, Box((0.25, 0.05)), v=(0.0, w * x), omega=w) for x in (0.25, 0.75)]
+    model = make_model(rods, (0.0, 0.0), [Hinge(0, WORLD, (0.0, 0.0)), Hinge(1, 0, (0.5, 0.0))])
+    state, _ = run(product, model, T, steps, **settings)
+    circle = np.outer((0.25, 0.75), (np.cos(w * T), np.sin(w * T)))
+    assert np.max(np.abs(state.x - circle)) <= 0.75 * by_order(w, T, T / steps)[1] + spacings(product, steps)
+    assert np.allclose(state.omega, w, atol=w * by_order(w, T, T / steps)[1] + spacings(product, steps))
 
 
 @every
