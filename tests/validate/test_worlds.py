@@ -156,8 +156,8 @@ def pendulum_angle(rate, start, T, first=0.0):
 
 
 @every
-@pytest.mark.parametrize("d", [2, 3])
-def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings, d):
+@pytest.mark.parametrize(("d", "hinges"), [(2, 1), (3, 1), (3, 2)])
+def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings, d, hinges):
     T, half, axis = 1.0, (0.5, 0.05), None
     place, x, gravity = (0.0, 0.0), (0.5, 0.0), (0.0, -G)
     if d == 3:                                               # the same in space, in a plane that no axis lies in
@@ -168,7 +168,8 @@ def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings
     w = -1.5                                                 # it is pushed as it is let go
     spin = w if d == 2 else tuple(w * np.array(axis))
     v = (0.0, w * 0.5) if d == 2 else tuple(np.cross(spin, x))
-    model = make_model([Body(x, 2.0, Box(half), v=v, omega=spin)], gravity, [Hinge(0, WORLD, place, axis)])
+    more = [Hinge(0, WORLD, tuple(0.2 * np.array(axis)), axis)] if hinges == 2 else []   # on the same axis: a loop
+    model = make_model([Body(x, 2.0, Box(half), v=v, omega=spin)], gravity, [Hinge(0, WORLD, place, axis), *more])
     sign = np.sign(np.dot(gravity, v))                       # towards the vertical
     I = (np.array(model.bodies[0].inertia) @ np.square(axis) if d == 3 else model.bodies[0].inertia) + 2.0 * 0.25
     rate, limits = np.sqrt(2.0 * G * 0.5 / I), []
@@ -197,23 +198,30 @@ def test_two_hinged_rods_that_turn_as_one_go_on_in_a_circle(product, settings):
 
 @every
 def test_two_rods_swing_as_one_that_is_welded_together(product, settings):
-    T, steps = 0.5, 500
-    rod = lambda x: Body((x, 0.0), 1.0, Box((0.25, 0.05)))
+    """The second rod lies along its second axis, so that the angles differ."""
+    T, steps, turn = 0.5, 500, 0.5 * np.pi
+    rods = [Body((0.25, 0.0), 1.0, Box((0.25, 0.05))), Body((0.75, 0.0), 1.0, Box((0.05, 0.25)), q=turn)]
     long = Body((0.5, 0.0), 2.0, Box((0.5, 0.05)))
-    two = make_model([rod(0.25), rod(0.75)], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.5, 0.0))])
+    two = make_model(rods, (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.5, 0.0))])
     one = make_model([long], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
     first, second = (run(product, model, T, steps, **settings)[0] for model in (two, one))
     rate = np.sqrt(1.5 * G)
     allowed = by_order(rate, T, T / steps)[1] + spacings(product, steps)
     assert np.linalg.norm(0.5 * (first.x[0] + first.x[1]) - second.x[0]) <= allowed
-    assert abs(first.q[0] - first.q[1]) <= 2.0 * allowed
+    assert abs(first.q[0] + turn - first.q[1]) <= 2.0 * allowed
 
 
 @every
-def test_a_weld_holds_a_beam_in_the_wall(product, settings):
-    model = make_model([Body((0.5, 0.0), 1.0, Box((0.5, 0.05)))], (0.0, -G), [Weld(0, WORLD, (0.0, 0.0))])
+@pytest.mark.parametrize("welds", [1, 2])
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_weld_holds_a_turned_beam_in_the_wall(product, settings, d, welds):
+    place = (0.0,) * d
+    beam = (Body((0.5, 0.0), 1.0, Box((0.05, 0.5)), q=0.5 * np.pi) if d == 2 else
+            Body((0.5, 0.0, 0.0), 1.0, Box((0.05, 0.5, 0.06)), q=(np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))))
+    model = make_model([beam], tuple(-G * np.eye(d)[-1]), [Weld(0, WORLD, place)] * welds)
     state, _ = run(product, model, 0.5, 500, **settings)
-    assert np.max(np.abs(state.x[0] - (0.5, 0.0))) <= SOFT and abs(state.q[0]) <= 2.0 * SOFT
+    assert np.max(np.abs(state.x[0] - beam.x)) <= SOFT
+    assert np.max(np.abs(state.q[0] - model.bodies[0].q)) <= 2.0 * SOFT
 
 
 @every
@@ -329,15 +337,17 @@ def test_a_body_rests_on_a_tilted_plane_in_space(product, settings, shape):
 
 
 @pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)
-def test_a_joint_tells_the_force_of_a_pendulum(product):
+@pytest.mark.parametrize(("ends", "sign"), [((0, WORLD), 1.0), ((0, 1), 1.0), ((1, 0), -1.0)])
+def test_a_joint_tells_the_force_of_a_pendulum(product, ends, sign):
     """A hinge carries a quarter of the weight of a rod that is let go level, and 5/2 sin θ of it θ below."""
-    model = make_model([Body((0.5, 0.0), 2.0, Box((0.5, 1e-3)))], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
+    wall = Body((-1.0, 0.0))
+    model = make_model([Body((0.5, 0.0), 2.0, Box((0.5, 1e-3))), wall], (0.0, -G), [Hinge(*ends, (0.0, 0.0))])
     for steps in (1, 500):
         state, pushes = run(product, model, steps * 1e-3, steps)
         angle = state.q[0]
         out, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-        F = 2.0 * G * (2.5 * np.sin(angle) * out + 0.25 * np.cos(angle) * across)
-        assert [(push.a, push.b, push.joint) for push in pushes] == [(0, WORLD, 0)]
+        F = sign * 2.0 * G * (2.5 * np.sin(angle) * out + 0.25 * np.cos(angle) * across)
+        assert [(push.a, push.b, push.joint) for push in pushes] == [(*ends, 0)]
         assert pushes[0].F == pytest.approx(F, abs=2.0 * G * 2.5 * (3.9 * 1e-3 + 2e-3))
 
 
