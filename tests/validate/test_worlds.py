@@ -79,6 +79,13 @@ def test_a_thrown_body_errs_by_half_a_step_of_its_velocity_at_most(product, sett
     assert np.max(np.abs(state.v[0] - (v + down * T))) <= noise
 
 
+@pytest.mark.parametrize("product", [PYMUNK, PYBULLET, BOX2D], ids=str)
+def test_a_leapfrog_start_makes_a_throw_exact(product):
+    T, steps, v = 1.0, 100, np.array((2.0, 3.0))
+    state, _ = run(product, make_model([Body((0.0, 0.0), 2.0, v=tuple(v))], (0.0, -G)), T, steps, ahead=0.5)
+    assert np.max(np.abs(state.x[0] - (v * T - (0.0, 0.5 * G * T * T)))) <= spacings(product, steps) * 10.0
+
+
 @every
 def test_drag_and_a_function_load_slow_a_body_as_the_exponential_does(product, settings):
     T, steps, k, m = 1.0, 200, 0.8, 2.0
@@ -143,15 +150,15 @@ def test_two_balls_exchange_the_momentum_of_newtons_impact_law(product, settings
     assert np.allclose(state.v[:, 1:], 0.0, atol=spacings(product, 400))
 
 
-def pendulum_angle(rate, start, T):
-    """The angle from the vertical after T of θ″ = −rate² sin θ, from rest."""
-    return solve_ivp(lambda t, y: (y[1], -rate**2 * np.sin(y[0])), (0.0, T), (start, 0.0), rtol=1e-12,
+def pendulum_angle(rate, start, T, first=0.0):
+    """The angle from the vertical after T of θ″ = −rate² sin θ, with the first rate θ′ [rad/s]."""
+    return solve_ivp(lambda t, y: (y[1], -rate**2 * np.sin(y[0])), (0.0, T), (start, first), rtol=1e-12,
                      atol=1e-12).y[0, -1]
 
 
 @every
-@pytest.mark.parametrize("d", [2, 3])
-def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings, d):
+@pytest.mark.parametrize(("d", "hinges"), [(2, 1), (3, 1), (3, 2)])
+def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings, d, hinges):
     T, half, axis = 1.0, (0.5, 0.05), None
     place, x, gravity = (0.0, 0.0), (0.5, 0.0), (0.0, -G)
     if d == 3:                                               # the same in space, in a plane that no axis lies in
@@ -159,14 +166,18 @@ def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings
         place, x, gravity, half = (0.0,) * 3, tuple(0.5 * np.array([0.8, -0.36, -0.48])), tuple(
             np.cross(e, (0.8, -0.36, -0.48)) * -G), (0.05, 0.04, 0.06)
         axis = tuple(e)
-    body = Body(x, 2.0, Box(half))
-    model = make_model([body], gravity, [Hinge(0, WORLD, place, axis)])
+    w = -1.5                                                 # it is pushed as it is let go
+    spin = w if d == 2 else tuple(w * np.array(axis))
+    v = (0.0, w * 0.5) if d == 2 else tuple(np.cross(spin, x))
+    more = [Hinge(0, WORLD, tuple(0.2 * np.array(axis)), axis)] if hinges == 2 else []   # on the same axis: a loop
+    model = make_model([Body(x, 2.0, Box(half), v=v, omega=spin)], gravity, [Hinge(0, WORLD, place, axis), *more])
+    sign = np.sign(np.dot(gravity, v))                       # towards the vertical
     I = (np.array(model.bodies[0].inertia) @ np.square(axis) if d == 3 else model.bodies[0].inertia) + 2.0 * 0.25
     rate, limits = np.sqrt(2.0 * G * 0.5 / I), []
     errors = []
     for steps in (500, 1000):
         state, _ = run(product, model, T, steps, **settings)
-        angle = pendulum_angle(rate, 0.5 * np.pi, T)
+        angle = pendulum_angle(rate, 0.5 * np.pi, T, -sign * abs(w))
         down = np.array(gravity) / G
         out = np.array(x) / 0.5
         errors.append(np.linalg.norm(state.x[0] - 0.5 * (np.cos(angle) * down + np.sin(angle) * out)))
@@ -175,24 +186,43 @@ def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings
 
 
 @every
+def test_two_hinged_rods_that_turn_as_one_go_on_in_a_circle(product, settings):
+    """Without gravity.  The second rod has no rate relative to the first."""
+    T, steps, w = 1.0, 1000, 2.0
+    rods = [Body((x, 0.0), 1.0, Box((0.25, 0.05)), v=(0.0, w * x), omega=w) for x in (0.25, 0.75)]
+    model = make_model(rods, (0.0, 0.0), [Hinge(0, WORLD, (0.0, 0.0)), Hinge(1, 0, (0.5, 0.0))])
+    state, _ = run(product, model, T, steps, **settings)
+    circle = np.outer((0.25, 0.75), (np.cos(w * T), np.sin(w * T)))
+    assert np.max(np.abs(state.x - circle)) <= 0.75 * by_order(w, T, T / steps)[1] + spacings(product, steps)
+    assert np.allclose(state.omega, w, atol=w * by_order(w, T, T / steps)[1] + spacings(product, steps))
+
+
+@every
 def test_two_rods_swing_as_one_that_is_welded_together(product, settings):
-    T, steps = 0.5, 500
-    rod = lambda x: Body((x, 0.0), 1.0, Box((0.25, 0.05)))
+    """The second rod lies along its second axis, so that the angles differ."""
+    T, steps, turn = 0.5, 500, 0.5 * np.pi
+    rods = [Body((0.25, 0.0), 1.0, Box((0.25, 0.05))), Body((0.75, 0.0), 1.0, Box((0.05, 0.25)), q=turn)]
     long = Body((0.5, 0.0), 2.0, Box((0.5, 0.05)))
-    two = make_model([rod(0.25), rod(0.75)], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.5, 0.0))])
+    two = make_model(rods, (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.5, 0.0))])
     one = make_model([long], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
     first, second = (run(product, model, T, steps, **settings)[0] for model in (two, one))
     rate = np.sqrt(1.5 * G)
     allowed = by_order(rate, T, T / steps)[1] + spacings(product, steps)
     assert np.linalg.norm(0.5 * (first.x[0] + first.x[1]) - second.x[0]) <= allowed
-    assert abs(first.q[0] - first.q[1]) <= 2.0 * allowed
+    assert abs(first.q[0] + turn - first.q[1]) <= 2.0 * allowed
 
 
 @every
-def test_a_weld_holds_a_beam_in_the_wall(product, settings):
-    model = make_model([Body((0.5, 0.0), 1.0, Box((0.5, 0.05)))], (0.0, -G), [Weld(0, WORLD, (0.0, 0.0))])
+@pytest.mark.parametrize("welds", [1, 2])
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_weld_holds_a_turned_beam_in_the_wall(product, settings, d, welds):
+    place = (0.0,) * d
+    beam = (Body((0.5, 0.0), 1.0, Box((0.05, 0.5)), q=0.5 * np.pi) if d == 2 else
+            Body((0.5, 0.0, 0.0), 1.0, Box((0.05, 0.5, 0.06)), q=(np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))))
+    model = make_model([beam], tuple(-G * np.eye(d)[-1]), [Weld(0, WORLD, place)] * welds)
     state, _ = run(product, model, 0.5, 500, **settings)
-    assert np.max(np.abs(state.x[0] - (0.5, 0.0))) <= SOFT and abs(state.q[0]) <= 2.0 * SOFT
+    assert np.max(np.abs(state.x[0] - beam.x)) <= SOFT
+    assert np.max(np.abs(state.q[0] - model.bodies[0].q)) <= 2.0 * SOFT
 
 
 @every
@@ -308,15 +338,17 @@ def test_a_body_rests_on_a_tilted_plane_in_space(product, settings, shape):
 
 
 @pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)
-def test_a_joint_tells_the_force_of_a_pendulum(product):
+@pytest.mark.parametrize(("ends", "sign"), [((0, WORLD), 1.0), ((0, 1), 1.0), ((1, 0), -1.0)])
+def test_a_joint_tells_the_force_of_a_pendulum(product, ends, sign):
     """A hinge carries a quarter of the weight of a rod that is let go level, and 5/2 sin θ of it θ below."""
-    model = make_model([Body((0.5, 0.0), 2.0, Box((0.5, 1e-3)))], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
+    wall = Body((-1.0, 0.0))
+    model = make_model([Body((0.5, 0.0), 2.0, Box((0.5, 1e-3))), wall], (0.0, -G), [Hinge(*ends, (0.0, 0.0))])
     for steps in (1, 500):
         state, pushes = run(product, model, steps * 1e-3, steps)
         angle = state.q[0]
         out, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-        F = 2.0 * G * (2.5 * np.sin(angle) * out + 0.25 * np.cos(angle) * across)
-        assert [(push.a, push.b, push.joint) for push in pushes] == [(0, WORLD, 0)]
+        F = sign * 2.0 * G * (2.5 * np.sin(angle) * out + 0.25 * np.cos(angle) * across)
+        assert [(push.a, push.b, push.joint) for push in pushes] == [(*ends, 0)]
         assert pushes[0].F == pytest.approx(F, abs=2.0 * G * 2.5 * (3.9 * 1e-3 + 2e-3))
 
 

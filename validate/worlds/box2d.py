@@ -77,14 +77,14 @@ def refuses(model):
 
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
-    """Make a World.  ahead: share of a step by which the first velocities lag."""
+    """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, substeps, ahead)
         return world._replace(state=lambda: lift(world.state()))
     model = with_plain_springs(model)
     world = new_world(module(), model.gravity)
-    bodies = add_bodies(world, model, ahead * dt)
+    bodies = add_bodies(world, model, ahead * dt / substeps)
     joints = add_joints(world, model, bodies)
     clock = [0]
     state = lambda: State(np.array([tuple(body.position) for body in bodies], float),
