@@ -1,4 +1,4 @@
-"""Validation: scenes held against truth and engines, measured, and reported."""
+"""Validation: scenes compared with reference solutions and engines, measured, and reported."""
 
 from .subject.copies import use_the_one_of_this_notebook
 

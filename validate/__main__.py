@@ -4,6 +4,7 @@ changed, `validate audit` whether a report follows from its raw rows, `validate 
 `validate piles` and `validate targets` time our code against the engines.
 """
 
+import json
 import os
 from contextlib import contextmanager
 from math import isfinite
@@ -18,7 +19,7 @@ from solutions.checks import BadInput
 
 from .products import PRODUCTS, PYBULLET, product_named
 from .run.processes import Ended, alone_in, ending_once, one_sentence, workers
-from .run.store import SUBSET, lessons_of, stored_report, writable
+from .run.store import FULL_RUN, SUBSET, lessons_of, report_of_this_version, stored_report, writable, write_text
 from .subject import copies, modules, needs
 
 HELP = (
@@ -94,7 +95,7 @@ def own_engines(files, named, scenes, quick, out):
 
 @contextmanager
 def on_cluster(executor, of):
-    """A Cluster for the length of the block; None without an address."""
+    """Yield a Cluster for the duration of the block; None without an address."""
     if executor is None:
         yield None
         return
@@ -152,8 +153,9 @@ def compare(
 ):
     """Print what changed between two reports; exit with 1 when something became worse."""
     from .report.compare import KINDS, changes
+    before, after = stored_report(old), stored_report(new)
     try:
-        found = changes(stored_report(old), stored_report(new))
+        found = changes(before, after)
     except (KeyError, TypeError, ValueError):
         raise BadInput("one of the reports", "of another version of the workbook", "make it again") from None
     for kind in KINDS:
@@ -173,28 +175,48 @@ def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = 
     Exit with 1 when something differs.
     """
     from .report.audit import audit as check
+    content = report_of_this_version(report)
     try:
-        problems, counts = check(report, stored_report(report))
+        problems, counts = check(report, content)
     except (KeyError, TypeError, AttributeError, IndexError):
-        raise BadInput(f"report {str(report)!r}", "of another version of the workbook", "make it again") from None
+        raise BadInput(f"report {str(report)!r}", "with parts missing", "make it again") from None
     for problem in problems:
         console.print(f"✗ {problem}", highlight=False, markup=False, soft_wrap=True)
+    say_measured(content)
     checked = ", ".join(f"{count} {what}" for what, count in counts.items())
     console.print(f"{len(problems)} differences in {checked}.", highlight=False, soft_wrap=True)
     raise typer.Exit(1 if problems else 0)
+
+
+def say_measured(report):
+    """Print each limit and tolerance of a report that was measured and not derived."""
+    from .report.words import measured_limits
+    for place, why in measured_limits(report["scenes"], report["stability"]):
+        console.print(f"· measured, not derived: {place}: {why}", highlight=False, markup=False, soft_wrap=True)
 
 
 @app.command("summary")
 def summary(
     report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report"),
     into: Annotated[Path | None, typer.Option(help=f"Put it between the marks {RESULTS} of this file.")] = None,
+    keep: Annotated[bool, typer.Option("--keep", help="Keep it, for quick reports to show beside their own.")] = False,
 ):
     """Print the main results of a report as a table in Markdown, one line per lesson."""
-    from .report.summary import by_lesson
-    text = by_lesson(stored_report(report))
+    from .report.summary import by_lesson, in_short
+    content = report_of_this_version(report)
+    if keep and content["run"]["mode"] != "full":
+        raise BadInput(f"report {str(report)!r}", "of a quick run", "keep the results of a full one")
+    text = by_lesson(content)
+    if keep:
+        write_text(FULL_RUN, json.dumps(in_short(content), ensure_ascii=False, indent=1) + "\n")
     if into is None:
         print(text, end="")
-        return
+    else:
+        put_between_marks(into, text)
+
+
+def put_between_marks(into, text):
+    """Replace what stands between two marks RESULTS in a file.  Raises BadInput without them."""
     try:
         head, mark, rest = into.read_text(encoding="utf-8").partition(RESULTS)
         _, closing, tail = rest.partition(RESULTS)
@@ -210,6 +232,7 @@ def limits(report: Annotated[Path, typer.Argument(help="Folder of a report.")] =
     """Print how many times larger than the error the limits of a report are, and its loosest curves."""
     from .report.limits import show
     show(report)
+    say_measured(report_of_this_version(report))
 
 
 @app.command("piles")
@@ -250,10 +273,9 @@ def loadable_scenes():
 
 
 def select_scenes(scenes, lessons):
-    """(names, {name: BadInput}): the scenes that were asked for, all of them when nothing was, and those that do not
-    load.
+    """Return (names, {name: BadInput}): the requested scenes, or all of them, and those that do not load.
 
-    Raises BadInput for a name that is none, and for a named scene that does not load.
+    Raises BadInput for an unknown name, and for a requested scene that does not load.
     """
     for name in lessons:
         modules.bind(name)
@@ -266,7 +288,7 @@ def select_scenes(scenes, lessons):
 
 
 def require_answers(of, names):
-    """Raises BadInput when answers are asked for that are not there."""
+    """Raise BadInput if the requested answers do not exist."""
     folder = modules.subject_folder(of)
     lessons = {r.who.lesson for n in names for r in modules.bind_scene(n).our_runners} | set(lessons_of(names))
     if missing := sorted(f"{lesson}.py" for lesson in lessons if not (folder / f"{lesson}.py").is_file()):
@@ -327,7 +349,10 @@ def overrides(pairs, names):
 
 
 def value_of(name, text, known):
-    """The value of a parameter, of the type of its known values; a word must be one of them.  Raises BadInput."""
+    """Return the value of a parameter, of the type of its known values.
+
+    A word must be one of them.  Raises BadInput.
+    """
     kind = type(known[0])
     try:
         value = kind(text)

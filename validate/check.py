@@ -16,8 +16,9 @@ class Finding(NamedTuple):
     quantity: str            # the measured quantity [unit]
     predicted: float         # the value from theory
     measured: float          # the value from the experiment
-    tolerance: float         # derived before the experiment, in the unit of the quantity
+    tolerance: float         # derived before the experiment, or measured; in the unit of the quantity
     observation: str         # the result of the experiment, in one sentence
+    tolerance_from: str = ""  # the measurement that the tolerance was taken from; empty where it was derived
 
     @property
     def holds(self):
@@ -37,6 +38,15 @@ class Verdict(StrEnum):
     DEPARTS = "departs"                      # no theory predicted this
     UNDECIDED = "undecided"                  # too coarse to judge, or not recorded
     NOT_ATTEMPTED = "not attempted"          # the exercise has no answer yet
+    UNFINISHED = "does not arrive"           # it does not come to its end, as the scene says
+    REFERENCE = "reference"                  # the truth is a run of this engine: nothing is judged
+
+
+class Whose(StrEnum):
+    """Whose choice a departure from the truth is."""
+    LAW = "its law"                          # of the method, or of the engine with the option that names the runner
+    DEFAULT = "its default"                  # the engine has another setting without it
+    SET_UP = "our set-up"                    # another set-up of the scene removes it; no scene here may have one
 
 
 class Role(StrEnum):
@@ -47,7 +57,7 @@ class Role(StrEnum):
 
 
 def is_right(curve):
-    """True, False, or None where nothing can be said, for the stored record of a curve."""
+    """Return True, False, or None if undecided, for the stored record of a curve."""
     return {Verdict.AGREES: True, Verdict.FOLLOWS_OWN_LAW: True, Verdict.DEPARTS: False}.get(Verdict(curve["verdict"]))
 
 

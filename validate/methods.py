@@ -124,11 +124,12 @@ TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_
          COMPOSED_SPLITTING, COMPOSED_MIDPOINT)
 
 VARIANT_LINES = {"": "-", "default": ":"}
-OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"))  # line, marker in place of the engine's own
+# line, marker in place of the engine's own
+OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"), ("-.", "^"))
 
 
 def engine_look(engine, engines):
-    """(colour, marker, line) of one of a scene's engines; curves of several variants may lie on each other."""
+    """Return (colour, marker, line) of one of a scene's engines; curves of several variants may coincide."""
     colour, marker = engine.product.colour, engine.product.marker
     if engine.variant in VARIANT_LINES:
         return colour, marker, VARIANT_LINES[engine.variant]

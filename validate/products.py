@@ -26,12 +26,12 @@ class Product:
 
     @property
     def adapter(self):
-        """Its module with empty_world() → EngineRun, and SWITCHES."""
+        """Return its module with empty_world() → EngineRun, and SWITCHES."""
         return importlib.import_module(f"validate.{'engines' if self.by_hand else 'worlds'}.{self.file}")
 
     @property
     def world(self):
-        """Its module with build(model, dt, **settings) → World, and refuses(model)."""
+        """Return its module with build(model, dt, **settings) → World, and refuses(model)."""
         return importlib.import_module(f"validate.worlds.{self.file}")
 
     def installed(self):
@@ -45,8 +45,8 @@ class Product:
 PYMUNK = Product("pymunk", 2, "chipmunk", "#000000", "x", "pymunk", "pip install pymunk")
 PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
                    "leave --engine out: its recorded traces stand in", recorded=True)
-MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core", "pip install -e '.[witness]' adds it",
-                 optional=True)
+MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core",
+                 "pip install mujoco-core, where it has a wheel", optional=True)
 BOX2D = Product("pyb2d3", 2, "box2d", "#7A5C00", "2", "pyb2d3", "pip install -e '.[opponents]' adds it",
                 optional=True, by_hand=False)
 PRODUCTS = (PYMUNK, PYBULLET, MUJOCO, BOX2D)

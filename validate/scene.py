@@ -5,13 +5,14 @@ A scene is a file in `validate/scenes/<lesson>/` that ends with one `SCENE = Sce
 """
 
 from collections.abc import Callable
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from solutions.checks import BadInput
 
+from .check import Whose
 from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
 
 EXACT = "exact"              # an order: no error but round-off
@@ -37,10 +38,12 @@ class Engine(NamedTuple):
     make: Callable           # (p, dt) → EngineRun
     settings: str            # what was set, and to what, for people
     most_steps: int | None = None            # the largest number of steps that is worth the engine's time
+    substeps: int = 1                        # steps in a call from Python: `make` gives a world that makes so many
+    recorded_as: str | None = None           # the variant whose recorded runs are bitwise its own
 
     @property
     def label(self):
-        """Its name for people."""
+        """Return its name for readers."""
         return f"{self.product}, {self.variant}" if self.variant else self.product.name
 
 
@@ -55,6 +58,7 @@ class Departure(NamedTuple):
     """Why a method or an engine departs from the truth, and the law that it follows instead."""
     reason: str              # the end of a sentence that begins with "because"
     own_law: Callable        # (p, t) → the same quantities as truth(p, t); the truth itself where it does not depart
+    whose: Whose             # its law, its default, or our set-up
 
 
 class Prediction(NamedTuple):
@@ -71,7 +75,10 @@ class Runner:
     limit: Callable          # (p, dt) → largest relative error; or {order: that}, of which it takes its own
     predicted: Callable | str    # (p, dt) → Prediction, or None for a step that is too long; or why there is none
     departure: Departure | None = None   # where it follows another law than the truth
+    measured: str = ""                   # what its limit was measured on; empty where theory gives it
+    unfinished: Callable | None = None   # (p) → why it does not come to its end in this case, or ""; it is not run then
     supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
+    is_truth: Callable | None = None     # (p) → bool: whether a run of its engine is the truth of this case
     in_quick: bool = True                # False: only --full runs it
     slow_cases: tuple = ()               # names of cases in which only --full runs it
     compiled_in_quick: bool = False      # it takes longer in plain Python than numba does to compile it
@@ -82,13 +89,20 @@ class Runner:
         thing = f"the runner {self.who.label!r}"
         for f in fields(self):
             check_type(f"field {f.name!r} of {thing}", getattr(self, f.name), f.type)
+        if self.departure and not isinstance(self.departure.whose, Whose):
+            raise BadInput(f"field 'departure' of {thing}", f"of {self.departure.whose!r}",
+                           f"choose from: {', '.join(map(str, Whose))}")
         if self.predicted == "":
             raise BadInput(f"field 'predicted' of {thing}", "empty", "predict its error, or say why no theory does")
 
     @property
     def label(self):
-        """Its name for people."""
+        """Return its name for readers."""
         return self.who.label
+
+    def is_reference(self, p):
+        """Return whether the truth of this case is a run of its own engine: such a curve counts nowhere."""
+        return self.is_truth is not None and bool(self.is_truth(p))
 
     @property
     def is_engine(self):
@@ -113,6 +127,18 @@ def ours(method, *, order=None, **about):
 def engine(product, variant, make, settings, *, most_steps=None, **about):
     """Return the Runner of an engine with these settings."""
     return Runner(who=Engine(product, variant, make, settings, most_steps), **about)
+
+
+def in_substeps(runner, substeps):
+    """Return the same runner of pybullet, whose own loop makes so many steps in a call from Python: `numSubSteps`.
+
+    The motion is bitwise the same, so that one record serves both.  It is a set-up without forces written in Python.
+    """
+    one = runner.who
+    variant = f"{one.variant}, {substeps} substeps" if one.variant else f"{substeps} substeps"
+    return replace(runner, who=one._replace(
+        variant=variant, make=one.product.adapter.substepped(one.make, substeps), substeps=substeps,
+        recorded_as=one.label, settings=f"the same, numSubSteps {substeps}: bitwise the same motion in fewer calls"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +197,7 @@ class Scene:
 
     @property
     def parameters(self):
-        """p of the first case."""
+        """Return p of the first case."""
         return next(iter(self.cases.values()))
 
     @property
@@ -213,7 +239,7 @@ def check_type(thing, value, kind):
 
 
 def field_names(required=False):
-    """Names of the fields of a Scene."""
+    """Return names of the fields of a Scene."""
     return [f.name for f in fields(Scene)
             if not required or (f.default is MISSING and f.default_factory is MISSING)]
 
@@ -224,7 +250,7 @@ def no_limit(p, dt):
 
 
 def by_order(rate, T, dt):
-    """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ per step.
+    """Return {order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ per step.
 
     rate [1/s] is the fastest rate at which anything in the scene changes.  T/dt steps add up to  rate T (rate dt)ᵏ.
     Round-off adds up to T/dt spacings at worst.  Newton's method stops at 1e-12.
@@ -234,7 +260,7 @@ def by_order(rate, T, dt):
 
 
 def parameter_table(p):
-    """[(name, value, meaning)] of the parameters of a case; the meaning is the text in the annotation of the field."""
+    """Return [(name, value, meaning)] of the parameters of a case; the meaning is the annotation of the field."""
     hints = get_type_hints(type(p), include_extras=True)
     return [(name, value, getattr(hints[name], "__metadata__", ("",))[0])
             for name, value in p._asdict().items() if isinstance(value, (int, float, str))]

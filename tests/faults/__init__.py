@@ -28,16 +28,19 @@ class Fault(NamedTuple):
 
 
 def collection(lesson):
-    """Return fault(function, old, new, wrong, missed="", of=lesson), which keeps a Fault, and the list of all.
+    """Return fault(function, old, new, wrong, missed="", of=lesson), wrong_answer(edit, missed=""), and their Faults.
 
-    `of` names a given module in place of the lesson.
+    `of` names a given module in place of the lesson.  An edit of tests/mutants that is also a fault stands there only.
     """
     faults = []
 
     def fault(function, old, new, wrong, missed="", of=lesson):
         faults.append(Fault(of, function, old, new, wrong, missed))
 
-    return fault, faults
+    def wrong_answer(edit, missed=""):
+        fault(edit.name, edit.old, edit.new, edit.story, missed)
+
+    return fault, wrong_answer, faults
 
 
 def faults_of(lesson):

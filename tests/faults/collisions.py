@@ -1,8 +1,9 @@
 """Lesson 6: wrong sides, nearest features, times and cases at the end."""
 
+from ..mutants import collisions as answers
 from . import collection
 
-fault, FAULTS = collection("collisions")
+fault, wrong_answer, FAULTS = collection("collisions")
 
 fault("plane_distance", "p @ plane.n + plane.d", "p @ plane.n - plane.d",
       "the plane is on the other side of the origin")
@@ -33,26 +34,25 @@ fault("find_intersections", "waiting.append((i, down_b + 1))", "waiting.append((
       "a branch of the tree is never visited")
 fault("separating_edge", "gap = np.minimum(gap, n @ (b[j] - a[i]))", "gap = n @ (b[j] - a[i])",
       "only the last corner counts")
-fault("separating_edge", "gap = np.minimum(gap, n @ (b[j] - a[i]))", "gap = np.minimum(gap, n @ (b[j] - a[0]))",
-      "every edge is measured from the first corner")
-fault("clip", "s_i / (s_i - s_j)", "s_i / (s_i + s_j)", "the crossing is outside the edge")
+wrong_answer(answers.FIRST_CORNER_ONLY)
+wrong_answer(answers.SUM_OF_DISTANCES)
 fault("clip", "if s_i <= 0.0:", "if s_i < 0.0:", "corners exactly on the line are cut off")
 fault("box_separation", "- half_width(b, axis)", "- half_width(a, axis)", "the second box has the size of the first")
 fault("box_separation", "range(15)", "range(6)", "pairs of edges are never tried")
 fault("gjk", "support(b, v)", "support(b, -v)", "the support of the second body is on its far side")
-fault("repulsion", "(1.0 / g - 1.0 / reach)", "(1.0 / g)", "the field ends with a jump at its reach")
+wrong_answer(answers.FIELD_WITH_A_JUMP)
 fault("repulsion", "g = distance - radius", "g = distance", "the obstacle is a point")
 fault("steer", "2.0 * (radius - offset)", "(radius - offset)", "it moves aside by half of what it needs")
 fault("steer", "tau <= 0.0 or", "", "it steers around what it has passed")
 fault("ball_contact", "np.sqrt(r @ r) - r_a - r_b", "np.sqrt(r @ r) - r_a", "the gap leaves out the second radius")
 
 # drawn up without a look at those above
-fault("plane_impact_time", "if after < 0.0:", "if after <= 0.0:", "a ball that ends on a plane does not touch it")
+wrong_answer(answers.MISSES_THE_END)
 fault("plane_impact_time", "t + dt * before", "dt * before", "times count from the beginning of the step")
-fault("cylinder_impact_time", "s > 1.0", "s >= 1.0", "a ball that ends on a cylinder does not touch it")
+wrong_answer(answers.CYLINDER_MISSES_THE_END)
 fault("edge_axis_distance", "y_a[0] == y_b[0] and", "y_a[0] == y_b[0] or", "an edge at one height is taken for a point")
-fault("ball_box", "if depth[i] < 0.0:", "if depth[i] <= 0.0:", "a centre on a face leaves along no axis of the box")
-fault("ball_box", "y[i] >= 0.0", "y[i] > 0.0", "from the very centre it leaves on the other side")
+wrong_answer(answers.FACE_IS_OUTSIDE)
+wrong_answer(answers.SIGN_OF_ZERO)
 fault("ball_box", "x + depth[i] * n", "x + (depth[i] + r) * n", "the point on the box is outside it")
 fault("all_pairs", "range(i + 1, len(low))", "range(i + 1, len(low) - (i == 0))",
       "the first and the last box are never compared")

@@ -1,11 +1,12 @@
 """Lesson 9: wrong arms, laws of complementarity, cones, springs and memory."""
 
+from ..mutants import contact as answers
 from . import collection
 
-fault, FAULTS = collection("contact")
+fault, wrong_answer, FAULTS = collection("contact")
 
 fault("contact_rows", "(contacts.b[k], -1.0)", "(contacts.b[k], 1.0)", "both bodies are pushed the same way")
-fault("contact_rows", "r_x * d_y - r_y * d_x", "r_x * d_y + r_y * d_x", "the lever of a contact has the wrong sign")
+wrong_answer(answers.PRODUCTS_ADDED)
 fault("contact_rows", "(2 * k + 1, -n_y, n_x)", "(2 * k + 1, n_y, -n_x)", "tangents point the other way")
 fault("delassus_matrix", "(G * w)", "(G * np.sqrt(w))", "each body counts with the root of its inverse mass")
 fault("complementarity_residual", "np.minimum(np.diag(A) * lam, A @ lam + b)", "np.minimum(0.0, A @ lam + b)",
@@ -22,8 +23,7 @@ fault("cone_residual", "limit = mu[n // 2] * J[n] if", "limit = 1.1 * mu[n // 2]
       "the cone is 10 % too wide")
 fault("cone_residual", "A[n, n] * np.abs(J_n - J[n])", "A[n, n] * np.maximum(0.0, J_n - J[n])",
       "a contact that pushes too much is no error")
-fault("cone_sweep", "limit = mu[n // 2] * J[n] if", "limit = mu[0] * J[n] if",
-      "all contacts have the friction of the first")
+wrong_answer(answers.FIRST_FRICTION_ONLY)
 fault("cone_sweep", "np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)",
       "np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], 0.0), limit)", "friction acts one way only")
 fault("contact_forces", "np.ascontiguousarray(G.T) @ F", "0.5 * np.ascontiguousarray(G.T) @ F",

@@ -1,11 +1,11 @@
 """Lesson 3: cones, sides, times of events, and what happens without load."""
 
+from ..mutants import friction as answers
 from . import collection
 
-fault, FAULTS = collection("friction")
+fault, wrong_answer, FAULTS = collection("friction")
 
-fault("normal_force", "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)",
-      "a support holds a body that is pulled away from it")
+wrong_answer(answers.HOLDS_WHAT_LIFTS)
 fault("static_friction", "-limit / size * F_t", "-limit / size * F_t * 0.9", "friction at its limit is 10 % too small")
 fault("static_friction", "-F_t if size <= limit", "-F_t if size <= 1.1 * limit", "it holds 10 % beyond the cone")
 fault("kinetic_friction", "-limit / speed * v_t", "-limit / np.sqrt(v @ v) * v_t",
@@ -17,8 +17,7 @@ fault("incline_acceleration", "g * (np.sin(theta) -", "0.99 * g * (np.sin(theta)
 fault("friction_impulse", "-np.minimum(limit, m * speed) / speed * v_t",
       "-np.minimum(limit, m * speed) * v_t / np.sqrt(1e-4 + speed * speed)",
       "friction fades at low speed: regularised")
-fault("friction_impulse", "if m * speed <= limit", "if speed <= limit",
-      "a heavy body is stopped as easily as a light one")
+wrong_answer(answers.NO_MASS)
 fault("pyramid_impulse", "np.minimum(limit, m * (v_t @ t_2))", "np.minimum(limit, m * np.abs(v_t @ t_2))",
       "along the second axis friction points one way only")
 fault("pyramid_impulse", "limit = cone_radius(mu, j_n)", "limit = cone_radius(mu, j_n) / np.sqrt(2.0)",
@@ -51,8 +50,7 @@ fault("incline_acceleration", "np.sin(theta) <= cone", "np.sin(theta) < cone",
       "at exactly the limit a slope does not hold",
       missed="sin θ and μ cos θ are equal only to round-off, which decides")
 fault("slip_direction", "pull > cone_radius", "pull >= cone_radius", "without load and pull a block slips to nowhere")
-fault("slip_direction", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)",
-      "the limit of static friction leaves out a drive along the normal")
+wrong_answer(answers.GRAVITY)
 fault("kinetic_friction_step", "normal_force(middle, p.n)", "normal_force(early, p.n)",
       "the load is that of the beginning of the step")
 fault("contact_step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)",

@@ -1,16 +1,16 @@
 """Lesson 7: wrong arms, signs, bodies, cones and times."""
 
+from ..mutants import impulses as answers
 from . import collection
 
-fault, FAULTS = collection("impulses")
+fault, wrong_answer, FAULTS = collection("impulses")
 
 fault("kinematic_response", "(1.0 + e) * v_n", "(1.0 + 0.99 * e) * v_n", "restitution is 1 % too small")
 fault("kinematic_response", "v if v_n >= 0.0 else", "v if v_n > 0.5 else", "a ball that leaves slowly is sent back")
 fault("penalty_force", "np.maximum(0.0, -stiffness * phi - damping * v_n)", "-stiffness * phi - damping * v_n",
       "the spring pulls a ball that leaves")
 fault("penalty_force", "damping * v_n", "damping * np.minimum(0.0, v_n)", "the damper works on the way in only")
-fault("relative_velocity_2d", "return a.v + turn_a - b.v - turn_b", "return a.v + turn_a - b.v + turn_b",
-      "the second body turns the other way")
+wrong_answer(answers.ADDS_ROTATION_OF_B)
 fault("impulse_size", "-(1.0 + e) * u_n / k_n", "-(1.0 + e * e) * u_n / k_n",
       "restitution of energies for that of velocities")
 fault("effective_inverse_mass_2d", "lever_b**2 * b.inv_inertia", "lever_b**2 * a.inv_inertia",
@@ -31,7 +31,7 @@ fault("energy_change", "0.5 * (J @ times(K, J))", "(J @ times(K, J))", "the seco
 fault("gap_multiplier", "phi / dt + u_n", "u_n", "a gap that is still open is closed at once")
 fault("impact_time", "np.sqrt(squared)", "np.sqrt(v_n * v_n)", "acceleration does nothing before the impact")
 fault("impact_time", "-(v_n + s) / a_n", "-2.0 * (v_n + s) / a_n", "what flies up comes back twice as late")
-fault("bouncing_time", "a_n * (1.0 - e)", "a_n * (1.0 - e * e)", "the flights shrink by e² each")
+wrong_answer(answers.RESTITUTION_SQUARED)
 fault("bouncing_time", "if v_n <= 0.0:", "if v_n <= 0.1:", "small bounces are left out")
 fault("position_projection_step", "x = x - phi * p.n", "x = x - 2.0 * phi * p.n",
       "the ball is mirrored, not moved back")
@@ -63,8 +63,7 @@ fault("bouncing_time", "if a_n >= 0.0 or e == 1.0:", "if e == 1.0:",
       "a ball that is pulled away comes to rest on its plane")
 fault("gap", "(x - p.point) @ p.n", "x @ p.n - p.point @ np.abs(p.n)",
       "right for normals without negative coordinates only")
-fault("position_projection_step", "if phi < 0.0:", "if phi < 0.0 and v @ p.n < 0.0:",
-      "a ball inside that leaves is not moved out")
+wrong_answer(answers.ONLY_APPROACHING_BALLS)
 fault("backtracking_step", "p.e) <= left", "p.e) <= dt",
       "bounces that last longer than what is left of the step are cut off")
 fault("solve_impacts", "n[i], K, u_sep[i], mu", "n[i], K, u_sep[0], mu", "all points separate as fast as the first")

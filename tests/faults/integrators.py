@@ -1,26 +1,24 @@
 """Lesson 1: wrong slopes, times, weights and halves."""
 
+from ..mutants import integrators as answers
 from . import collection
 
-fault, FAULTS = collection("integrators")
+fault, wrong_answer, FAULTS = collection("integrators")
 
 fault("euler_step", "x + dt * v, v", "x + dt * v + 0.05 * dt * dt * acceleration(t, x, v, p), v",
       "a tenth of the free-fall term is in the position: Euler that errs less")
-fault("midpoint_step", "acceleration(t + 0.5 * dt, x_mid", "acceleration(t, x_mid",
-      "the force of the middle is taken at the time of the beginning")
-fault("midpoint_step", "x + dt * v_mid, v", "x + dt * v, v", "the position goes along the slope at the beginning")
+wrong_answer(answers.MIDDLE_AT_OLD_TIME)
+wrong_answer(answers.V_AT_OLD)
 fault("rk4_step", "a4 = acceleration(t + dt,", "a4 = acceleration(t + 0.5 * dt,",
       "the last force is taken at the time of the middle")
-fault("rk4_step", "a3 = acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
-      "a3 = acceleration(t + 0.5 * dt, x + 0.5 * dt * v", "the third slope is evaluated at the place of the second")
+wrong_answer(answers.THIRD_SLOPE_FROM_FIRST)
 fault("rk4_step", "(a1 + 2.0 * a2 + 2.0 * a3 + a4)", "(a1 + 2.02 * a2 + 1.98 * a3 + a4)",
       "the weights of the middle slopes are 1 % off, with the same sum")
 fault("average_velocity_step", "0.5 * dt * (v + v_new)", "dt * v_new", "it moves with the new velocity only")
 fault("symplectic_euler_step", "v = v + dt * acceleration(t, x, v, p)",
       "v = v + dt * acceleration(t, x + 0.5 * dt * v, v, p)", "the force is that of the middle: leapfrog, of order 2")
-fault("verlet_step", "x_new, v + dt * a, p)", "x_new, v, p)", "the last force takes the old velocity for the new one")
-fault("verlet_step", "a_new = acceleration(t + dt,", "a_new = acceleration(t,",
-      "the last force is taken at the old time")
+wrong_answer(answers.LAST_AT_OLD_VELOCITY)
+wrong_answer(answers.LAST_AT_OLD_TIME)
 fault("blanes_moan_step", "t += drift * dt", "t += 0.0", "the forces in a step are those of its beginning")
 fault("advance_adaptive", "rate -= 1.5 * share", "rate -= 1.515 * share",
       "the rate follows the distance 1 % too strongly")
@@ -33,8 +31,7 @@ fault("implicit_euler_step", "residual = w - v - dt * acceleration(t + dt,",
       "residual = w - v - dt * acceleration(t,", "the force at the end is taken at the time of the beginning")
 fault("implicit_midpoint_step", "2.0 * v_mid - v", "2.0 * v_mid - v + 0.01 * (v_mid - v)",
       "the velocity changes by 0.5 % too much in each step")
-fault("amplification_matrix", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0]], [x2[0], v2[0]]]",
-      "the matrix is transposed: rows for columns")
+wrong_answer(answers.TRANSPOSE)
 fault("spectral_radius", "return abs(half_trace) + np.sqrt(discriminant)", "return half_trace + np.sqrt(discriminant)",
       "the larger of two real eigenvalues, not that of the larger absolute value")
 fault("observed_order", "return np.sum(", "return 0.9 * np.sum(", "the order is 10 % too low")
@@ -45,5 +42,4 @@ fault("advance", "t + n * dt", "t", "every step begins at the time of the first"
 fault("trajectory", "t + n * dt", "t", "every step of a history begins at the time of the first")
 fault("trajectory", "ts = t + dt", "ts = dt", "the times of a history begin at 0")
 fault("advance_adaptive", "min(share / rate, end - t)", "share / rate", "the last step goes past the end")
-fault("verlet_step", "v + dt * a, p)", "v + 0.5 * dt * a, p)",
-      "the velocity in the last force is that of half a step: right without drag")
+wrong_answer(answers.VELOCITY_OF_HALF_A_STEP)

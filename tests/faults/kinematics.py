@@ -1,8 +1,9 @@
 """Lesson 11: wrong joints, frames, branches and limits."""
 
+from ..mutants import kinematics as answers
 from . import collection
 
-fault, FAULTS = collection("kinematics")
+fault, wrong_answer, FAULTS = collection("kinematics")
 
 fault("joint_positions", "phi += theta[k]", "phi = theta[k]", "angles are from the x axis, not from the link before")
 fault("joint_positions", "x[k, 1] + lengths[k] * np.sin(phi)", "x[k, 1] + lengths[0] * np.sin(phi)",
@@ -19,8 +20,7 @@ fault("solve_3r", "wrapped(phi - theta[0] - theta[1])", "wrapped(phi - theta[1])
       "the wrist leaves out the turn of the shoulder")
 fault("joint_frames", "quaternion_product(q, exponential(scaled(theta[k], axis)))",
       "quaternion_product(exponential(scaled(theta[k], axis)), q)", "joints turn about axes of the world")
-fault("jacobian_3d", "J[c + 3, k] = v[c], a[k, c]", "J[c + 3, k] = v[c], a[0, c]",
-      "all joints turn the end about the first axis")
+wrong_answer(answers.FIRST_AXIS_ONLY)
 fault("rotation_error", "quaternion_product(q_target, np.array((q[0], -q[1], -q[2], -q[3])))",
       "quaternion_product(np.array((q[0], -q[1], -q[2], -q[3])), q_target)", "the error is in the frame of the hand")
 fault("rotation_error", "2.0 * np.arctan2(size, d[0]) / size", "2.0", "the error is that of a small turn")

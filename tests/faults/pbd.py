@@ -1,11 +1,11 @@
 """Lesson 8: wrong shares, masses, signs and constraints that are met but wrong."""
 
+from ..mutants import pbd as answers
 from . import collection
 
-fault, FAULTS = collection("pbd")
+fault, wrong_answer, FAULTS = collection("pbd")
 
-fault("distance_constraint", "length - rest, r / length", "length - rest, r / rest",
-      "the gradient has not the length 1")
+wrong_answer(answers.GRADIENT_OVER_REST_LENGTH)
 fault("constraint_correction", "inv_mass[:, None] * gradients", "np.mean(inv_mass) * gradients",
       "heavy points move as far as light ones")
 fault("constraint_correction", "weight += inv_mass[k] * g * g", "weight += inv_mass[k] * np.abs(g)",
@@ -39,9 +39,8 @@ fault("effective_inverse_mass_at", "turn = unrotate(q, cross(r, n))", "turn = cr
       "the lever is taken in world coordinates")
 fault("apply_positional_impulse", "quaternion_update(q, turn, 1.0)", "quaternion_update(q, turn, 0.5)",
       "it turns half as far")
-fault("turning_rate", "2.0 / (turn[0] * dt) * turn[1:]", "2.0 / dt * turn[1:]",
-      "ω is that of a short turn: sin for tan")
-fault("volume_gradient", "cross(c, a) / 6.0", "cross(a, c) / 6.0", "one corner of each face pulls inwards")
+wrong_answer(answers.WITHOUT_SCALAR_PART)
+wrong_answer(answers.EXCHANGED)
 fault("volume_gradient", "V += dot(a, across)", "V += np.abs(dot(a, across))",
       "every face adds to the volume, whichever way it looks")
 fault("distance_constraint", "return length - rest,", "return 0.5 * (length * length - rest * rest) / rest,",
@@ -56,12 +55,11 @@ fault("newton_correction", "A[a, b] -= network.inv_mass[e] * bend", "A[a, b] -= 
       "the curvature moves an end by the mass of the other")
 fault("constraint_projection_step", "NEWTON_TOLERANCE * longest", "1e-5 * longest",
       "Newton's method stops at five digits")
-fault("distance_sweep", "w[i] * share, w[j] * share", "w[j] * share, w[i] * share",
-      "the heavy end of a link moves more")
-fault("distance_sweep", "network.stiffness[s]", "network.stiffness[0]", "all links are as stiff as the first")
+wrong_answer(answers.INVERSE_MASSES_EXCHANGED)
+wrong_answer(answers.FIRST_ONLY)
 fault("fold_constraint", "np.arctan2(dot(cross(N_c, N_d), e) / length,",
       "np.arctan2(np.abs(dot(cross(N_c, N_d), e)) / length,", "all folds are to one side")
-fault("ball_gap", "r / distance if", "r / obstacle.radius if", "the normal has the length 1 at the surface only")
+wrong_answer(answers.NORMAL_OVER_RADIUS)
 fault("keep_outside", "phi < 0.0 and inv_mass[k] > 0.0", "phi < 0.0", "immovable points are moved out")
 fault("compliant_multiplier", "/ (weight + alpha_scaled)", "/ (weight + 2.0 * alpha_scaled)",
       "each visit does too little, and many visits the same")

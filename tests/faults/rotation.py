@@ -1,15 +1,15 @@
 """Lesson 5: wrong frames, sides, halves and handedness."""
 
+from ..mutants import rotation as answers
 from . import collection
 
-fault, FAULTS = collection("rotation")
+fault, wrong_answer, FAULTS = collection("rotation")
 
-fault("skew", "[a[2], 0.0, -a[0]]", "[a[2], 0.0, a[0]]", "one entry of ω* has the other sign")
-fault("point_velocity", "v + cross(omega, r)", "v - cross(omega, r)", "a point of a body turns against the body")
-fault("total_load", "cross(points[i] - x, forces[i])", "cross(points[i], forces[i])",
-      "torque is about the origin, not about the centre of mass")
+wrong_answer(answers.SIGN_IN_SECOND_ROW)
+wrong_answer(answers.ROTATION_SUBTRACTED)
+wrong_answer(answers.AT_ORIGIN)
 fault("total_load", "F += forces[i]", "F = forces[i].copy()", "only the last force pushes")
-fault("angular_velocity", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)", "body and world are exchanged")
+wrong_answer(answers.WORLD_FOR_BODY)
 fault("state_derivative", "skew(omega) @ S.R", "S.R @ skew(omega)", "ω is taken in body coordinates")
 fault("state_derivative", "S.P / body.m", "S.P", "momentum for velocity: right for a kilogram")
 fault("matrix_update", "second -= dot(first, second) * first", "second -= 0.5 * dot(first, second) * first",
@@ -34,10 +34,10 @@ fault("rolling_step", "ball.radius * ball.radius / ball.I_body[0]", "ball.radius
       "the lever of friction counts once: right for a radius of 1 m")
 fault("supported_weight", "F[2] + max(0.0, -F[2])", "F[2] - F[2]",
       "the floor also pulls: it holds a ball that gravity lifts")
-fault("kinetic_energy", "unrotate(q, L)", "L", "the energy takes world components for body components")
+wrong_answer(answers.WORLD_COMPONENTS)
 fault("tumbling_rate", "(I_body[i] * I_body[j])", "(I_body[k] * I_body[k])",
       "the rate has the wrong moments below the line")
-fault("heavy_top_torque", "-e[1], e[0]", "e[1], -e[0]", "the top precesses the other way")
+wrong_answer(answers.TORQUE_REVERSED)
 fault("heavy_top_torque", "top.mgl *", "1.01 * top.mgl *", "the top is 1 % too heavy")
 fault("midpoint_free_rotation", "w = m / I_body\n            return", "w = start / I_body\n            return",
       "the body turns with ω of the beginning")
@@ -49,8 +49,8 @@ fault("midpoint_step", "L + 0.5 * dt * torque(t + dt, q, L, body)", "L + 0.5 * d
 fault("compose", "1.0 - 4.0 * SUZUKI", "1.0 - 3.96 * SUZUKI", "the shares of the step do not add up to 1")
 
 # drawn up without a look at those above
-fault("axis_angle_update", "if rate != 0.0:", "if rate > 1e-3:", "a slow body does not turn")
-fault("quaternion_update", "0.5 * dt", "0.5 * abs(dt)", "a step backwards turns forwards")
+wrong_answer(answers.SLOW_IS_AT_REST)
+wrong_answer(answers.SIGN_OF_DT_IGNORED)
 fault("intermediate_axis", ">= 0.0", "> 0.0", "the middle axis of a symmetric body may be its axis of symmetry")
 fault("average_rolling_step", "quaternion_product(turn, q)", "quaternion_product(q, turn)",
       "the ball turns about axes of its own")

@@ -2,7 +2,7 @@
 
 from . import collection
 
-fault, FAULTS = collection("simulator")
+fault, _, FAULTS = collection("simulator")
 
 fault("new_velocities_2d", "p.inv_inertia * tau", "p.inv_mass * tau",
       "torque over mass in place of the moment of inertia")

@@ -1,19 +1,19 @@
 """Lesson 2: wrong arms, ends, signs and terms that vanish at rest."""
 
+from ..mutants import springs as answers
 from . import collection
 
-fault, FAULTS = collection("springs")
+fault, wrong_answer, FAULTS = collection("springs")
 
-fault("universal_gravity", "distance**3", "distance**2", "the force falls with 1/r")
-fault("universal_gravity", "return G", "return -G", "masses repel each other")
+wrong_answer(answers.FALLS_WITH_1_OVER_R)
+wrong_answer(answers.REPELS)
 fault("air_force", "wind - k_v * v", "wind - 1.01 * k_v * v", "the air is 1 % too viscous")
-fault("air_force", "wind - k_v * v", "-k_v * v", "the wind does nothing")
+wrong_answer(answers.WITHOUT_WIND)
 fault("spring_tension", "k_d * rate", "k_d * np.abs(rate)", "the damper pulls while the spring is shortened, too")
 fault("spring_tension", "k * (length - rest)", "1.01 * k * (length - rest)", "springs are 1 % too stiff")
 fault("soft_constraint_force", "k_d * C_rate", "0.9 * k_d * C_rate", "the damper is 10 % too weak")
 fault("soft_contact_force", "if C >= 0.0:", "if C >= 0.01:", "the surface pushes from a distance of a centimetre on")
-fault("soft_contact_force", "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)",
-      "the surface pulls a body that leaves it fast")
+wrong_answer(answers.DAMPER_PULLS)
 fault("angular_spring_forces", "-k * turn / squared_c", "-k * turn / np.sqrt(squared_a * squared_c)",
       "the force on c has the mean arm for its own")
 fault("angular_spring_forces", "-(F_a + F_c), F_c", "-2.0 * F_a, F_c", "the hinge gets twice the force of one arm")
@@ -33,19 +33,17 @@ fault("spring_stiffness", "np.maximum(0.0, 1.0 - network.rest[s] / length)", "np
 fault("spring_stiffness", "D[s, a, b] = network.k_d[s] * nn", "D[s, a, b] = 0.5 * network.k_d[s] * nn",
       "half of the damping is explicit")
 fault("implicit_spring_network_step", "+ dt * network.k_v", "", "viscosity is not in the matrix")
-fault("implicit_spring_network_step", "dt * dt * K + dt * D", "0.5 * dt * dt * K + dt * D",
-      "the matrix has half of the stiffness: another method, which loses less energy")
+wrong_answer(answers.HALF_OF_THE_STIFFNESS)
 fault("conjugate_gradients", "enough = CG_TOLERANCE * CG_TOLERANCE * squared", "enough = 1e-4 * squared",
       "the step is solved to 1 % only")
 
 # drawn up without a look at those above
-fault("soft_contact_force", "if C >= 0.0:", "if C > 0.0:", "a surface that is just touched already pushes")
+wrong_answer(answers.FORCE_AT_TOUCH)
 fault("angular_spring_forces", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.where(turn > np.pi, 1.0, 0.0)",
       "angles above half a turn are brought back, those below minus half a turn are not")
-fault("angular_spring_forces", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))",
-      "at exactly half a turn it pushes to the other side",
-      missed="both ways round are equally long there, and round-off decides between them")
-fault("grid_pairs", "0 <= r + dr < rows", "r + dr < rows", "offsets to an earlier row leave the grid")
-fault("spring_forces", "network.rest[s]", "network.rest[0]", "all springs have the length of the first")
-fault("spring_stiffness", "network.k_d[s] * nn", "network.k_d[0] * nn", "all springs have the damper of the first")
+wrong_answer(answers.HALF_A_TURN,
+             missed="both ways round are equally long there, and round-off decides between them")
+wrong_answer(answers.NEGATIVE_INDEX)
+wrong_answer(answers.ONE_REST)
+wrong_answer(answers.ONE_DAMPER)
 fault("randomised", "2.0 * u - 1.0", "u", "what is drawn is above its value only")

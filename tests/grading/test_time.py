@@ -507,3 +507,61 @@ def test_a_child_is_replaced_when_it_ends():
         with pytest.raises(children.Ended):
             child(os._exit, 1)
         assert child(os.getpid) not in (os.getpid(), child(os.getppid))
+
+
+# ---------------------------------------------------------------------------------------------- a worker that waits
+
+@pytest.mark.long
+def test_a_submission_that_waits_again_and_again_ends_as_a_whole():
+    """Each test has its own time, but answers compute: what sleeps in all of them ends after ASLEEP seconds."""
+    text = "\nimport time\ndef observed_order(dts, errors):\n    time.sleep(60.0)\n"
+    with opened(text) as place:
+        began = time.monotonic()
+        for _ in range(4):
+            place.begin(10.0)
+            with pytest.raises(box.Lost, match=r"waits and does not compute"):
+                place.call("lesson:observed_order", (1.0, 1.0))
+        assert place.meter.slept < 2.0 * box.ASLEEP
+        assert place.meter.slept <= time.monotonic() - began + box.LAST_WORD_WITHIN
+
+
+@pytest.mark.long
+def test_a_worker_does_not_sleep_while_it_waits_for_our_answer():
+    text = (
+        "\ndef euler_step(acceleration, t, x, v, dt, p):\n"
+        "    for _ in range(40):\n"
+        "        x = acceleration(t, x, v, p)\n"
+        "    return x, v\n"
+    )
+
+    def slow(t, x, v, p):
+        until = time.thread_time() + 0.02
+        while time.thread_time() < until:
+            pass
+        time.sleep(0.0)
+        return x + 1.0
+    with opened(text) as place:
+        place.begin(20.0)
+        assert place.call("lesson:euler_step", (slow, 0.0, 0.0, 0.0, 0.1, None))[0] == 40.0
+        assert place.meter.slept < 0.1
+
+
+@pytest.mark.long
+def test_a_program_reads_no_path_of_the_tests_and_sets_no_limit_of_its_sandbox():
+    text = (
+        "\nimport resource\n"
+        "def euler_step(acceleration, t, x, v, dt, p):\n"
+        "    print('file', acceleration.__code__.co_filename)\n"
+        "    for process in (1, 2):\n"
+        "        try:\n"
+        "            print('limit', resource.prlimit(process, resource.RLIMIT_NOFILE, (3, 3)))\n"
+        "        except OSError:\n"
+        "            pass\n"
+        "    return x, v\n"
+    )
+    with opened(text) as place:
+        place.begin(LIMIT)
+        place.call("lesson:euler_step", (lambda t, x, v, p: x, 0.0, 0.0, 0.0, 0.1, None))
+        place.stop()
+        printed = place.printed.decode()
+    assert "file <test>" in printed and "limit" not in printed

@@ -15,7 +15,6 @@ integrators, kinematics, rotation, simulator = map(
 up, still, down = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array([0.0, 0.0, -9.81])
 q, L, I_body = np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.1, 2.0, 0.2]), np.array([1.0, 2.0, 2.5])
 plane, box = collisions.Plane(up, -0.1), collisions.Box(still, np.eye(3), np.array([0.5, 0.6, 0.7]))
-other_box = collisions.Box(np.array([0.9, 0.1, 0.2]), np.eye(3), np.array([0.5, 0.4, 0.3]))
 square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 low = np.array([[0.0, 0.0, 0.0], [0.5, 0.5, 0.5], [4.0, 4.0, 4.0]])
 corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])

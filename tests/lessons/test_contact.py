@@ -9,6 +9,7 @@ import pytest
 
 from solutions.checks import BadInput, Diverged
 from validate.grading.expect import between, close, instance, raises, truth
+from validate.reference.contact import enumerated
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
@@ -80,18 +81,6 @@ def positive_definite(draw, m):
     """A (m, m) with eigenvalues from about 0.5 to 10."""
     half = draw(-1.0, 1.0, (m, m))
     return half @ half.T + np.diag(draw(0.5, 1.5, m))
-
-
-def enumerated(A, b):
-    """λ of the complementarity problem by trying all sets of contacts that push: there is exactly one that fits."""
-    m = len(b)
-    for pushing in itertools.product((False, True), repeat=m):
-        on, lam = np.array(pushing), np.zeros(m)
-        if on.any():
-            lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
-        if np.all(lam >= 0.0) and np.all((A @ lam + b)[~on] >= 0.0):
-            return lam
-    raise AssertionError("no set of contacts fits")
 
 
 def half_turn(n):

@@ -9,6 +9,7 @@ from scipy.spatial import Delaunay
 
 from solutions.checks import BadInput
 from validate.grading.expect import close, raises
+from validate.reference.orientation import about
 
 from .brute import solid
 
@@ -29,11 +30,9 @@ def tensor(m, r):
 
 
 def rotation(draw):
-    """A rotation matrix (3, 3) about a drawn axis, by Rodrigues' formula, with an angle of 0.5 to 2.5 rad."""
+    """A rotation matrix (3, 3) about a drawn axis, with an angle of 0.5 to 2.5 rad."""
     n, angle = draw(0.2, 1.0, 3), draw(0.5, 2.5)
-    n /= np.linalg.norm(n)
-    K = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
-    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
+    return about(n / np.linalg.norm(n), angle)
 
 
 # ---------------------------------------------------------------------------------------------- momenta of points

@@ -7,6 +7,10 @@ import pytest
 
 from solutions.checks import BadInput
 from validate.grading.expect import between, close, raises
+from validate.reference.kinematics import jacobian_of as slopes
+from validate.reference.kinematics import joints_of as joints
+from validate.reference.orientation import about as turn
+from validate.reference.orientation import quaternion_matrix
 
 exercise = pytest.mark.exercise
 EDGE = 1e-12                 # as in the lesson
@@ -29,20 +33,6 @@ def arm_of(lesson, lengths, gain=0.1, damping=0.5, low=-np.inf, high=np.inf, res
     n = len(lengths)
     low, high, rest = (np.broadcast_to(values, n).astype(float) for values in (low, high, rest))
     return lesson.Arm2D(np.array(lengths, float), low, high, rest, float(gain), float(damping), float(pull))
-
-
-def joints(theta, lengths):
-    """Positions (n + 1, 2) of the joints and the end, by complex numbers."""
-    links = np.asarray(lengths) * np.exp(1j * np.cumsum(theta))
-    z = np.append(0.0, np.cumsum(links))
-    return np.stack((z.real, z.imag), axis=1)
-
-
-def slopes(theta, lengths):
-    """J (2, n), by complex numbers: joint k turns all links from the k-th on by a factor i."""
-    links = np.asarray(lengths) * np.exp(1j * np.cumsum(theta))
-    z = 1j * np.cumsum(links[::-1])[::-1]
-    return np.stack((z.real, z.imag))
 
 
 def reach(theta, target, arm):
@@ -120,13 +110,6 @@ def turned(draw, n):
     return np.append(draw(3.5, 9.0), draw(0.4, 1.2, n - 1))
 
 
-def turn(axis, angle):
-    """R (3, 3): Rodrigues's formula."""
-    a, b, c = axis
-    cross = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
-
-
 def unit(draw, size=3):
     """A unit vector with no entry near 0."""
     r = draw(0.3, 1.0, size) * np.array([2.0 * draw.whole(0, 1) - 1.0 for _ in range(size)])
@@ -135,12 +118,6 @@ def unit(draw, size=3):
 
 def quaternion(axis, angle):
     return np.append(np.cos(0.5 * angle), np.sin(0.5 * angle) * np.asarray(axis))
-
-
-def applied(q, r):
-    """A vector rotated by a quaternion, by its matrix."""
-    size = np.linalg.norm(q[1:])
-    return turn(q[1:] / size, 2.0 * np.arctan2(size, q[0])) @ r if size > 0.0 else np.array(r)
 
 
 def chain(draw, n):
@@ -364,7 +341,7 @@ def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
         close("positions of the joints and the end [m]", x, x_true, ROUND_OFF, given=given)
         close("axes of the joints in the world [-]", a, a_true, ROUND_OFF, given=given)
         close("length of the quaternion [-]", np.linalg.norm(q), 1.0, ROUND_OFF, given=given)
-        close("axes of the last link [-]", [applied(np.asarray(q), e) for e in np.eye(3)], R.T, 1e-7, given=given)
+        close("axes of the last link [-]", quaternion_matrix(*np.asarray(q)).T, R.T, 1e-7, given=given)
 
 
 @exercise("11.6", points=0.5,

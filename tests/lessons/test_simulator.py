@@ -9,6 +9,7 @@ import pytest
 
 from solutions.checks import BadInput
 from validate.grading.expect import between, close, numbers, raises, truth
+from validate.reference.orientation import about
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
@@ -37,12 +38,6 @@ def matrix(q):
 def oriented(q):
     """Rotation matrix of an orientation in the plane or in space, whose sign and whole turns nobody sees."""
     return matrix(q) if np.ndim(q) else np.array([[np.cos(q), -np.sin(q)], [np.sin(q), np.cos(q)]])
-
-
-def about(axis, angle):
-    """Rotation matrix about a unit vector."""
-    K = np.cross(np.eye(3), axis)                                        # K r = axis × r
-    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
 
 
 def moments(draw):

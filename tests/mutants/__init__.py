@@ -23,6 +23,8 @@ class Mutant(NamedTuple):
     kind: str = "written out"     # or edit, or variant
     faults: int = 0               # number of replacements, or of arguments that differ from their defaults
     factory: Callable = None
+    old: str = ""                 # of an edit: text of the worked answer
+    new: str = ""                 # of an edit: the text in its place
 
 
 def variants(make):
@@ -59,6 +61,9 @@ def collection(worked):
         head, mark, answer = inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
         space = dict(vars(worked))
         exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)
-        mutants.append(Mutant(exercise, name, story, False, space[name], "edit", answer.count(old) + old.count("\n")))
+        mutant = Mutant(exercise, name, story, False, space[name], "edit", answer.count(old) + old.count("\n"),
+                        old=old, new=new)
+        mutants.append(mutant)
+        return mutant
 
     return keep(False), keep(True), edit, mutants

@@ -86,7 +86,7 @@ edit("9.1", "uses the arm of a for both bodies",
      "contacts.p[k, 0] - x[body, 0], contacts.p[k, 1] - x[body, 1]",
      "contacts.p[k, 0] - x[contacts.a[k], 0], contacts.p[k, 1] - x[contacts.a[k], 1]")
 edit("9.1", "forgets the sign in the rotation of b", "sign * (r_x", "(r_x")
-edit("9.1", "adds the two products of the arm", "(r_x * d_y - r_y * d_x)", "(r_x * d_y + r_y * d_x)")
+PRODUCTS_ADDED = edit("9.1", "adds the two products of the arm", "(r_x * d_y - r_y * d_x)", "(r_x * d_y + r_y * d_x)")
 wrongs("9.1", rows, {
     "returns the transpose": {"result": np.transpose},
     "returns an array for each contact": {"result": lambda G: G.reshape(-1, 2, G.shape[1])},
@@ -1048,7 +1048,7 @@ edit("9.10", "adds the correction of the friction", "J[t] - (A[t]", "J[t] + (A[t
 edit("9.10", "does not limit the friction",
      "np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)", "J[t] - (A[t] @ J + b[t]) / A[t, t]")
 edit("9.10", "omits μ in the limit", "mu[n // 2] * J[n]", "J[n]")
-edit("9.10", "uses the friction coefficient of the first contact for all", "mu[n // 2]", "mu[0]")
+FIRST_FRICTION_ONLY = edit("9.10", "uses the friction coefficient of the first contact for all", "mu[n // 2]", "mu[0]")
 edit("9.10", "uses the friction's diagonal for the normal impulse", "/ A[n, n]", "/ A[t, t]")
 edit("9.10", "omits b", "A[n] @ J + b[n]", "A[n] @ J")
 edit("9.10", "always slides: takes the limit",

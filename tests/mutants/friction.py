@@ -33,7 +33,8 @@ edit("3.1", "takes the size of F for the normal force", "np.maximum(0.0, -(F @ n
 edit("3.1", "uses the last coordinate of F only", "-(F @ n)", "-F[-1]")
 edit("3.1", "returns the vector, not its size", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
 edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
-edit("3.1", "returns the size of the normal part, whatever its direction", "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)")
+HOLDS_WHAT_LIFTS = edit("3.1", "returns the size of the normal part, whatever its direction",
+                        "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)")
 edit("3.1", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
 
 
@@ -157,7 +158,7 @@ wrong("3.5", "forgets μ")(dissipating(limit=lambda mu, j_n: worked.check_fricti
 wrong("3.5", "accepts a negative μ")(dissipating(limit=lambda mu, j_n: mu * j_n if j_n > 0.0 else 0.0))
 edit("3.5", "divides by a speed of zero", "m * speed <= limit", "0.0 < m * speed <= limit")
 edit("3.5", "changes its input", "-m * v_t if", "np.multiply(v_t, -m, out=v_t) if")
-edit("3.5", "compares the speed with the limit, without the mass", "m * speed <= limit", "speed <= limit")
+NO_MASS = edit("3.5", "compares the speed with the limit, without the mass", "m * speed <= limit", "speed <= limit")
 edit("3.5", "compares the squared speed", "np.sqrt(v_t @ v_t)", "v_t @ v_t")
 edit("3.5", "does not divide by the speed", "/ speed * v_t", "* v_t")
 edit("3.5", "forgets the minus sign when it stops the body", "return -m", "return m")
@@ -287,7 +288,7 @@ edit("3.8", "divides by the square of the speed", "np.sqrt(v @ v)", "v @ v")
 edit("3.8", "exchanges holding and slipping", "pull > cone", "pull < cone")
 edit("3.8", "returns the velocity itself", "return v / speed", "return v")
 edit("3.8", "returns zeros for a moving block", "return v / speed", "return 0.0 * v")
-edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
+GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------

@@ -53,7 +53,7 @@ edit("4.2", "multiplies the total mass by the mean velocity", "m @ v", "np.sum(m
 edit("4.2", "uses the absolute values of the velocities", "m @ v", "m @ np.abs(v)")
 edit("4.2", "returns the velocity of the centre of mass", "m @ v", "m @ v / np.sum(m)")
 edit("4.2", "calls centre_of_mass, which refuses a total mass of zero", "m @ v", "np.sum(m) * centre_of_mass(m, v)[1]")
-edit("4.2", "counts a hole as a body: uses the size of its mass", "m @ v", "np.abs(m) @ v")
+HOLE_IS_A_BODY = edit("4.2", "counts a hole as a body: uses the size of its mass", "m @ v", "np.abs(m) @ v")
 edit("4.2", "refuses holes", "return m @ v", '[check_positive("mass [kg]", k) for k in m]; return m @ v')
 edit("4.2", "returns zero for components below 1e-9 kg m/s", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
 edit("4.2", "reverses the sign", "m @ v", "-(m @ v)")
@@ -66,8 +66,8 @@ def angular_momentum(m, x, v, about):
     return m @ np.cross(x, v) - np.cross(about, m @ v)
 
 
-edit("4.3", "takes v × r in place of r × v", "cross(x[n] - about, v[n])", "cross(v[n], x[n] - about)")
-edit("4.3", "takes L about the origin, whatever the point `about` is", "x[n] - about", "x[n]")
+V_CROSS_R = edit("4.3", "takes v × r in place of r × v", "cross(x[n] - about, v[n])", "cross(v[n], x[n] - about)")
+ABOUT_THE_ORIGIN = edit("4.3", "takes L about the origin, whatever the point `about` is", "x[n] - about", "x[n]")
 edit("4.3", "forgets the masses", "m[n] * cross", "cross")
 edit("4.3", "takes L about the centre of mass, whatever the point `about` is",
      "x[n] - about", "x[n] - m @ x / np.sum(m)")
@@ -151,7 +151,7 @@ def sphere_inertia(m, radius):
     return worked.capsule_inertia(m, radius, 0.0)
 
 
-edit("4.6", "uses the factor 2/3 of a hollow sphere", "0.4 * m", "2.0 / 3.0 * m")
+HOLLOW_SPHERE = edit("4.6", "uses the factor 2/3 of a hollow sphere", "0.4 * m", "2.0 / 3.0 * m")
 edit("4.6", "uses the diameter in place of the radius", "radius * radius", "4.0 * radius * radius")
 edit("4.6", "fills the whole matrix, not only its diagonal", "np.eye(3)", "np.ones((3, 3))")
 edit("4.6", "returns the sum of the three moments on the diagonal", "0.4 * m", "1.2 * m")
@@ -191,8 +191,8 @@ edit("4.7", "takes the cylinder's axis along x",
 edit("4.7", "exchanges radius and length", "across = m", "radius, length = length, radius; across = m")
 edit("4.7", "takes the radius for the diameter", "across = m", "radius = 0.5 * radius; across = m")
 edit("4.7", "takes the diameter for the radius", "across = m", "radius = 2.0 * radius; across = m")
-edit("4.7", "gives the radius the same weight as the length across the axis",
-     "3.0 * radius * radius + length", "radius * radius + length")
+THIN_CYLINDER = edit("4.7", "gives the radius the same weight as the length across the axis",
+                     "3.0 * radius * radius + length", "radius * radius + length")
 edit("4.7", "takes the moments about the end, not about the centre",
      "across = m * (3.0 * radius * radius + length * length) / 12.0",
      "across = m * (3.0 * radius * radius + 4.0 * length * length) / 12.0")
@@ -267,7 +267,7 @@ def world_inertia(I_body, R):
     return np.array([[R[i] @ I_body @ R[j] for j in range(3)] for i in range(3)])
 
 
-edit("4.9", "takes Rᵀ I R in place of R I Rᵀ", "R @ I_body @ R.T", "R.T @ I_body @ R")
+TRANSPOSED_ROTATION = edit("4.9", "takes Rᵀ I R in place of R I Rᵀ", "R @ I_body @ R.T", "R.T @ I_body @ R")
 edit("4.9", "takes R I in place of R I Rᵀ", "R @ I_body @ R.T", "R @ I_body")
 edit("4.9", "returns the tensor in the body's axes", "R @ I_body @ R.T", "I_body.copy()")
 edit("4.9", "refuses holes", "return R", 'check_positive("a moment [kg m²]", np.trace(I_body)); return R')
@@ -506,13 +506,13 @@ edit("4.15", "puts masses at the corners in place of integrating", SECOND,
      "w / 24.0 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j])")
 edit("4.15", "reverses the orientation of the triangles", SIX_VOLUMES, f"-({SIX_VOLUMES})")
 edit("4.15", "puts all mass of a tetrahedron at its centre", SECOND, "w / 96.0 * s * (a[j] + b[j] + c[j])")
-edit("4.15", "uses the centre of the triangle, not of the tetrahedron", "w / 24.0", "w / 18.0")
+CENTRE_OF_THE_TRIANGLE = edit("4.15", "uses the centre of the triangle, not of the tetrahedron", "w / 24.0", "w / 18.0")
 edit("4.15", "ignores tetrahedra below a cubic nanometre", "volume +=", "w = w if abs(w) > 1e-27 else 0.0; volume +=")
 edit("4.15", "forgets the division by 6 of the volume", "w / 6.0", "w")
 edit("4.15", "divides the first integrals by 6 in place of 24", "w / 24.0", "w / 6.0")
 edit("4.15", "divides the second integrals by 24 in place of 120", "w / 120.0", "w / 24.0")
 edit("4.15", "forgets the corner a in the sum", "s = a[i] + b[i]", "s = b[i]")
-edit("4.15", "forgets s sᵀ in the second integrals", "+ s * (a[j] + b[j] + c[j]))", ")")
+WITHOUT_CORNER_PRODUCTS = edit("4.15", "forgets s sᵀ in the second integrals", "+ s * (a[j] + b[j] + c[j]))", ")")
 edit("4.15", "takes b × a in place of b × c", "b[1] * c[2] - b[2] * c[1]", "b[1] * a[2] - b[2] * a[1]")
 edit("4.15", "fills the lower half of the second integrals only", "second[j, i] = second[i, j]", "pass")
 
@@ -584,7 +584,8 @@ def mesh_body(density, x, faces):
     return worked.MassProperties(whole.m, x[0] + body.x, body.I)
 
 
-edit("4.17", "returns the tensor about the first corner", "second - volume * np.outer(centre, centre)", "second")
+TENSOR_ABOUT_FIRST_CORNER = edit("4.17", "returns the tensor about the first corner",
+                                 "second - volume * np.outer(centre, centre)", "second")
 edit("4.17", "returns the second moments in place of the tensor",
      "np.trace(covariance) * np.eye(3) - covariance", "covariance")
 edit("4.17", "forgets the density in the tensor", "density * (np.trace", "1.0 * (np.trace")
@@ -596,7 +597,7 @@ edit("4.17", "takes the density for the mass", "density * volume", "density")
 edit("4.17", "returns the mean of the corners as the centre", "x[0] + centre", "np.sum(x, axis=0) / x.shape[0]")
 edit("4.17", "returns centre and tensor for the mean of the corners",
      "first / volume", "np.sum(offsets, axis=0) / x.shape[0]")
-edit("4.17", "accepts a mesh that is inside-out", "volume <= MOMENT", "abs(volume) <= MOMENT")
+INSIDE_OUT_MESH = edit("4.17", "accepts a mesh that is inside-out", "volume <= MOMENT", "abs(volume) <= MOMENT")
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
 edit("4.17", "accepts a flat mesh if its round-off volume is positive",
      "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
@@ -615,7 +616,7 @@ edit("4.17", "refuses volumes a thousand times too large", "MOMENT_ROUND_OFF * n
 edit("4.17", "checks only the corners that triangles use", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")
 edit("4.17", "returns a plain tuple, not MassProperties", "MassProperties(density * volume, x[0] + centre, tensor)",
      "(density * volume, x[0] + centre, tensor)")
-edit("4.17", "returns the centre relative to the first corner", "x[0] + centre", "centre")
+CENTRE_FROM_FIRST_CORNER = edit("4.17", "returns the centre relative to the first corner", "x[0] + centre", "centre")
 edit("4.17", "adds the term of the centre in place of subtracting it", "second - volume", "second + volume")
 edit("4.17", "forgets the volume beside the centre's term", "volume * np.outer", "np.outer")
 edit("4.17", "does not divide the first integrals by the volume", "first / volume", "first")

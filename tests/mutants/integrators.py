@@ -44,9 +44,9 @@ def midpoint_step(acceleration, t, x, v, dt, p):
 
 
 edit("1.2", "advances by dt/2 only", "x + dt * v_mid, v + dt", "x + 0.5 * dt * v_mid, v + 0.5 * dt")
-edit("1.2", "moves the position with the velocity at the start of the step", "x + dt * v_mid", "x + dt * v")
-edit("1.2", "evaluates the slope at the middle at time t, not at t + dt/2",
-     "acceleration(t + 0.5 * dt", "acceleration(t")
+V_AT_OLD = edit("1.2", "moves the position with the velocity at the start of the step", "x + dt * v_mid", "x + dt * v")
+MIDDLE_AT_OLD_TIME = edit("1.2", "evaluates the slope at the middle at time t, not at t + dt/2",
+                          "acceleration(t + 0.5 * dt", "acceleration(t")
 edit("1.2", "takes the acceleration at the old position", "0.5 * dt, x_mid, v_mid", "0.5 * dt, x, v_mid")
 edit("1.2", "takes the acceleration at the old velocity", "0.5 * dt, x_mid, v_mid", "0.5 * dt, x_mid, v")
 edit("1.2", "starts the whole step at the midpoint, not at its beginning",
@@ -89,8 +89,8 @@ edit("1.3", "takes half a step to the fourth velocity, where a whole one belongs
      "v4 = v + dt * a3", "v4 = v + 0.5 * dt * a3")
 edit("1.3", "takes half a step to the fourth position, where a whole one belongs",
      "x + dt * v3, v4", "x + 0.5 * dt * v3, v4")
-edit("1.3", "takes the third acceleration at the position that the first velocity reaches",
-     "x + 0.5 * dt * v2, v3", "x + 0.5 * dt * v, v3")
+THIRD_SLOPE_FROM_FIRST = edit("1.3", "takes the third acceleration at the position that the first velocity reaches",
+                              "x + 0.5 * dt * v2, v3", "x + 0.5 * dt * v, v3")
 edit("1.3", "takes the fourth acceleration at the position that the second velocity reaches",
      "x + dt * v3, v4", "x + dt * v2, v4")
 edit("1.3", "takes the second acceleration at the old position", "x + 0.5 * dt * v, v2", "x, v2")
@@ -160,15 +160,15 @@ def verlet_step(acceleration, t, x, v, dt, p):
 
 
 edit("1.6", "advances the velocity with the old acceleration only", "(a + a_new)", "(a + a)")
-edit("1.6", "takes the new acceleration at the old velocity", "v + dt * a, p)", "v, p)")
+LAST_AT_OLD_VELOCITY = edit("1.6", "takes the new acceleration at the old velocity", "v + dt * a, p)", "v, p)")
 edit("1.6", "forgets the half in the position", "0.5 * dt * dt * a", "dt * dt * a")
-edit("1.6", "takes the new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
+LAST_AT_OLD_TIME = edit("1.6", "takes the new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
 edit("1.6", "forgets the half in the velocity", "v + 0.5 * dt * (a + a_new)", "v + dt * (a + a_new)")
 edit("1.6", "takes the new acceleration at the old position", "acceleration(t + dt, x_new", "acceleration(t + dt, x")
 edit("1.6", "omits the acceleration in the position", "x + dt * v + 0.5 * dt * dt * a", "x + dt * v")
 edit("1.6", "uses dt in place of dt² in the position", "0.5 * dt * dt * a", "0.5 * dt * a")
 edit("1.6", "advances the velocity with the new acceleration only", "(a + a_new)", "(a_new + a_new)")
-edit("1.6", "predicts the velocity over half a step", "v + dt * a, p", "v + 0.5 * dt * a, p")
+VELOCITY_OF_HALF_A_STEP = edit("1.6", "predicts the velocity over half a step", "v + dt * a, p", "v + 0.5 * dt * a, p")
 edit("1.6", "takes the new acceleration in the middle of the step", "acceleration(t + dt", "acceleration(t + 0.5 * dt")
 
 
@@ -271,7 +271,7 @@ def columns(acceleration=worked.oscillator_acceleration):
 
 right("1.9", "columns stacked")(columns())
 wrong("1.9", "forgets the damping")(columns(lambda t, x, v, p: -p.omega**2 * x))
-edit("1.9", "returns the transpose", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0]], [x2[0], v2[0]]]")
+TRANSPOSE = edit("1.9", "returns the transpose", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0]], [x2[0], v2[0]]]")
 edit("1.9", "returns the inverse of the matrix", "np.array([[x1[0], x2[0]], [v1[0], v2[0]]])",
      "np.linalg.inv(np.array([[x1[0], x2[0]], [v1[0], v2[0]]]))")
 edit("1.9", "exchanges ω and ζ", "Oscillator(omega, zeta)", "Oscillator(zeta, omega)")

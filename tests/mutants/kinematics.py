@@ -654,7 +654,7 @@ wrongs("11.7", spatial, {
     "computes in whole numbers": {"result": np.trunc},
 })
 edit("11.7", "measures all arms from the base", "minus(row(x, n), row(x, k))", "minus(row(x, n), row(x, 0))")
-edit("11.7", "uses the first axis for the angular velocity", "a[k, c]", "a[0, c]")
+FIRST_AXIS_ONLY = edit("11.7", "uses the first axis for the angular velocity", "a[k, c]", "a[0, c]")
 edit("11.7", "changes its input", "n = a.shape[0]", "n = a.shape[0]; x -= x[n].copy()")
 edit("11.7", "multiplies the angular velocity by the distance",
      "v[c], a[k, c]", "v[c], a[k, c] * np.sqrt(np.sum((x[n] - x[k])**2))")

@@ -48,7 +48,7 @@ edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / len
 edit("8.1", "adds the rest length", "length - rest", "length + rest")
 edit("8.1", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
 edit("8.1", "forgets the rest length", "length - rest", "length")
-edit("8.1", "divides the gradient by the rest length", "r / length", "r / rest")
+GRADIENT_OVER_REST_LENGTH = edit("8.1", "divides the gradient by the rest length", "r / length", "r / rest")
 edit("8.1", "takes the size of the extension", "length - rest", "abs(length - rest)")
 
 
@@ -272,7 +272,7 @@ edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
 edit("8.6", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.6", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
-edit("8.6", "uses the stiffness of the first link for all", "network.stiffness[s]", "network.stiffness[0]")
+FIRST_ONLY = edit("8.6", "uses the stiffness of the first link for all", "network.stiffness[s]", "network.stiffness[0]")
 edit("8.6", "reduces the stiffness so that all sweeps together remove the share s", "network.stiffness[s] *",
      "(1.0 - (1.0 - network.stiffness[s]) ** (1.0 / network.sweeps)) *")
 edit("8.6", "uses the stiffness of all sweeps in each sweep", "network.stiffness[s] *",
@@ -296,7 +296,8 @@ def distance_sweep(x, network):
 edit("8.6", "returns its input where nothing is to be done", "x, w = float_copy(x), network.inv_mass",
      "w, r = network.inv_mass, x[network.i] - x[network.j]\n"
      "    if np.allclose(np.sqrt(np.sum(r ** 2, axis=1)), network.rest):\n        return x\n    x = float_copy(x)")
-edit("8.6", "exchanges the inverse masses of the two ends", "w[i] * share, w[j] * share", "w[j] * share, w[i] * share")
+INVERSE_MASSES_EXCHANGED = edit("8.6", "exchanges the inverse masses of the two ends",
+                                "w[i] * share, w[j] * share", "w[j] * share, w[i] * share")
 edit("8.6", "forgets to divide by the inverse masses", "/ (w[i] + w[j])", "/ 1.0")
 edit("8.6", "moves both ends in the same direction", "w[j] * share, x", "-w[j] * share, x")
 edit("8.6", "moves the first end only", "w[j] * share, x", "0.0, x")
@@ -497,7 +498,7 @@ edit("8.10", "returns the distance from the centre", "return distance - obstacle
 edit("8.10", "adds the centre", "x - obstacle.centre", "x + obstacle.centre")
 edit("8.10", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
 edit("8.10", "adds the radius", "distance - obstacle.radius", "distance + obstacle.radius")
-edit("8.10", "divides the normal by the radius", "r / distance if", "r / obstacle.radius if")
+NORMAL_OVER_RADIUS = edit("8.10", "divides the normal by the radius", "r / distance if", "r / obstacle.radius if")
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
@@ -782,7 +783,7 @@ def turning_rate(q_old, q_new, dt):
     return 2.0 * np.tan(np.arctan2(s, turn[0])) / dt * turn[1:] / s if s > 0.0 else np.zeros(3)
 
 
-edit("8.17", "does not divide by the scalar part", "2.0 / (turn[0] * dt)", "2.0 / dt")
+WITHOUT_SCALAR_PART = edit("8.17", "does not divide by the scalar part", "2.0 / (turn[0] * dt)", "2.0 / dt")
 edit("8.17", "multiplies by dt", "2.0 / (turn[0] * dt)", "2.0 * dt / turn[0]")
 edit("8.17", "takes half in place of twice", "2.0 / (turn[0]", "0.5 / (turn[0]")
 edit("8.17", "takes the difference of the quaternions",
@@ -815,7 +816,7 @@ edit("8.18", "keeps only the last face of each corner",
      "gradient[faces[f, 0]] += across", "gradient[faces[f, 0]] = across")
 edit("8.18", "leaves out the corners of no face", "return V, gradient", "return V, gradient[np.unique(faces)]")
 edit("8.18", "forgets the division by 6", "cross(b, c) / 6.0", "cross(b, c)")
-edit("8.18", "exchanges the corners in one of the cross products", "cross(c, a) / 6.0", "cross(a, c) / 6.0")
+EXCHANGED = edit("8.18", "exchanges the corners in one of the cross products", "cross(c, a) / 6.0", "cross(a, c) / 6.0")
 edit("8.18", "forgets the division by 6 at the third corner", "cross(a, b) / 6.0", "cross(a, b)")
 edit("8.18", "gives two corners of a face the same gradient",
      "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")

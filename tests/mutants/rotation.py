@@ -24,7 +24,7 @@ edit("5.1", "exchanges the components x and z",
      MATRIX, MATRIX.replace("a[2]", "c").replace("a[0]", "a[2]").replace("c", "a[0]"))
 edit("5.1", "returns the outer product of a with itself", f"np.array({MATRIX})", "np.outer(a, a)")
 edit("5.1", "has the wrong sign of a_y in the first row", "-a[2], a[1]]", "-a[2], -a[1]]")
-edit("5.1", "has the wrong sign of a_x in the second row", "0.0, -a[0]]", "0.0, a[0]]")
+SIGN_IN_SECOND_ROW = edit("5.1", "has the wrong sign of a_x in the second row", "0.0, -a[0]]", "0.0, a[0]]")
 edit("5.1", "has the wrong sign of a_z in the first row", "[[0.0, -a[2]", "[[0.0, a[2]")
 edit("5.1", "exchanges the components x and y", "return np", "a = a[[1, 0, 2]]; return np")
 
@@ -38,7 +38,7 @@ def point_velocity(v, omega, r):
 edit("5.2", "takes r × ω in place of ω × r", "cross(omega, r)", "cross(r, omega)")
 edit("5.2", "omits the velocity of the centre of mass", "v + cross(omega, r)", "cross(omega, r)")
 edit("5.2", "omits the rotation, ω × r", "v + cross(omega, r)", "v.copy()")
-edit("5.2", "subtracts the rotation", "v + cross", "v - cross")
+ROTATION_SUBTRACTED = edit("5.2", "subtracts the rotation", "v + cross", "v - cross")
 
 
 # 5.3 ------------------------------------------------------------------------------------------------------------
@@ -47,7 +47,7 @@ def total_load(x, points, forces):
     return np.sum(forces, axis=0), np.sum(np.cross(points, forces), axis=0) - np.cross(x, np.sum(forces, axis=0))
 
 
-edit("5.3", "takes the torque about the origin, not about the centre of mass", "points[i] - x", "points[i]")
+AT_ORIGIN = edit("5.3", "takes the torque about the origin, not about the centre of mass", "points[i] - x", "points[i]")
 edit("5.3", "takes f × r in place of r × f", "cross(points[i] - x, forces[i])", "cross(forces[i], points[i] - x)")
 edit("5.3", "takes the arm from the point to the centre", "points[i] - x", "x - points[i]")
 edit("5.3", "lets all forces act at the mean of the points",
@@ -69,7 +69,7 @@ def angular_velocity(R, L, I_body):
 edit("5.4", "divides L in world axes by the moments of the body axes", "R @ ((R.T @ L) / I_body)", "L / I_body")
 edit("5.4", "returns ω in body coordinates", "R @ ((R.T @ L) / I_body)", "(R.T @ L) / I_body")
 edit("5.4", "multiplies by the inertia in place of dividing by it", "/ I_body", "* I_body")
-edit("5.4", "exchanges R and its transpose", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)")
+WORLD_FOR_BODY = edit("5.4", "exchanges R and its transpose", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)")
 edit("5.4", "divides L of the world by the moments and rotates the result",
      "R @ ((R.T @ L) / I_body)", "R @ (L / I_body)")
 edit("5.4", "converts with R and R, not with Rᵀ first", "(R.T @ L)", "(R @ L)")
@@ -155,7 +155,7 @@ wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
 wrong("5.7", "omits dt")(rodrigues(angle=lambda rate, dt: rate))
 edit("5.7", "changes its input", "turned = float_copy(R)", "turned = R")
 edit("5.7", "returns its input at rest", "turned = float_copy(R)", "turned = float_copy(R) if omega.any() else R")
-edit("5.7", "treats a milliradian per second as rest", "rate != 0.0", "rate > 1e-3")
+SLOW_IS_AT_REST = edit("5.7", "treats a milliradian per second as rest", "rate != 0.0", "rate > 1e-3")
 edit("5.7", "drops the sign of the sine", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
 edit("5.7", "limits the angle to half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
      "np.cos(min(rate * dt, np.pi)), np.sin(min(rate * dt, np.pi))")
@@ -252,7 +252,7 @@ wrong("5.10", "divides by the squared length")(third_way(close=lambda q: q / (q 
 wrong("5.10", "divides zero by zero")(third_way(close=lambda q: q / np.linalg.norm(q)))
 edit("5.10", "changes its input",
      "q + 0.5 * dt * quaternion_product(spin, q)", "np.add(q, 0.5 * dt * quaternion_product(spin, q), out=q)")
-edit("5.10", "ignores the sign of dt", "0.5 * dt", "0.5 * abs(dt)")
+SIGN_OF_DT_IGNORED = edit("5.10", "ignores the sign of dt", "0.5 * dt", "0.5 * abs(dt)")
 edit("5.10", "forgets dt", "0.5 * dt * q", "0.5 * q")
 edit("5.10", "returns the change, not the new orientation", "unit(q + 0.5", "unit(0.5")
 edit("5.10", "puts ω into the first three components",
@@ -345,7 +345,7 @@ def kinetic_energy(q, L, I_body):
     return 0.5 * worked.angular_velocity(worked.rotation_matrix(q), L, I_body) @ L
 
 
-edit("5.13", "divides L in world axes by the moments of the body axes", "unrotate(q, L)", "L")
+WORLD_COMPONENTS = edit("5.13", "divides L in world axes by the moments of the body axes", "unrotate(q, L)", "L")
 edit("5.13", "omits the factor ½", "0.5 * np.sum", "np.sum")
 edit("5.13", "takes L for ω", "L_body * L_body / I_body", "L_body * L_body * I_body")
 edit("5.13", "turns L the wrong way", "unrotate(q, L)", "rotate(q, L)")
@@ -395,7 +395,7 @@ def heavy_top_torque(t, q, L, top):
     return np.cross(worked.rotation_matrix(q)[:, 2], [0.0, 0.0, -top.mgl])
 
 
-edit("5.15", "reverses the torque, which lifts the tip", "[-e[1], e[0], 0.0]", "[e[1], -e[0], 0.0]")
+TORQUE_REVERSED = edit("5.15", "reverses the torque, which lifts the tip", "[-e[1], e[0], 0.0]", "[e[1], -e[0], 0.0]")
 edit("5.15", "forgets the weight", "top.mgl * np", "np")
 edit("5.15", "returns the torque in body coordinates", "top.mgl * np.array([-e[1], e[0], 0.0])",
      "unrotate(q, top.mgl * np.array([-e[1], e[0], 0.0]))")

@@ -965,7 +965,7 @@ def corner_impact(v, omega, r, inv_mass, inv_inertia):
 SQUARE, ACROSS = "(r[0] * r[0] + r[1] * r[1])", "np.array([r[1], -r[0]])"
 MOMENT, ANGULAR = f"1.0 / inv_inertia + {SQUARE} / inv_mass", "L = omega / inv_inertia - cross_2d(r, v) / inv_mass"
 SPIN_OF = f"omega = L / ({MOMENT})"
-AFTER, BEFORE = f"return omega * {ACROSS}, omega", "old = omega; "
+AFTER = f"return omega * {ACROSS}, omega"
 edits("10.12",
       ("halves the new spin", "omega = L / (", "omega = 0.5 * L / ("),
       ("exchanges masses and their inverses in the inertia about the corner",

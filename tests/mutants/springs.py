@@ -20,8 +20,8 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 
 
 edit("2.1", "accepts coincident bodies", 'check_positive("distance of two bodies [m]", distance)', "pass")
-edit("2.1", "reverses the force, so that the bodies repel each other", "return G", "return -G")
-edit("2.1", "divides the vector r by |r|², not by |r|³", "distance**3", "distance**2")
+REPELS = edit("2.1", "reverses the force, so that the bodies repel each other", "return G", "return -G")
+FALLS_WITH_1_OVER_R = edit("2.1", "divides the vector r by |r|², not by |r|³", "distance**3", "distance**2")
 edit("2.1", "forgets the mass of a: returns the acceleration of a", "G * m_a * m_b", "G * m_b")
 edit("2.1", "forgets G", "G * m_a", "m_a")
 edit("2.1", "forgets the mass of b: returns minus the acceleration of b", "m_a * m_b", "m_a")
@@ -47,7 +47,7 @@ edit("2.2", "treats the wind as a velocity, not as a force", "wind - k_v * v", "
 edit("2.2", "makes the force grow with the square of the speed", "k_v * v", "k_v * np.abs(v) * v")
 edit("2.2", "divides by the viscosity", "wind - k_v * v", "-k_v * (v - wind / k_v)")
 edit("2.2", "subtracts the wind", "wind - k_v * v", "-wind - k_v * v")
-edit("2.2", "omits the wind", "wind - k_v * v", "-k_v * v")
+WITHOUT_WIND = edit("2.2", "omits the wind", "wind - k_v * v", "-k_v * v")
 edit("2.2", "omits the viscosity", "wind - k_v * v", "wind - 0.0 * v")
 edit("2.2", "uses the size of the velocity", "k_v * v", "k_v * np.abs(v)")
 edit("2.2", "squares the velocity", "k_v * v", "k_v * v**2")
@@ -124,12 +124,12 @@ def soft_contact_force(C, C_rate, gradient, k, k_d):
     return force
 
 
-edit("2.5", "lets the damper pull a point back that leaves",
-     "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
+DAMPER_PULLS = edit("2.5", "lets the damper pull a point back that leaves",
+                    "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
 edit("2.5", "applies a force above the surface, too", "C >= 0.0", "False")
 edit("2.5", "limits the spring but not the damper", "np.maximum(0.0, -(k * C + k_d * C_rate))",
      "(max(0.0, -k * C) - k_d * C_rate)")
-edit("2.5", "applies a force at C = 0 already", "C >= 0.0", "C > 0.0")
+FORCE_AT_TOUCH = edit("2.5", "applies a force at C = 0 already", "C >= 0.0", "C > 0.0")
 edit("2.5", "returns a number, not a vector, where the force is zero", "return 0.0 * gradient", "return 0.0")
 edit("2.5", "ignores a depth of a millimetre", "C >= 0.0", "C >= -1e-3")
 edit("2.5", "reverses the damper", "k_d * C_rate", "-k_d * C_rate")
@@ -194,8 +194,8 @@ edit("2.6", "gives a the same sign as c", "push_a, push_c = k * turn", "push_a, 
 edit("2.6", "forgets the rest angle", "theta - rest", "theta")
 edit("2.6", "forgets the factor k",
      "k * turn / squared_a, -k * turn / squared_c", "turn / squared_a, -turn / squared_c")
-edit("2.6", "brings the angle into [−π, π), where −π is not allowed", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
-     "np.floor((turn + np.pi) / (2.0 * np.pi))")
+HALF_A_TURN = edit("2.6", "brings the angle into [−π, π), where −π is not allowed",
+                   "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
 edit("2.6", "brings the angle into [0, 2π)",
      "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor(turn / (2.0 * np.pi))")
 edit("2.6", "adds or subtracts one full turn at most", "turn -= 2.0 * np.pi * np.ceil((turn - np.pi) / (2.0 * np.pi))",
@@ -268,7 +268,7 @@ edit("2.7", "exchanges k and k_d", "network.k[s], network.k_d[s])", "network.k_d
 edit("2.7", "exchanges length and rest length", "length, rate, network.rest[s]", "network.rest[s], rate, length")
 edit("2.7", "adds gravity", "return force", "return force + network.gravity")
 edit("2.7", "uses the stiffness of the first spring for all springs", "network.k[s]", "network.k[0]")
-edit("2.7", "uses the rest length of the first spring for all springs", "network.rest[s]", "network.rest[0]")
+ONE_REST = edit("2.7", "uses the rest length of the first spring for all springs", "network.rest[s]", "network.rest[0]")
 edit("2.7", "uses the damper of the first spring for all springs", "network.k_d[s]", "network.k_d[0]")
 edit("2.7", "leaves out the last spring", "range(network.i.size)", "range(network.i.size - 1)")
 edit("2.7", "leaves out a spring of zero length",
@@ -388,7 +388,7 @@ wrong("2.10", "multiplies the row by the number of rows, not of columns")(
     numbering(number=lambda r, c, rows, cols: r * rows + c))
 edit("2.10", "wraps around the edge of the grid", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
      "for r, c, dr, dc in [(r, c, (r + dr) % rows - r, (c + dc) % cols - c)]")
-edit("2.10", "treats an index below zero as a valid row", "0 <= r + dr < rows", "r + dr < rows")
+NEGATIVE_INDEX = edit("2.10", "treats an index below zero as a valid row", "0 <= r + dr < rows", "r + dr < rows")
 wrong("2.10", "tests the index, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
 wrong("2.10", "does not test for rows and columns below zero")(
@@ -466,7 +466,7 @@ edit("2.11", "returns D first", "return K, D", "return D, K")
 edit("2.11", "uses the stiffness of the first spring for the part across",
      "across = network.k[s]", "across = network.k[0]")
 edit("2.11", "uses the rest length of the first spring for all springs", "network.rest[s]", "network.rest[0]")
-edit("2.11", "uses the damper of the first spring for all springs", "network.k_d[s]", "network.k_d[0]")
+ONE_DAMPER = edit("2.11", "uses the damper of the first spring for all springs", "network.k_d[s]", "network.k_d[0]")
 edit("2.11", "fills only the diagonals", "(network.k[s] - across) * nn", "(network.k[s] - across) * nn * (a == b)")
 edit("2.11", "gives a compressed spring no stiffness", "return K, D",
      "K[np.sqrt(np.sum((x[network.j] - x[network.i])**2, axis=1)) < network.rest] = 0.0; return K, D")
@@ -592,7 +592,7 @@ edit("2.13", "moves with the mean of old and new velocity", "return x + dt * v, 
      "return x + dt * (v - 0.5 * conjugate_gradients(apply_step_matrix, A, right)), v")
 edit("2.13", "forgets dt beside the viscosity", "dt * network.k_v", "network.k_v")
 edit("2.13", "forgets dt beside D", "+ dt * D", "+ D")
-edit("2.13", "halves dt² beside K", "dt * dt * K", "0.5 * dt * dt * K")
+HALF_OF_THE_STIFFNESS = edit("2.13", "halves dt² beside K", "dt * dt * K", "0.5 * dt * dt * K")
 edit("2.13", "uses the acceleration of the lesson, not the one that is handed in", "acceleration(t, x, v, network)",
      "spring_network_acceleration(t, x, v, network)")
 edit("2.13", "adds the dampers to ∂F/∂x v", "apply_blocks(v, network.i, network.j, K)",

@@ -325,6 +325,32 @@ def summary_counts_what_the_report_holds(capsys, folder, report):
         assert code == 2 and len(error.splitlines()) == 1
 
 
+@pytest.mark.parametrize("command", ["audit", "summary", "limits"])
+def test_a_report_of_another_version_is_named_in_one_sentence(capsys, tmp_path, command):
+    (tmp_path / "report.json").write_text(json.dumps({"run": {"date": "2025-01-01"}, "scenes": [], "stability": []}))
+    code, _, error = run(capsys, command, str(tmp_path))
+    assert code == 2 and "of another version of the workbook" in error and len(error.splitlines()) == 1
+
+
+def test_a_folder_that_is_no_report_is_not_called_another_version(capsys, tmp_path):
+    code, _, error = run(capsys, "compare", str(tmp_path / "nowhere"), str(tmp_path))
+    assert code == 2 and "nowhere" in error and "not a report" in error
+
+
+def test_the_results_of_a_full_run_are_kept_with_their_date_and_those_of_a_quick_one_are_not(
+        capsys, tmp_path, monkeypatch):
+    kept = tmp_path / "full_run.json"
+    for module in (cli, store):
+        monkeypatch.setattr(module, "FULL_RUN", kept)
+    assert store.full_run() is None
+    for mode, code in (("quick", 2), ("full", 0)):
+        about = {"format": store.FORMAT, "mode": mode, "date": "2026-11-30", "machine": "a machine", "engines": []}
+        (tmp_path / "report.json").write_text(json.dumps({"run": about, "scenes": [], "stability": []}))
+        assert run(capsys, "summary", str(tmp_path), "--keep")[0] == code and kept.is_file() == (code == 0)
+    found = store.full_run()
+    assert found["date"] == "2026-11-30" and found["machine"] == "a machine" and len(found["counts"]) == 4
+
+
 def pages(folder):
     return {path.name for path in folder.iterdir() if path.is_file() and path.name[0] != "."}
 

@@ -67,6 +67,13 @@ def test_a_finding_that_fails_now_is_worse_and_one_that_is_reworded_is_no_change
     assert kinds(report, new) == [("findings", True)] and "2.5" in changes(report, new)[0].words
 
 
+def test_a_finding_that_this_machine_cannot_make_is_not_worse(report):
+    new = copy.deepcopy(report)
+    gone = new["stability"][0]["findings"].pop()
+    new["stability"][0]["not_run"] = [{"claim": gone["claim"], "quantity": gone["quantity"], "why": "not installed"}]
+    assert kinds(report, new) == [("findings", False)] and "was not run" in changes(report, new)[0].words
+
+
 def test_errors_and_orders_are_listed_beyond_noise_and_round_off_is_not(report):
     new = copy.deepcopy(report)
     first_curve(new)["rows"][2]["error"] *= 1.005

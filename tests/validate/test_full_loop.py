@@ -46,7 +46,7 @@ def test_a_loop_that_moves_otherwise_is_noticed_and_the_audit_checks_the_ratio(m
     monkeypatch.setitem(full_loop.FULL, methods.SLIDING, heavier)
     found = full_loop.left_out("incline", PLAN, agreeing("incline"))
     assert not found["same"]
-    result = {"cases": {}, "times": {"rows": [], "time_to_error": {}, "advantage": [], "ablations": [],
+    result = {"cases": {}, "times": {"rows": [], "time_to_error": [], "races": [], "calls": [], "ablations": [],
                                      "left_out": {**found, "observed": [list(o) for o in found["observed"]]}}}
     assert list(audit.of_times(result, {"times": 0})) == []
     result["times"]["left_out"]["ratio"] = 2.0

@@ -10,6 +10,7 @@ from validate import methods
 from validate.reference import schemes
 from validate.reference.schemes import ErrorLaw, Tableau, advance, advance_modes
 from validate.report import limits
+from validate.run.store import FORMAT
 
 TABLES = {name: table for name, table in vars(schemes).items() if isinstance(table, Tableau)}
 
@@ -19,7 +20,7 @@ def report(*rows):
               for n, (limit, error, predicted) in enumerate(rows, 1)]
     scene = {"scene": "throw", "lesson": "integrators",
              "cases": {"thrown": {"truth": [1.0], "ours": [{"label": "Euler", "rows": stored}], "engines": []}}}
-    return {"run": {}, "scenes": [scene], "stability": []}
+    return {"run": {"format": FORMAT}, "scenes": [scene], "stability": []}
 
 
 def test_rows_without_a_judgement_above_round_off_do_not_count():

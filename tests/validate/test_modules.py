@@ -128,19 +128,6 @@ def test_a_twin_raises_the_same_errors_with_the_value_in_them():
                      twin.Oscillator(1.0, 0.0))
 
 
-@needs_numba
-def test_a_twin_is_compiled_once_for_all_strings_and_whole_numbers(tmp_path):
-    (tmp_path / "naming.py").write_text("""
-def named(thing, least):
-    return len(thing) + least
-
-def both():
-    return named("x", 2) + named("velocity", 30)
-""")
-    lesson = modules.bind("naming", tmp_path, compiled=True)
-    assert lesson.both() == 3 + 38 and len(lesson.named.signatures) == 1
-
-
 def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     text = (modules.SOLUTIONS / "integrators.py").read_text().replace("from .", "from solutions.")
     own = "\n\ndef advance(step, acceleration, t, x, v, dt, steps, p):\n    return x + 42.0, v\n"

@@ -1,10 +1,11 @@
-"""MuJoCo, the witness that may be missing: its laws hold, and where it is not installed the scenes say so."""
+"""MuJoCo: its laws hold, and on a platform without its wheel the scenes say that it is missing."""
 
 import numpy as np
 import pytest
 
 from validate import measure
 from validate.check import Verdict
+from validate.engines import mujoco
 from validate.engines.mujoco import IMPEDANCE
 from validate.measure.accuracy import engine_curve, run_engine_to_end
 from validate.measure.selection import select
@@ -31,8 +32,9 @@ def curve_of(name, case=None, variant=""):
 
 
 def test_it_is_a_witness_where_it_says_something():
-    assert {"asymmetric_top", "axisymmetric_body", "heavy_top", "pendulum", "rod_chain", "incline", "stack"} <= set(
-        WITH_MUJOCO)
+    assert {"throw", "oscillator", "linear_drag", "quadratic_drag", "kepler", "kepler_near_collision", "two_stars",
+            "wind", "angular_spring", "spring_net", "catenary", "hanging_springs", "asymmetric_top",
+            "axisymmetric_body", "heavy_top", "pendulum", "rope", "rod_chain", "incline", "stack"} <= set(WITH_MUJOCO)
 
 
 @pytest.mark.parametrize("name", WITH_MUJOCO)
@@ -57,11 +59,42 @@ def test_a_report_without_it_is_no_regression_of_one_with_it():
 
 
 @needs_mujoco
-@pytest.mark.parametrize(("name", "order"), [("asymmetric_top", 4), ("heavy_top", 4), ("pendulum", 4)])
-def test_its_runge_kutta_method_is_of_order_four_and_errs_as_predicted(name, order):
+@pytest.mark.parametrize("name", ["asymmetric_top", "heavy_top", "pendulum", "oscillator", "quadratic_drag",
+                                  "wind", "angular_spring", "spring_net"])
+def test_its_runge_kutta_method_is_of_order_four_and_errs_as_predicted(name):
     found = curve_of(name)
-    assert found["verdict"] is Verdict.AGREES and found["order"] == pytest.approx(order, abs=0.2)
+    assert found["verdict"] is Verdict.AGREES and found["order"] == pytest.approx(4, abs=0.2)
     assert sum(row["predicted"] is not None for row in found["rows"]) >= 4
+
+
+@needs_mujoco
+@pytest.mark.parametrize("name", ["rope", "rod_chain", "two_stars", "hanging_springs"])
+def test_its_error_is_predicted_where_a_thousand_steps_do_not_show_the_order_yet(name):
+    found = curve_of(name)
+    predicted = [row for row in found["rows"] if row["predicted"] is not None]
+    assert found["verdict"] is Verdict.AGREES and len(predicted) >= 2
+    assert all(row["error"] > 100.0 * row["band"] for row in predicted[:1])
+
+
+@needs_mujoco
+def test_a_load_acts_in_every_stage_and_in_its_own_world_only():
+    """A force that is set once per step would make Runge–Kutta a method of order 1."""
+    spring = lambda x, v: [-100.0 * x[0] - v[0]]
+    make = lambda **law: mujoco.points([1.0], [[1.0]], [[0.0]], 0.01, np.ravel, **law)
+    loaded, built_in, free = make(force=spring), make(stiffness=100.0, damping=1.0), make()
+    for _ in range(100):
+        for world in (loaded, built_in, free):
+            world.step()
+    assert loaded.read() == pytest.approx(built_in.read(), abs=1e-13)
+    assert free.read() == 1.0 != loaded.read()
+
+
+@needs_mujoco
+def test_a_load_that_fails_does_not_stay():
+    broken = mujoco.points([1.0], [[1.0]], [[0.0]], 0.01, np.ravel, force=lambda x, v: x[1])
+    with pytest.raises(IndexError):
+        broken.step()
+    assert mujoco.module().get_mjcb_passive() is None
 
 
 @needs_mujoco

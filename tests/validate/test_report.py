@@ -12,7 +12,7 @@ from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
 from validate.measure.selection import Plan
-from validate.report import films, plots, words
+from validate.report import films, numbers, plots, races, words
 from validate.report.answers import answers
 from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
@@ -145,6 +145,90 @@ def test_a_departure_that_nobody_predicted_is_on_the_front_page(made):
     assert "some of it nobody predicted" in front and "comparisons depart" in front
 
 
+def changed(made, **fields):
+    """The results of the small report, of which these curves of ours in `throw` are changed; and what it was made with.
+    """
+    _, data = made
+    other = json.loads(json.dumps(data))
+    for curve in other["scenes"][0]["cases"]["thrown"]["engines"] if fields.pop("engines", False) else \
+            other["scenes"][0]["cases"]["thrown"]["ours"][:1]:
+        curve.update(fields)
+    return other
+
+
+def front_of(data):
+    return report.texts(data["scenes"], data["stability"], data["run"])["index.html"]
+
+
+def test_a_method_that_does_not_arrive_is_counted_on_the_front_page_and_not_among_those_that_agree(made):
+    front = front_of(changed(made, verdict="does not arrive", rows=[], message="it never ends"))
+    _, data = made
+    ours = sum(len(case["ours"]) for scene in data["scenes"] for case in scene["cases"].values())
+    assert f"{ours - 1} of {ours - 1} comparisons come out as theory says" in front
+    assert re.search(r"1 does not arrive: <a href=\"throw.html\">Throw</a>", front)
+
+
+def test_the_front_page_says_which_truths_are_an_engines_own_run(made):
+    _, data = made
+    assert "No truth is a run of an engine." in front_of(data)
+    front = front_of(changed(made, engines=True, verdict="reference", reference=True))
+    assert "In 1 scene the truth is an engine's own run, and that engine is not judged there: " \
+           '<a href="throw.html">Throw</a> (pymunk)' in front
+    assert "that is neither" not in front
+
+
+def test_a_finding_that_was_not_run_is_counted_as_such(made):
+    _, data = made
+    other = json.loads(json.dumps(data))
+    other["stability"][0]["not_run"] = [{"claim": "It holds.", "quantity": "share [-]", "why": "pybullet is missing"}]
+    pages = report.texts(other["scenes"], other["stability"], other["run"])
+    assert "findings hold; 1 not run" in pages["index.html"] and "pybullet is missing" in pages["stability.html"]
+    assert "It holds.,share [-],,,,not run,pybullet is missing," in pages["stability.csv"]
+
+
+def test_a_measured_limit_is_listed_and_counted(made):
+    _, data = made
+    assert words.measured_limits(data["scenes"], data["stability"]) == []
+    other = changed(made, measured="ten times what was seen")
+    found, = words.measured_limits(other["scenes"], other["stability"])
+    assert found == (f"throw: {other['scenes'][0]['cases']['thrown']['ours'][0]['label']}", "ten times what was seen")
+    assert "1 limit or tolerance was measured" in front_of(other)
+
+
+def test_a_quick_report_shows_no_tick_while_races_are_undecided_and_the_last_full_run_beside_it(made):
+    _, data = made
+    section = front_of(data).partition('id="faster"')[2].partition("</section>")[0]
+    assert "verdict agrees" not in section and "verdict open" in section
+    assert "No full run of this version is kept" in section
+    counts = races.counted([])
+    counts[1].update(ratio=31.0, low=28.0, high=35.0, slower=2, tie=5, races=55)
+    other = json.loads(json.dumps(data))
+    other["run"]["full_run"] = {"date": "2026-11-30", "commit": "abc1234", "machine": "Linux", "processor": "P",
+                                "counts": counts}
+    section = front_of(other).partition('id="faster"')[2].partition("</section>")[0]
+    assert "2026-11-30" in section and "abc1234" in section and "31× (28 to 35) at 1 %, 2 losses and 5 ties" in section
+
+
+@pytest.mark.parametrize(("ratio", "mark"), [(5000.0, " beyond"), (0.01, " below"), (50.0, "")])
+def test_a_value_beyond_the_axis_of_the_strip_is_marked_as_such(made, ratio, mark):
+    _, data = made
+    other = json.loads(json.dumps(data))
+    race = next(one for one in other["scenes"][0]["times"]["races"] if one["level"] == 0.01)
+    race.update(ratio=ratio, low=0.9 * ratio, high=1.1 * ratio, outcome="faster", why="")
+    dots = re.findall(r'class="dot \w+([ \w]*)" href="throw.html"', front_of(other))
+    assert dots == [mark]
+    assert ("Beyond the axis" in front_of(other)) == bool(mark)
+
+
+def test_every_race_is_in_its_file_with_what_it_is_made_of(made):
+    folder, data = made
+    lines = (folder / "races.csv").read_text(encoding="utf-8").splitlines()
+    held = sum(len(scene["times"]["races"]) for scene in data["scenes"])
+    assert len(lines) == held + 1 and held % 4 == 0 and held > 0
+    for name in ("order", "loop", "calls", "compilation, cold", "motion until compilation has paid"):
+        assert name in lines[0]
+
+
 def test_the_error_from_an_engines_own_law_is_drawn_beside_that_from_the_truth(made):
     folder, data = made
     curve = next(c for c in data["scenes"][0]["cases"]["thrown"]["engines"] if "own_law" in c)
@@ -171,61 +255,13 @@ def test_a_plot_follows_the_scheme_of_the_page_and_has_no_background(made):
 
 @pytest.mark.parametrize(("x", "said"), [(266.4, "270×"), (3.84, "3.8×"), (0.0423, "0.042×"), (None, "–")])
 def test_a_ratio_has_two_digits(x, said):
-    assert words.factor(x) == said
+    assert numbers.factor(x) == said
 
 
 @pytest.mark.parametrize(("x", "tolerance", "said"), [
     (2.8284271, 3e-5, "2.82843"), (14400.0, 0.0, "14,400"), (1.0000005, 1e-13, "1.0000005000000"), (0.0, 1e-6, "0")])
 def test_a_finding_has_as_many_digits_as_its_tolerance(x, tolerance, said):
-    assert words.known(x, tolerance) == said
-
-
-def engine(label="pymunk", verdict="agrees"):
-    return {"label": label, "verdict": verdict, "departure_reason": ""}
-
-
-def race(theirs, ours, reached=True, speed="compiled"):
-    """A race whose times are (shortest, median, longest) [s]."""
-    rows = [{"label": label, "speed": speed, "steps": 10, "error": 0.01, "low": t[0], "seconds": t[1], "high": t[2]}
-            for label, speed, t in (("pymunk", "engine", theirs), ("Verlet", speed, ours))]
-    curve = {"label": "Verlet", "rows": [{"error": 0.01 if reached else 0.1}]}
-    result = {"quick": False, "times": {"rows": rows}, "cases": {"one": {"ours": [curve], "engines": [engine()]}}}
-    known = {"ours": ours[1], "ratio": theirs[1] / ours[1]} if ours else {"ours": None, "ratio": None}
-    return words.race({"engine": "pymunk", "product": "pymunk", "error": 0.01, "seconds": theirs[1],
-                       "method": "Verlet", "speed": speed, **known}, result)
-
-
-def test_a_race_is_won_only_beyond_a_factor_of_two_and_beyond_the_spread_of_its_times():
-    assert race((3.9, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "faster"
-    assert race((1.7, 1.8, 1.9), (0.9, 1.0, 1.1))["outcome"] == "a tie"
-    assert race((0.8, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "a tie"
-    assert race((0.2, 0.2, 0.2), (0.9, 1.0, 1.1))["outcome"] == "slower"
-    assert words.ratio(race((2.0, 4.0, 8.0), (1.0, 1.0, 1.0))) == "4× (2.0 to 8.0)"
-    assert words.ratio(race((1.1, 1.3, 1.9), (1.0, 1.0, 1.0))) == "1.3× (1.1 to 1.9)"
-
-
-def test_plain_python_alone_can_win_a_race_but_not_lose_it():
-    assert race((3.9, 4.0, 4.1), (0.9, 1.0, 1.1), speed="plain")["outcome"] == "faster"
-    for theirs in (1.8, 0.2):
-        found = race((theirs,) * 3, (0.9, 1.0, 1.1), speed="plain")
-        assert found["outcome"] == "open" and found["ratio"] is None and "plain Python only" in words.ratio(found)
-
-
-def test_a_race_without_a_ratio_says_why_and_is_lost_where_no_run_of_ours_is_that_accurate():
-    open_race = {"engine": "pymunk", "error": 0.01, "seconds": 1.0, "ratio": None}
-    for error, said, outcome in ((0.001, "too long to be timed", "open"), (0.1, "none of our runs", "slower")):
-        case = {"ours": [{"label": "Verlet", "rows": [{"error": error}]}], "engines": [engine()]}
-        found = words.race(open_race, {"quick": False, "cases": {"one": case}, "times": {"rows": []}})
-        assert said in words.ratio(found) and found["outcome"] == outcome
-        short = words.race(open_race, {"quick": True, "cases": {"one": case}, "times": {"rows": []}})
-        assert short["outcome"] == "open"
-
-
-def test_there_is_no_race_to_an_error_that_no_theory_bounds():
-    case = {"ours": [{"label": "loop", "rows": [{"error": 0.5}]}], "engines": [engine(verdict="undecided")]}
-    found = words.race({"engine": "pymunk", "error": 0.01, "seconds": 1.0, "ratio": 3.0},
-                       {"cases": {"one": case}, "times": {"rows": []}})
-    assert found["outcome"] == "open" and found["ratio"] is None and "luck" in words.ratio(found)
+    assert numbers.known(x, tolerance) == said
 
 
 def test_a_busy_machine_is_named_and_an_idle_one_is_not():
@@ -259,19 +295,3 @@ def test_no_page_names_what_only_a_programmer_knows():
         scene = modules.bind_scene(name)
         for text in (*map(modules.report_text, filter(None, (scene.truth, scene.law))), theory(scene)):
             assert not internal.findall(text), name
-
-
-def test_of_settings_that_err_alike_the_fastest_one_runs():
-    def entry(engine, error, seconds):
-        return {"engine": engine, "product": "pymunk", "error": error, "seconds": seconds, "ours": 1e-3,
-                "method": "ours", "speed": "compiled", "ratio": seconds / 1e-3}
-    settings = [entry("pymunk", 1e-4, 9.0), entry("pymunk, fewer iterations", 1.04e-4, 3.0),
-                entry("pymunk, fewest", 1e-3, 1.0)]
-    rows = [{"label": a["engine"], "speed": "engine", "error": a["error"], "low": a["seconds"], "high": a["seconds"]}
-            for a in settings]
-    rows.append({"label": "ours", "speed": "compiled", "error": 1e-4, "seconds": 1e-3, "low": 1e-3, "high": 1e-3})
-    engines = [engine(a["engine"]) for a in settings]
-    result = {"quick": False, "cases": {"only": {"engines": engines}}, "times": {"advantage": settings, "rows": rows}}
-    assert words.races(result)["pymunk"]["engine"] == "pymunk, fewer iterations"
-    settings[1]["error"] = rows[1]["error"] = 1.06e-4                  # errs more: its time is no time to that error
-    assert words.races(result)["pymunk"]["engine"] == "pymunk"

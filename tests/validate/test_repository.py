@@ -8,6 +8,7 @@ import sys
 import tomllib
 from hashlib import sha256
 
+from validate.products import PRODUCTS
 from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
 
@@ -157,6 +158,12 @@ OTHER_NAMES = {              # of distributions that are not called like their m
     "pybullet_utils": "pybullet", "sphinxcontrib": "sphinxcontrib-katex", "xdist": "pytest-xdist", "yaml": "pyyaml",
     "zmq": "pyzmq"}
 BESIDE_THE_WORKER = {"shipping", "wire"}     # files that the sandbox holds beside grading/worker.py
+
+
+def test_every_engine_belongs_to_the_default_installation():
+    """So the published report has them, and newer Pythons have a live engine in space."""
+    default = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["validate"]
+    assert {product.distribution for product in PRODUCTS} <= {re.match(r"[\w.-]+", one)[0] for one in default}
 
 
 def test_every_package_that_is_imported_is_declared():

@@ -7,8 +7,11 @@ import pytest
 
 from solutions.checks import BadInput
 from validate import measure, methods
+from validate.check import Verdict, Whose
+from validate.measure.accuracy import Outcome, judged
+from validate.measure.races import races
 from validate.methods import INTEGRATORS, RK4, VERLET
-from validate.scene import Method, Runner, no_limit, ours
+from validate.scene import PYMUNK, Departure, Method, Runner, no_limit, ours
 from validate.subject import modules
 
 PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)
@@ -63,6 +66,25 @@ def test_a_misspelt_field_is_an_error(misspelt):
         ours(VERLET, limit=limit, predicted="of no theory", **{misspelt: None})
 
 
+def test_a_departure_without_its_owner_is_refused():
+    with pytest.raises(BadInput, match="its law, its default, our set-up"):
+        ours(VERLET, limit=limit, predicted="of no theory", departure=Departure("it is", limit, "the engine's"))
+
+
+@pytest.mark.parametrize("name", modules.scene_names())
+def test_no_departure_is_our_own_set_up(name):
+    """What a scene could set up otherwise is no property of an engine."""
+    found = [r for r in modules.bind_scene(name).runners if r.departure and r.departure.whose is Whose.SET_UP]
+    assert not found, found
+
+
+def test_what_a_default_setting_does_is_not_called_the_engines_law():
+    """Reports and tables tell the two apart: a runner named `default` departs by its default."""
+    departures = [r for name in modules.scene_names() for r in modules.bind_scene(name).engine_runners if r.departure]
+    defaults = [r for r in departures if r.who.variant.startswith("default")]
+    assert len(defaults) > 5 and {r.departure.whose for r in defaults} == {Whose.DEFAULT}
+
+
 def test_a_case_that_the_scene_has_not_is_refused():
     scene = modules.bind_scene("quadratic_drag")
     runner = ours(VERLET, limit=limit, predicted="of no theory", slow_cases=("faling",))
@@ -88,3 +110,40 @@ def test_every_curve_has_a_prediction_or_a_reason_why_not(name):
 def test_the_largest_error_of_a_curve_that_no_theory_judges_is_infinite():
     unjudged = [r for r in modules.bind_scene("dominoes").runners if r.limit is no_limit]
     assert unjudged and all(r.largest_error(None, 0.1) == np.inf and not callable(r.predicted) for r in unjudged)
+
+
+def test_a_limit_that_was_measured_is_marked_and_says_on_what():
+    """Its text or its name has the word; `validate audit` and `validate limits` list what is marked."""
+    for name in modules.scene_names():
+        for r in modules.bind_scene(name).runners:
+            limit = getattr(r.limit, "func", r.limit)
+            says = "measured" in f"{limit.__name__} {limit.__doc__}"
+            assert says == bool(r.measured), (name, r.label)
+
+
+@pytest.mark.parametrize(("name", "case", "judges_itself"), [
+    ("card_house", "too smooth", True), ("card_house", "rough enough", False),
+    ("machine", "places", True), ("machine", "energy", False)])
+def test_an_engine_whose_run_is_the_truth_is_a_reference(name, case, judges_itself):
+    scene = modules.bind_scene(name)
+    assert [r.is_reference(scene.cases[case]) for r in scene.engine_runners] == [judges_itself]
+    assert not any(r.is_reference(p) for r in scene.our_runners for p in scene.cases.values())
+
+
+def test_a_reference_is_neither_judged_nor_raced():
+    """Its own truth would call it right, and a race against it would measure how fine its own steps are."""
+    scene = modules.bind_scene("throw")
+    runner = next(r for r in scene.engine_runners if r.who.product == PYMUNK)
+    its_own = replace(runner, is_truth=lambda p: True)
+    runs = [(100, Outcome(scene.truth(scene.parameters, scene.duration)))]
+    curves = [judged(scene, r, scene.parameters, np.array(scene.truth(scene.parameters, scene.duration)), runs, 4)
+              for r in (its_own, runner)]
+    assert [c["reference"] for c in curves] == [True, False] and curves[0]["message"] == ""
+    assert curves[0]["verdict"] is Verdict.REFERENCE
+    rows = [{"label": label, "speed": speed, "steps": 100, "error": 0.01, "seconds": 1.0, "low": 1.0, "high": 1.0}
+            for label, speed in ((runner.label, "engine"), ("Verlet", "plain"))]
+    ours = {"label": "Verlet", "verdict": "agrees", "rows": [], "expected": 2, "order": None}
+    raced = [races(rows, {"ours": [ours], "engines": [{**c, "verdict": verdict, "product": "pymunk", "variant": "",
+                           "substeps": 1}]},
+                   ["pymunk"], False, []) for c, verdict in zip(curves, (curves[0]["verdict"], "agrees"), strict=True)]
+    assert [len(found) for found in raced] == [0, 4]

@@ -2,6 +2,7 @@
 
 import re
 import types
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,9 +11,10 @@ import pytest
 from solutions.checks import BadInput
 from validate.check import states
 from validate.methods import EULER
+from validate.products import PYBULLET
 from validate.stability import integrators
-from validate.stability.case import EDGE, Worst, bisect
-from validate.stability.examine import all_cases, examine, found_by, subject_of
+from validate.stability.case import EDGE, Checks, Examined, NotRun, Worst, bisect
+from validate.stability.examine import all_cases, examine, found_by, stored, subject_of
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
@@ -50,6 +52,14 @@ def test_every_finding_says_what_it_claims_in_sentences(case):
     for f in found:
         assert f.claim.endswith(".") and f.observation.endswith(".") and f.quantity.endswith("]")
     assert len({f.quantity for f in found}) == len(found)
+
+
+def test_a_finding_of_an_engine_that_is_not_installed_is_not_run_and_is_kept_as_such():
+    absent, check = replace(PYBULLET, distribution="no-distribution-has-this-name"), Checks()
+    check.by(absent, "It holds.", "share [-]", dict)
+    assert check == [] and check.not_run == [NotRun("It holds.", "share [-]", "pybullet is not installed here")]
+    kept = stored(Examined("slug", "Title", "contact", check, None, check.not_run))
+    assert kept["findings"] == [] and kept["not_run"][0]["why"] == "pybullet is not installed here"
 
 
 def test_slugs_can_stand_in_an_address_and_are_unique_within_a_lesson():

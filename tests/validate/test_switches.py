@@ -57,7 +57,7 @@ def test_pybullet_forgets_a_switch_when_its_world_is_closed():
 
 def test_the_audit_derives_the_cost_and_the_change_of_a_part_again():
     rows = json.loads(json.dumps(list(parts("slide_then_roll", live=(PYMUNK, PYBULLET)).values())))
-    times = {"rows": [], "time_to_error": {}, "advantage": [], "ablations": [], "engine_parts": rows}
+    times = {"rows": [], "time_to_error": [], "races": [], "calls": [], "ablations": [], "engine_parts": rows}
     result = {"cases": {"only": {"ours": [], "engines": []}}, "times": times}
     assert list(audit.of_times(result, {"times": 0})) == []
     rows[0]["cost"] *= 1.1

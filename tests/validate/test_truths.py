@@ -1,5 +1,8 @@
 """Truths of scenes, compared with what the worked answers find on another way."""
 
+import functools
+import types
+
 import numpy as np
 import pytest
 
@@ -58,3 +61,39 @@ def test_a_net_of_the_lesson_has_the_springs_and_the_rest_state_of_the_reference
     assert ours == set(map(tuple, net.pairs.tolist()))
     _, v, network = spring_net.SCENE.start(p)
     assert np.abs(springs.spring_network_acceleration(0.0, spring_net.rest_positions(net), v, network)).max() < 1e-10
+
+
+# ---------------------------------------------------------------------------------------------- who made them
+
+def called(function, found=None):
+    """All functions and classes of `validate` that a function names, and that these name."""
+    found = set() if found is None else found
+    function = getattr(function, "__wrapped__", function)
+    function = function.func if isinstance(function, functools.partial) else function
+    if not isinstance(function, types.FunctionType | type) or not function.__module__.startswith("validate."):
+        return found
+    if function not in found:
+        found.add(function)
+        for value in named_by(function) if isinstance(function, types.FunctionType) else ():
+            called(value, found)
+    return found
+
+
+def named_by(function):
+    """What the names in a function's code mean, those of functions inside it included, and what it closes over."""
+    codes, names = [function.__code__], set()
+    while codes:
+        code = codes.pop()
+        names |= {*code.co_names}
+        codes += [one for one in code.co_consts if isinstance(one, types.CodeType)]
+    cells = [cell.cell_contents for cell in function.__closure__ or ()]
+    return [function.__globals__[name] for name in names if name in function.__globals__] + cells
+
+
+def test_a_truth_that_runs_an_engine_says_so_and_no_other_does():
+    """The engine is then a reference in the report: it must not judge itself."""
+    for name in modules.scene_names():
+        scene = modules.bind_scene(name)
+        runs_an_engine = any(one.__module__.startswith("validate.engines") for one in called(scene.truth))
+        says_so = any(r.is_reference(p) for r in scene.engine_runners for p in scene.cases.values())
+        assert runs_an_engine == says_so, name

@@ -46,7 +46,7 @@ def tree_of(name):
 # ---------------------------------------------------------------------------------------------- docstrings
 
 def prose(text):
-    """A paragraph as reStructuredText: names of functions become links, and nothing else is markup by accident."""
+    """Return a paragraph as reStructuredText: names of functions become links, and all other markup is escaped."""
     text, kept = " ".join(text.split()), []
 
     def keep(markup):

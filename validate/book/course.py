@@ -1,4 +1,4 @@
-"""Facts about the lessons, read from their files: exercises, points, hours, what a lesson needs.
+"""Facts about the lessons, read from their files: exercises, points, hours, and the lessons before.
 
 The head of a notebook is the source of a lesson's hours, of the mathematics that it takes for granted, and of the
 lessons that it builds on.  The tests compare the hours with an estimate, and the lessons with the calls.
@@ -41,7 +41,7 @@ class Exercise(NamedTuple):
 
     @property
     def minutes(self):
-        """An estimate."""
+        """Return an estimate of the minutes."""
         return MINUTES_PER_EXERCISE + MINUTES_PER_LINE * self.lines
 
 
@@ -54,12 +54,12 @@ class Head(NamedTuple):
 
     @property
     def whole(self):
-        """All hours of the lesson."""
+        """Return the hours of the whole lesson."""
         return self.reading + self.writing
 
     @property
     def numbers(self):
-        """Numbers of the lessons that it builds on."""
+        """Return the numbers of the lessons that it builds on."""
         return frozenset(map(int, re.findall(r"lesson (\d+)", self.before)))
 
 
@@ -82,12 +82,12 @@ class Lesson(NamedTuple):
 
     @property
     def estimate(self):
-        """(hours to read and run the notebook, hours to write all exercises), by the constants above."""
+        """Return (hours to read and run the notebook, hours to write all exercises), by the constants above."""
         reading = self.words / WORDS_PER_MINUTE + self.outputs * MINUTES_PER_OUTPUT
         return reading / 60.0, sum(one.minutes for one in self.exercises) / 60.0
 
     def hours(self, chosen):
-        """Hours of a student who does these exercises and reads their share of the notebook."""
+        """Return the hours of a student who does these exercises and reads the corresponding part of the notebook."""
         share = sum(one.minutes for one in chosen) / sum(one.minutes for one in self.exercises)
         return self.head.reading * len(chosen) / len(self.exercises) + self.head.writing * share
 

@@ -1,4 +1,4 @@
-"""Run the notebooks with the worked answers, and keep them with their outputs.
+"""Notebooks executed with the worked answers, and the store of their outputs.
 
 A kept notebook is used again until its text, an answer or a tool changes.
 """
@@ -30,7 +30,7 @@ FIRST = """%matplotlib inline
 
 @contextlib.contextmanager
 def kernel(folder, python=sys.executable, **environment):
-    """A client of a new kernel of that Python, with that working folder."""
+    """Yield a client of a new kernel of that Python, with that working folder."""
     # Two kernels that start at the same time may choose the same port, but not the same file.
     with tempfile.TemporaryDirectory() as place:
         manager = KernelManager(kernel_name="python3",

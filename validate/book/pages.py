@@ -64,7 +64,7 @@ def write(path, text):
 
 
 def with_pages_for_sources(page):
-    """A page of the report whose links to files of the repository lead to pages of the book, where there are any."""
+    """Return a page of the report whose links to files of the repository lead to pages of the book, if these exist."""
     def to_page(match):
         path, folder, text = Path(match[1]), match[2], match[3]
         parts = {"notebooks": "notebooks", "solutions": "lessons"}
@@ -76,10 +76,11 @@ def with_pages_for_sources(page):
 # ---------------------------------------------------------------------------------------------- notebooks
 
 def prepared(book, stem, folder, alts, report=False):
-    """An executed notebook as the book shows it.
+    """Return an executed notebook as the book shows it.
 
-    Sliders, which need a kernel, go, and the figure that they drew stays.  Long code is folded.  A player's script,
-    which every film repeats, becomes a file that the page loads once.  `alts` collects {file of a figure: description}.
+    Sliders, which need a kernel, are removed, and the figure that they drew stays.  Long code is folded.  A player's
+    script, which every film repeats, becomes a file that the page loads once.  `alts` collects {file of a figure:
+    description}.
     """
     players = set()
     for cell in book.cells:

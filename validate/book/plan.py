@@ -27,7 +27,7 @@ class Week(NamedTuple):
         return tuple(one for one in chosen if course.in_order(one.number)[1] not in self.leave_out)
 
     def hours(self):
-        """Hours of a student."""
+        """Return hours of a student."""
         return course.lessons()[self.lesson].hours(self.exercises()) if self.lesson else 0.0
 
 
@@ -90,7 +90,7 @@ def table(head, rows):
 
 
 def half(number):
-    """Hours to the half."""
+    """Return hours, rounded to the half."""
     return max(0.5, round(2.0 * number) / 2.0) if number else 0.0
 
 
@@ -177,7 +177,7 @@ def course_section(plan):
 
 
 def free_exercises():
-    """Per lesson, the exercises that no other exercise calls: a course may leave them out."""
+    """Return, for each lesson, the exercises that no other exercise calls: a course may omit them."""
     rows = []
     for name, lesson in course.lessons().items():
         free = [one for one in lesson.exercises if not course.used_by().get(one.number)]

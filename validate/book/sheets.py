@@ -1,4 +1,4 @@
-"""One sheet per lesson for those who teach it: hours, needs, exercises, what to show, and the commands."""
+"""One sheet per lesson for instructors: hours, needs, exercises, demonstrations, and the commands."""
 
 import html
 import re
@@ -106,7 +106,7 @@ def commands(lesson):
     before = [name for name, one in course.lessons().items() if one.number < lesson.number]
     said = "Make the students' zip when this lesson begins."
     if before:
-        said += (" It holds the earlier lessons as worked answers, so that nobody is held up by a gap in them. **So it "
+        said += (" It holds the earlier lessons as worked answers, so that no gap in them holds a student up. **So it "
                  f"publishes the answers of {before[-1]}**: if you accept that lesson late, hand the zip out when its "
                  "late days are over. If your course leaves lessons out, take the command from [Plan a course](../plan)"
                  ".")

@@ -1,4 +1,4 @@
-"""What must hold of a static site: its files ask no other host, and its links lead somewhere."""
+"""Checks of a static site: its files request nothing from other hosts, and its links lead somewhere."""
 
 import re
 from html.parser import HTMLParser
@@ -40,7 +40,7 @@ class Page(HTMLParser):
 
 
 def outside_in_script(text):
-    """Addresses of other hosts that a script may load."""
+    """Return addresses of other hosts that a script may load."""
     return [address for address in SCRIPT.findall(text) if not address.startswith(NAMESPACE)]
 
 
@@ -80,5 +80,5 @@ def wrong_links(site):
 
 
 def size(folder):
-    """Size of a folder [MB]."""
+    """Return size of a folder [MB]."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6

@@ -1,4 +1,4 @@
-"""How a lesson is divided into lectures, labs and exercises: a week, or two where its hours need them."""
+"""Division of a lesson into lectures, labs and exercises: one week, or two if its hours require it."""
 
 import re
 from typing import NamedTuple
@@ -128,14 +128,14 @@ WEEKS = {
 
 
 def sections(name):
-    """[(first, last, title)] of the sections with exercises, as the notebook has them."""
+    """Return [(first, last, title)] of the sections with exercises, as the notebook has them."""
     text = course.notebook_of(name).read_text(encoding="utf-8")
     found = re.findall(r"## Exercises? \d+\.(\d+)(?: (?:to|and) \d+\.(\d+))?: (.+?)(?:\\n|\")", text)
     return [(int(first), int(last or first), title) for first, last, title in found]
 
 
 def hours(name, first, last):
-    """Hours to write the exercises of a range, so rounded that all ranges of a lesson add up to its hours."""
+    """Return hours to write the exercises of a range, rounded so that all ranges of a lesson add up to its hours."""
     lesson = course.lessons()[name]
     until = [lesson.head.writing * sum(one.minutes for one in lesson.exercises[:number])
              / sum(one.minutes for one in lesson.exercises) for number in (first - 1, last)]

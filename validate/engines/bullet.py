@@ -1,19 +1,22 @@
 """pybullet, the 3D engine, with the settings that every scene needs."""
 
 from functools import cache, partial
+from itertools import pairwise
 
 import numpy as np
 
+from ..check import Whose
 from ..reference.orientation import quaternion
 from ..scene import Departure, EngineRun
 from . import quiet_import
-from .switches import Switch, made
+from .switches import Switch, made, worlds_made
 
 _idle: list = []             # connected clients that are free for another run
 ITERATIONS = 50              # of the contact solver, by default
 IMPACT_ITERATIONS = 50
 CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]
 WARM = 0.1                   # share of the last impulses with which the contact solver begins, by default [-]
+APART = 100.0                # of bodies in a step that is done beforehand, more than the size of any of them [m]
 UPRIGHT = np.eye(3)          # rotation of a body that is not rotated
 
 
@@ -38,7 +41,9 @@ class Bullet:
         self.client = _idle.pop() if _idle else pybullet.connect(pybullet.DIRECT)
         self.pb = Client(pybullet, self.client)
         made(self)
-        self.pb.setGravity(*map(float, gravity))
+        self.dt = dt
+        self.gravity, self.waiting = tuple(map(float, gravity)), []      # bodies whose moments do not count yet
+        self.pb.setGravity(*self.gravity)
         self.pb.setTimeStep(dt)
         # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking
         # threshold is global to the process and survives reconnecting, so every scene sets it
@@ -53,6 +58,40 @@ class Bullet:
         self.pb.resetBaseVelocity(body, list(map(float, v)))
         return body
 
+    def give_moments(self, body, m, I, maximal, **more):
+        """Set mass [kg] and moments (3,) [kg m²] in one call, or the first is lost; `more` are further properties.
+
+        In maximal coordinates moments that are not those of the shape count from the second step on: see `begin`.
+        """
+        moments = list(map(float, I))
+        if maximal and not np.allclose(self.pb.getDynamicsInfo(body, -1)[2], moments, rtol=1e-12, atol=0.0):
+            self.waiting.append(body)
+        self.pb.changeDynamics(body, -1, mass=m, localInertiaDiagonal=moments, **more)
+
+    def begin(self):
+        """Let all moments count in the first step, too; return self.  Joints are made afterwards.
+
+        Bullet computes the inverse tensor of a body in maximal coordinates at the end of a step.  So one step is done
+        beforehand, without gravity, with all bodies at rest and far from each other.  Then each is put in its place.
+        """
+        if not self.waiting:
+            return self
+        pb = self.pb
+        moving = [body for body in map(pb.getBodyUniqueId, range(pb.getNumBodies()))
+                  if pb.getDynamicsInfo(body, -1)[0] > 0.0]
+        starts = [(*pb.getBasePositionAndOrientation(body), *pb.getBaseVelocity(body)) for body in moving]
+        for k, (body, (_, q, *_)) in enumerate(zip(moving, starts)):
+            pb.resetBasePositionAndOrientation(body, (0.0, 0.0, APART * (k + 1)), q)
+            pb.resetBaseVelocity(body, (0.0,) * 3, (0.0,) * 3)
+        pb.setGravity(0.0, 0.0, 0.0)
+        self.waiting.clear()
+        self.step()
+        for body, (x, q, v, omega) in zip(moving, starts):
+            pb.resetBasePositionAndOrientation(body, x, q)
+            pb.resetBaseVelocity(body, v, omega)
+        pb.setGravity(*self.gravity)
+        return self
+
     def position(self, body):
         return self.pb.getBasePositionAndOrientation(body)[0]
 
@@ -66,36 +105,40 @@ class Bullet:
     def step(self):
         self.pb.stepSimulation()
 
+    def make_in_a_call(self, substeps):
+        """Let a call from Python make so many steps."""
+        self.pb.setPhysicsEngineParameter(fixedTimeStep=substeps * self.dt, numSubSteps=substeps)
+
     def close(self):
         """Empty the world and keep its client, with its own settings, for the next run: connecting takes 20 ms."""
-        self.pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, warmStartingFactor=WARM)
+        self.pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, warmStartingFactor=WARM, numSubSteps=0)
         self.pb.resetSimulation()
         _idle.append(self.client)
 
 
 class Rigid(Bullet):
-    """pybullet with bodies that have moments of inertia, in `maximal` or reduced coordinates.
+    """pybullet with bodies that have moments of inertia, in `maximal` or in reduced coordinates.
 
-    No damping, no clamp of velocity.
+    Bodies have no damping, and their velocity is not clamped.
     """
 
     def __init__(self, dt, gravity=(0.0, 0.0, 0.0), iterations=50, erp=0.2):
         super().__init__(dt, gravity)
-        # the slop is the depth at which a contact begins: a fall of 1e-5 m takes 1.4 ms, without friction
+        # a contact begins at the depth of the slop; until then a body falls, 1e-5 m in 1.4 ms, without friction
         self.pb.setPhysicsEngineParameter(numSolverIterations=iterations, erp=erp, contactSlop=0)
 
     def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=UPRIGHT, shape=-1, mu=0.0):
-        """Make a body at x with the rotation R; mass and moments go in one call, or the first is lost."""
+        """Make a body at x with the rotation R."""
         q = np.roll(quaternion(R), -1).tolist()  # pybullet has w last
         body = self.pb.createMultiBody(
             m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=int(maximal)
         )
         unclamped = {} if maximal else {"maxJointVelocity": 1e9}
-        self.pb.changeDynamics(
+        self.give_moments(
             body,
-            -1,
-            mass=m,
-            localInertiaDiagonal=list(map(float, I)),
+            m,
+            I,
+            maximal,
             linearDamping=0,
             angularDamping=0,
             lateralFriction=mu,
@@ -156,11 +199,9 @@ class Impacts(Bullet):
         body = pb.createMultiBody(
             m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=1
         )
-        inertia = {"mass": m, "localInertiaDiagonal": list(map(float, I))} if m else {}
         pb.changeDynamics(
             body,
             -1,
-            **inertia,
             restitution=e,
             lateralFriction=mu,
             linearDamping=0,
@@ -169,6 +210,8 @@ class Impacts(Bullet):
             spinningFriction=0,
             contactProcessingThreshold=0,
         )
+        if m:
+            self.give_moments(body, m, I, True)
         pb.resetBaseVelocity(body, list(map(float, v)), list(map(float, omega)))
         return body
 
@@ -200,9 +243,9 @@ def hidden_damping(acceleration, start):
     """Return the Departure of pybullet's default reduced-coordinate body, which adds −0.04 v (1 + |v|) to a.
 
     |v| is the length of the vector.  The damping of 0.04 is documented: it is the default of linearDamping in the
-    guide's table of changeDynamics.  Hidden is only the factor 1 + |v|: btMultiBody takes the same number for a linear
+    guide's table of changeDynamics.  Only the factor 1 + |v| is hidden: btMultiBody uses the same number for a linear
     and for a quadratic term.
-    start(p) → (x, v), each (d,); the law is solved by DOP853.
+    start(p) → (x, v), each (d,); DOP853 solves the law.
     *Source:* PyBullet Quickstart Guide, changeDynamics; Bullet's btMultiBody.cpp, DAMPING_K1_LINEAR and
     DAMPING_K2_LINEAR; measured.
     """
@@ -218,7 +261,49 @@ def hidden_damping(acceleration, start):
 
         return solve_ivp(slope, (0.0, max(t, 1e-9)), begin, method="DOP853", rtol=1e-12, atol=1e-13).y[:d, -1]
     return Departure("its reduced-coordinate bodies are damped by default, −0.04 v (1 + |v|); the 0.04 is documented, "
-                     "the factor 1 + |v| is not", own_law)
+                     "the factor 1 + |v| is not", own_law, Whose.DEFAULT)
+
+
+# ---------------------------------------------------------------------------------------------- bodies on hinges
+
+HINGES = "createMultiBody: links on hinges in reduced coordinates, no damping, no clamp of velocity, motors off"
+
+
+def chain(ends, m, inertia, centre, g, dt, read):
+    """Make the EngineRun of rods between neighbouring ends (n + 1, 2) in the plane of x and z, the first in its place.
+
+    m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
+    read(angles (n,) of the rods from x).  The angles of the hinges are Bullet's coordinates: no joint can open.
+    """
+    bullet, lengths = Bullet(dt, (0.0, 0.0, -g)), [float(np.linalg.norm(b - a)) for a, b in pairwise(ends)]
+    pb, links, still, zero = bullet.pb, range(len(lengths)), [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
+    body = pb.createMultiBody(
+        0.0, -1, -1, zero, still, linkMasses=[m for _ in links], linkCollisionShapeIndices=[-1 for _ in links],
+        linkVisualShapeIndices=[-1 for _ in links], linkPositions=[zero, *([l, 0.0, 0.0] for l in lengths[:-1])],
+        linkOrientations=[still for _ in links], linkInertialFramePositions=[[centre * l, 0.0, 0.0] for l in lengths],
+        linkInertialFrameOrientations=[still for _ in links], linkParentIndices=list(links),
+        linkJointTypes=[pb.JOINT_REVOLUTE for _ in links], linkJointAxis=[[0.0, -1.0, 0.0] for _ in links])
+    angles = np.unwrap([np.arctan2(*(b - a)[::-1]) for a, b in pairwise(ends)])
+    for k, angle in enumerate(np.diff(angles, prepend=0.0)):
+        # moments that are given in one call with a damping are lost
+        pb.changeDynamics(body, k, mass=m, localInertiaDiagonal=[float(inertia)] * 3)
+        pb.changeDynamics(body, k, jointDamping=0, linearDamping=0, angularDamping=0, maxJointVelocity=1e9)
+        pb.setJointMotorControl2(body, k, pb.VELOCITY_CONTROL, force=0)
+        pb.resetJointState(body, k, float(angle))
+    pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
+    here = lambda: np.cumsum([state[0] for state in pb.getJointStates(body, list(links))])
+    return EngineRun(bullet.step, lambda: read(here()), bullet.close)
+
+
+def substepped(make, substeps):
+    """Return make(p, dt) of the same world, of which a call makes so many steps of dt."""
+    def world(p, dt):
+        with worlds_made() as worlds:
+            run = make(p, dt)
+        for bullet in worlds:
+            bullet.make_in_a_call(substeps)
+        return run
+    return world
 
 
 def empty_world():
@@ -230,9 +315,9 @@ def empty_world():
 # ---------------------------------------------------------------------------------------------- switches
 
 def parts(bullet):
-    """[(body, link)] of everything in pybullet; empty where nothing has a shape.
+    """Return [(body, link)] of everything in pybullet; the list is empty if nothing has a shape.
 
-    pybullet does not tell whether a body in maximal coordinates has one.  But its client remembers what was called.
+    pybullet does not report whether a body in maximal coordinates has a shape, but its client remembers the calls.
     """
     pb = bullet.pb
     if "createCollisionShape" not in vars(pb):
@@ -242,7 +327,7 @@ def parts(bullet):
 
 
 def let_all_pass(bullet):
-    """Let no shape collide with another."""
+    """Disable the collisions of all shapes."""
     for body, link in parts(bullet):
         bullet.pb.setCollisionFilterGroupMask(body, link, 0, 0)
     return len(parts(bullet)) > 1
@@ -256,7 +341,7 @@ def rub_nothing(bullet):
 
 
 def forget_contacts(bullet):
-    """Begin the sweeps of each step from nothing."""
+    """Begin the sweeps of each step from zero impulses."""
     bullet.pb.setPhysicsEngineParameter(warmStartingFactor=0)
     return len(parts(bullet)) > 1
 

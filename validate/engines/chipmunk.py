@@ -46,7 +46,7 @@ def pymunk_floor(space):
 # ---------------------------------------------------------------------------------------------- switches
 
 def let_all_pass(space):
-    """Let no shape collide with another."""
+    """Disable the collisions of all shapes."""
     import pymunk
     for shape in space.shapes:
         shape.filter = pymunk.ShapeFilter(mask=0)
@@ -66,7 +66,7 @@ def sweep_once(space):
     return before > 1 and bool(space.constraints or len(space.shapes) > 1)
 
 
-# none for its memory of contacts: with collision_persistence = 0 it forgets a contact before it solves it
+# no switch for its memory of contacts: with collision_persistence = 0 it drops a contact before it solves it
 SWITCHES = (
     Switch("collision detection", let_all_pass),
     Switch("friction", rub_nothing),

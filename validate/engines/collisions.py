@@ -4,12 +4,15 @@
 import numpy as np
 
 from validate.engines.bullet import Bullet
+from validate.reference.collisions import Sweep
 from validate.scene import EngineRun
 
-# radius that pybullet sweeps over that of the ball [-]: with all of it a ball sticks to a surface that it grazes
-SWEPT = 0.8
-SWEPT_SETTINGS = (f"useMaximalCoordinates, ccdSweptSphereRadius {SWEPT:g} r, contactProcessingThreshold, contactERP "
-                  "and contactSlop 0")
+SWEPT_SETTINGS = ("useMaximalCoordinates, ccdSweptSphereRadius {:g} r, contactProcessingThreshold, contactERP and "
+                  "contactSlop 0")
+# distance at which a ball gets contact points, over its radius [-]: the contactBreakingThreshold is relative to half
+# the diagonal of the box around it
+REACH = 0.02 * np.sqrt(3.0)
+LEAST_WAY = 0.04             # m_allowedCcdPenetration: a sweep ignores what comes nearer by less in a step [m]
 
 
 def across(x):
@@ -18,7 +21,7 @@ def across(x):
 
 
 def target(bullet, p, grown=0.0):
-    """Make the static obstacle of a scene: the plane z = 0, or the cylinder about x, its radius larger by `grown`."""
+    """Make the static obstacle of a scene: the plane z = 0, or the cylinder about x with a radius larger by `grown`."""
     pb = bullet.pb
     if p.R == 0.0:
         shape, turn = pb.createCollisionShape(pb.GEOM_PLANE), [0.0, 0.0, 0.0, 1.0]
@@ -51,9 +54,11 @@ def bullet_rays(p, dt, place):
     return EngineRun(step, lambda: across(at), bullet.close)
 
 
-def bullet_swept(p, dt, place):
+def bullet_swept(p, dt, place, share):
     """Make an EngineRun of balls in maximal coordinates with continuous detection.
 
+    share: the radius that Bullet sweeps, over that of the ball [-].  With all of it a ball sticks to a surface that it
+    grazes.
     Each ball is read at the end of the step that detected its impact.  Its velocity changes only in the step after
     that.  A ball that moved less than v dt with its old velocity was stopped by the sweep.  A ball whose velocity
     has changed was found in contact at its previous position.
@@ -67,7 +72,7 @@ def bullet_swept(p, dt, place):
     for k in range(len(x)):
         body = pb.createMultiBody(1.0, shape, basePosition=x[k].tolist(), useMaximalCoordinates=1)
         pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=0, restitution=0,
-                          contactProcessingThreshold=0, ccdSweptSphereRadius=SWEPT * p.r)
+                          contactProcessingThreshold=0, ccdSweptSphereRadius=share * p.r)
         pb.resetBaseVelocity(body, v[k].tolist())
         bodies.append(body)
 
@@ -84,13 +89,13 @@ def bullet_swept(p, dt, place):
     return EngineRun(step, lambda: across(at), bullet.close)
 
 
-def swept_radius(p, dt):
-    """Return the radius [m] of the sphere that bullet_swept sweeps in a step; None for steps that are not swept.
+def sweep(p, dt, share):
+    """Return the Sweep of bullet_swept; None for steps that are shorter than half of the radius that it sweeps.
 
-    Those are shorter than half of it.  *Source:* Bullet: changeDynamics sets the threshold of motion to half the
-    radius; btDiscreteDynamicsWorld::integrateTransforms.
+    *Source:* Bullet: changeDynamics sets the threshold of motion to half the radius; btDiscreteDynamicsWorld:
+    integrateTransforms, and needsCollision and addSingleResult of btClosestNotMeConvexResultCallback.
     """
-    return SWEPT * p.r if p.speed * dt >= 0.5 * SWEPT * p.r else None
+    return Sweep(share * p.r, (1.0 + REACH) * p.r, LEAST_WAY) if p.speed * dt >= 0.5 * share * p.r else None
 
 
 def bullet_boxes(low, high):
@@ -112,7 +117,7 @@ def bullet_closest_pairs(low, high):
 
 
 def bullet_query_pairs(low, high):
-    """Return the pairs (m, 2) of pybullet's broad phase: for every box those whose enlarged boxes overlap it.
+    """Return the pairs (m, 2) of pybullet's broad phase: each box, and those whose enlarged bounds overlap it.
 
     A step is needed to register the boxes.
     """

@@ -34,8 +34,9 @@ KINDS = {
 
 
 def fallen(kind, n):
-    """(PileState, Pile) of n bodies on a lattice between walls;
-    sizes vary by a tenth where round, by a fifth where not.
+    """Return (PileState, Pile) of n bodies on a lattice between walls.
+
+    Sizes vary by a tenth for round bodies, and by a fifth for boxes.
     """
     d, rng, k = kind.d, np.random.default_rng(1), np.arange(n)
     if kind.shape == "round":
@@ -69,7 +70,10 @@ class Judged(NamedTuple):
 
 
 def inverse_tensors(q, inv_body):
-    """I⁻¹ (n + p, 3, 3) in the world, from quaternions (n + p, 4), w first, and inverse moments (n + p, 3)."""
+    """Return I⁻¹ (n + p, 3, 3) in the world, from quaternions (n + p, 4), w first.
+
+    inv_body: inverse moments (n + p, 3).
+    """
     w, xyz = q[:, 0], q[:, 1:]
     cross = np.zeros((len(q), 3, 3))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
@@ -109,9 +113,11 @@ class PymunkPile:
             self.space.step(DT)
 
     def judged(self):
-        """Return the Judged record of discs, whose contacts have one point each; of boxes only sums are known.
+        """Return the Judged record of discs, whose contacts have one point each.
 
-        The normal of a contact goes from its first shape to the other, and its impulse is that on the first.
+        Boxes are not judged: pymunk reports sums.
+
+        The normal of a contact points from its first shape to the other; its impulse is that on the first.
         """
         number = {body: k for k, body in enumerate(self.bodies)}
         rows = {}
@@ -130,19 +136,19 @@ class PymunkPile:
         return Judged(bodies, (a, b, n, p, gap), J)
 
     def places(self):
-        """(x (n + p, 2), angles (n + p,)) of bodies and planes."""
+        """Return (x (n + p, 2), angles (n + p,)) of bodies and planes."""
         still = np.zeros((self.planes, 2))
         places = [tuple(body.position) for body in self.bodies]
         angles = [body.angle for body in self.bodies]
         return np.vstack((places, still)), np.append(angles, still[:, 0])
 
     def velocities(self):
-        """(v (n, 2), angular velocities (n,))."""
+        """Return (v (n, 2), angular velocities (n,))."""
         return (np.array([tuple(body.velocity) for body in self.bodies]),
                 np.array([body.angular_velocity for body in self.bodies]))
 
     def wall_force(self):
-        """Sum of the forces (2,) [N] of floor and walls on the bodies."""
+        """Return the sum (2,) [N] of the forces of floor and walls on the bodies."""
         force = np.zeros(2)
 
         def add(arbiter):
@@ -206,19 +212,22 @@ class BulletPile:
             self.p.stepSimulation(physicsClientId=self.c)
 
     def places(self):
-        """(x (n + p, 3), quaternions (n + p, 4), w first) of bodies and planes."""
+        """Return (x (n + p, 3), quaternions (n + p, 4), w first) of bodies and planes."""
         both = [self.p.getBasePositionAndOrientation(body, physicsClientId=self.c) for body in self.bodies]
         x, q = (np.array([one[k] for one in both]) for k in (0, 1))
         upright = np.tile([1.0, 0.0, 0.0, 0.0], (self.planes, 1))
         return np.vstack((x, np.zeros((self.planes, 3)))), np.vstack((q[:, [3, 0, 1, 2]], upright))
 
     def velocities(self):
-        """(v (n, 3), angular velocities (n, 3))."""
+        """Return (v (n, 3), angular velocities (n, 3))."""
         both = [self.p.getBaseVelocity(body, physicsClientId=self.c) for body in self.bodies]
         return np.array([v for v, _ in both]), np.array([omega for _, omega in both])
 
     def wall_force(self):
-        """Sum of the forces (3,) [N] of floor and walls on the bodies; walls come first, so they are body A."""
+        """Return the sum (3,) [N] of the forces of floor and walls on the bodies.
+
+        Walls were made first, so they are body A.
+        """
         force = np.zeros(3)
         for wall in self.walls:
             for c in self.p.getContactPoints(bodyA=wall, physicsClientId=self.c):
@@ -258,7 +267,7 @@ class Tower(NamedTuple):
 
 
 def pymunk_tower(tower, iterations, slop):
-    """Build a tower; return a function that waits and returns (force under each cube [N], its sinking [m])."""
+    """Build a tower; return a function that runs it and returns (force under each cube [N], penetration [m])."""
     import pymunk
     space = pymunk_space((0.0, -tower.g))
     space.iterations, space.collision_slop = iterations, slop
@@ -282,17 +291,17 @@ def pymunk_tower(tower, iterations, slop):
             forces[low + 1] += abs(arbiter.total_impulse.y) / DT
         for body in bodies:
             body.each_arbiter(add)
-        forces[1:] *= 0.5                                                # two bodies tell of each joint but the lowest
+        forces[1:] *= 0.5                                                # two bodies count each joint but the lowest
         return forces, np.array([body.position.y for body in bodies]) - tower.heights()
     return wait
 
 
 def bullet_tower(tower, iterations, residual, warm=WARM, maximal=False):
-    """Do the same in pybullet; return the client's close function, too.
+    """Build a tower in pybullet; return the same function, and one that closes the client.
 
-    warm: the share of the last impulses with which its solver begins.  maximal: the ground has maximal coordinates as
-    the cubes do; else its contacts begin from nothing.  A force is the vertical part of all contacts of a joint: they
-    tilt as corners sink, and friction carries the rest.
+    warm: the share of the last impulses with which its solver begins.  maximal: the ground has maximal coordinates,
+    as the cubes have.  Otherwise the solver begins at the ground's contacts from zero.  A force is the vertical
+    component of all contacts of a joint, because contacts tilt as corners sink, and friction carries the rest.
     """
     bullet = Rigid(DT, (0.0, 0.0, -tower.g), iterations)
     pb = bullet.pb
@@ -303,6 +312,8 @@ def bullet_tower(tower, iterations, residual, warm=WARM, maximal=False):
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * tower.size] * 3)
     bodies = [bullet.body(m, (inertia,) * 3, (0.0, 0.0, y), (0.0,) * 3, True, shape=shape, mu=mu)
               for m, inertia, y, mu in zip(tower.masses, tower.inertias, tower.heights(), tower.frictions())]
+
+    bullet.begin()
 
     def upward(c):
         return c[9] * c[7][2] - c[10] * c[11][2] - c[12] * c[13][2]      # friction is that on the lower body

@@ -10,8 +10,8 @@ from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.reference.friction import HALF
 from validate.scene import EngineRun
 
-# half its height [m]: friction acts that far below the centre, and moves the load forward by μ LOW.  With a cube and
-# μ = 0.8 nearly all load is on its front edge, and pybullet's friction is up to 0.7 % too strong
+# half its height [m]: friction acts that far below the centre and shifts the load forward by μ LOW.  With a cube and
+# μ = 0.8 nearly all load is on the front edge, and pybullet's friction is up to 0.7 % too large
 LOW = 0.1
 MASS = 1.0                   # [kg]
 INERTIA = MASS * ((2.0 * HALF) ** 2 + (2.0 * LOW) ** 2) / 12.0  # about the normal of pymunk's plane [kg m²]
@@ -42,9 +42,9 @@ def pymunk_block(gravity, mu, v, dt, read, push=None):
 
 
 def bullet_block(gravity, mu, v, fastest, dt, read, push=None, pyramid=False):
-    """Make an EngineRun with a slab on the floor z = 0: gravity, v (3,); fastest: its greatest speed [m/s].
+    """Make an EngineRun with a slab on the floor z = 0: gravity, v (3,); fastest: its largest speed [m/s].
 
-    pyramid: a body of reduced coordinates, with friction in a box along x and y.
+    pyramid: use a body of reduced coordinates, with friction in a box along x and y.
     """
     bullet = Bullet(dt, gravity)
     pb = bullet.pb

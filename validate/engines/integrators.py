@@ -1,4 +1,4 @@
-"""A point in a field of forces, and a planet, in both engines."""
+"""A point in a field of forces, and a planet, in the engines."""
 
 import numpy as np
 
@@ -6,13 +6,14 @@ from ..reference.integrators import attraction, perihelion
 from ..scene import EngineRun
 from .bullet import Bullet
 from .chipmunk import pymunk_space, pymunk_world
+from .mujoco import points
 
 
 def pymunk_point(gravity, m, v, read, dt, force=None, damping=0.0):
     """Make an EngineRun of a point that starts in the origin; gravity and v (2,); read(position).
 
-    force(x, v) → (2,) [N], in floats, is applied before each step.  Chipmunk moves first and then applies it: this
-    forward Euler is harmless where the force depends on v alone, so x is None.
+    force(x, v) → (2,) [N], in floats, is applied before each step.  Chipmunk moves the point first and then applies the
+    force.  This is forward Euler, which is harmless if the force depends on v alone, so x is None.
     damping [1/s] is the space's own: it keeps e^(−damping) of the velocity after one second.
     """
     import pymunk
@@ -33,8 +34,8 @@ def bullet_point(gravity, m, x, v, read, dt, force=None, damping=0.0, default=Fa
     """Make an EngineRun of a point; gravity, x and v (3,); read(position).
 
     force(x, v) → (2,) [N], in floats, is applied along x and y, from the state before each step.
-    damping [1/s] is the body's own: it takes the share 1 − e^(−damping) of the velocity in one second.
-    default: the body is as createMultiBody makes it.
+    damping [1/s] is the body's own: it removes the fraction 1 − e^(−damping) of the velocity in one second.
+    default: use a body with the defaults of createMultiBody.
     """
     bullet = Bullet(dt, gravity)
     body = bullet.point_mass(m, x, v, default)
@@ -52,8 +53,9 @@ def bullet_point(gravity, m, x, v, read, dt, force=None, damping=0.0, default=Fa
 
 
 def pymunk_planet(p, dt, ahead=0.0):
-    """Chipmunk calls velocity_func after it has moved the body, so the attraction is that at the new position.
+    """Make an EngineRun of a planet whose attraction is set in velocity_func.
 
+    Chipmunk calls velocity_func after it has moved the body, so the attraction is that at the new position.
     A force applied before step() would be that at the old position: forward Euler, which spirals outwards.
     """
     import pymunk
@@ -72,10 +74,20 @@ def pymunk_planet(p, dt, ahead=0.0):
     return pymunk_world(space, dt, lambda: np.array(body.position))
 
 
-def bullet_planet(p, dt, ahead=0.0):
-    """Apply the attraction as a force, from the position before each step.
+def mujoco_planet(p, dt):
+    """Call the attraction in every stage of Runge–Kutta's step."""
+    mu, (x, v) = p.mu, perihelion(p)
 
-    By default a body would carry the damping −0.04 v (1 + |v|) and spiral into the sun within 15 s.
+    def pull(x, v):
+        share = -mu / (x[0] * x[0] + x[1] * x[1]) ** 1.5
+        return share * x[0], share * x[1]
+    return points([1.0], [x], [v], dt, lambda x: x[0], force=pull)
+
+
+def bullet_planet(p, dt, ahead=0.0):
+    """Make an EngineRun of a planet; the attraction is a force, from the position before each step.
+
+    With its default damping, −0.04 v (1 + |v|), a body would spiral into the sun within 15 s.
     """
     bullet = Bullet(dt)
     x, v = perihelion(p)

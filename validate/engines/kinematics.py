@@ -1,4 +1,7 @@
-"""pybullet's inverse kinematics of arms.  IK_SDLS would end the process in 3.2.7."""
+"""pybullet's inverse kinematics of arms.
+
+IK_SDLS is not used, because it ends the process in version 3.2.7.
+"""
 
 import numpy as np
 
@@ -24,12 +27,12 @@ class BulletChain(Bullet):
             linkParentIndices=list(every), linkJointTypes=kinds, linkJointAxis=directions)
 
     def begin(self, theta):
-        """Set the angles from which every search starts; none of them changes these."""
+        """Set the angles from which every search starts; no search changes them."""
         for k, angle in enumerate(theta):
             self.pb.resetJointState(self.body, k, float(angle))
 
     def search(self, target, **more):
-        """Angles for a target [x, y, z], as pybullet returns them."""
+        """Return the angles that pybullet finds for a target [x, y, z]."""
         return self.pb.calculateInverseKinematics(self.body, self.n, target, **more)
 
 
@@ -40,7 +43,7 @@ class BulletArm(BulletChain):
         super().__init__(np.tile((0.0, 0.0, 1.0), (len(lengths), 1)), np.outer(lengths, (1.0, 0.0, 0.0)))
 
     def solve(self, theta, target, direction=None, damping=None, iterations=None, threshold=None):
-        """Angles (n,) for a target (2,), from the angles θ; direction [rad] of the last link, damping d [m²]."""
+        """Return angles (n,) for a target (2,), from the angles θ; direction [rad] of the last link, damping d [m²]."""
         self.begin(theta)
         more = {}
         if direction is not None:

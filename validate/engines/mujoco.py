@@ -1,8 +1,8 @@
-"""MuJoCo, a witness where pybullet has no wheel: joints by angles and soft contacts, in double precision.
+"""MuJoCo, a live witness of order 4, also where pybullet has no wheel: joints by angles and soft contacts.
 
 Bodies on joints and free bodies have no constraint here that a step could violate.  Runge–Kutta 4 turns a body by
-the method of Munthe-Kaas, and what is left of its error is of order 4; MuJoCo's own default is the semi-implicit Euler
-step.  A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
+the method of Munthe-Kaas, so its error is of order 4.  MuJoCo's default is the semi-implicit Euler step.
+A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
 """
 
 from functools import cache
@@ -15,20 +15,21 @@ from ..scene import EngineRun
 from . import quiet_import
 
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
+LEAST = 1e-14                            # moment of what has none [kg m²]: MuJoCo permits no less than 1e-15
 SWITCHES = ()                            # its contacts, friction and joints are rows of one problem
 SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 
 @cache
 def module():
-    """MuJoCo itself.  What it would write into a file MUJOCO_LOG.TXT of the working folder is dropped."""
+    """Return MuJoCo's module, and suppress its log file MUJOCO_LOG.TXT in the working folder."""
     mujoco = quiet_import("mujoco")
     mujoco.set_mju_user_warning(lambda text: None)
     return mujoco
 
 
 def text(values):
-    """Numbers as MuJoCo's XML has them, with all their digits."""
+    """Return numbers as MuJoCo's XML writes them, with all their digits."""
     return " ".join(repr(float(value)) for value in np.ravel(values))
 
 
@@ -42,10 +43,21 @@ def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
     return model, mujoco.MjData(model)
 
 
-def running(model, data, read):
-    """Make the EngineRun of a world."""
-    step = module().mj_step
-    return EngineRun(lambda: step(model, data), read, lambda: None)
+def running(model, data, read, load=None):
+    """Make the EngineRun of a world.
+
+    load(data) adds forces to data.qfrc_passive in every stage of a step: a force that is set once per step would make
+    Runge–Kutta a method of order 1.  MuJoCo has one callback for all worlds, so it is there during the step only.
+    """
+    step, take = module().mj_step, module().set_mjcb_passive
+
+    def loaded():
+        take(lambda model, data: load(data))
+        try:
+            step(model, data)
+        finally:
+            take(None)
+    return EngineRun(loaded if load else lambda: step(model, data), read, lambda: None)
 
 
 def empty_world():
@@ -54,14 +66,60 @@ def empty_world():
 
 
 def inertial(m, moments, place=(0.0, 0.0, 0.0)):
-    """The mass [kg] of a body, its moments about its centre [kg m²], and where that is in the body [m]."""
+    """Return the XML of a mass [kg], its moments about its centre [kg m²], and the place of the centre [m]."""
     return f'<inertial mass="{text(m)}" pos="{text(place)}" diaginertia="{text(moments)}"/>'
+
+
+# ---------------------------------------------------------------------------------------------- points
+
+def sliding(m, d, inside="", **joint):
+    """A body of m [kg] that moves along the first d axes, with attributes of the joints, such as their damping."""
+    attributes = "".join(f' {name}="{text(value)}"' for name, value in joint.items())
+    slides = "".join(f'<joint type="slide" axis="{text(axis)}"{attributes}/>' for axis in np.eye(3)[:d])
+    return f"{slides}{inertial(m, np.ones(3))}{inside}"
+
+
+def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), force=None, **joint):
+    """Make the EngineRun of points at x (n, d) with velocities v; read(x (n, d)).
+
+    force(x, v) → (n, d) [N], of flat lists of floats, is called in every stage of a step.
+    joint: stiffness [N/m] of a spring to the origin and damping [N s/m], along each axis.
+    """
+    d = len(x[0])
+    model, data = world(dt, "".join(f"<body>{sliding(m, d, **joint)}</body>" for m in masses), gravity)
+    data.qpos[:], data.qvel[:] = np.ravel(x), np.ravel(v)
+
+    def load(data):
+        data.qfrc_passive += force(data.qpos.tolist(), data.qvel.tolist())
+    return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()), load if force else None)
+
+
+def net(net, dt, observe):
+    """Make the EngineRun of a ReferenceNetwork of validate/reference; observe(x (n, d)) reads it.
+
+    Springs with dampers are tendons, viscosity is a damping of the joints, and wind is a part of gravity.
+    """
+    wide, d, free = net.padded(), net.x.shape[1], net.free()
+    site = lambda n, place: f'<site name="{n}" pos="{text(place)}"/>'
+    bodies = "".join(f'<body pos="{text(x)}">{sliding(net.m, d, site(n, np.zeros(3)), damping=net.k_v)}</body>'
+                     if free[n] else site(n, x) for n, x in enumerate(wide.x))
+    tendons = "".join(f'<spatial springlength="{text(rest)}" stiffness="{text(net.k)}" damping="{text(net.k_d)}">'
+                      f'<site site="{i}"/><site site="{j}"/></spatial>'
+                      for (i, j), rest in zip(net.pairs, net.rest) if free[i] or free[j])
+    model, data = world(dt, bodies, wide.gravity + wide.wind / net.m, more=f"<tendon>{tendons}</tendon>")
+    data.qvel[:] = net.v[free].ravel()
+
+    def read():
+        x = net.x.copy()
+        x[free] += data.qpos.reshape(-1, d)
+        return observe(x)
+    return running(model, data, read)
 
 
 # ---------------------------------------------------------------------------------------------- bodies that turn
 
 def rotation_of(q):
-    """R (3, 3) of the quaternion at the beginning of q."""
+    """Return R (3, 3) of the quaternion in the first four entries of q."""
     R = np.empty(9)
     module().mju_quat2Mat(R, q)
     return R.reshape(3, 3)
@@ -87,18 +145,18 @@ def top(m, moments, length, R, spin, g, dt):
 
 # ---------------------------------------------------------------------------------------------- bodies on hinges
 
-def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4"):
+def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4", joint=""):
     """Make the EngineRun of rods between neighbouring ends (n + 1, 2), the first end in its place.
 
     m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
-    read(angles (n,) of the rods from x).
+    read(angles (n,) of the rods from x).  joint: attributes of the hinges in XML.
     """
     body, angles = "", np.unwrap([np.arctan2(*(end - begin)[::-1]) for begin, end in pairwise(ends)])
     lengths = [np.linalg.norm(end - begin) for begin, end in pairwise(ends)]
     for k in reversed(range(len(lengths))):
         place = (lengths[k - 1] if k else 0.0, 0.0, 0.0)
-        body = (f'<body pos="{text(place)}"><joint type="hinge" axis="0 -1 0"/>'
-                f'{inertial(m, np.full(3, inertia), (centre * lengths[k], 0.0, 0.0))}{body}</body>')
+        body = (f'<body pos="{text(place)}"><joint type="hinge" axis="0 -1 0" {joint}/>'
+                f'{inertial(m, np.full(3, max(inertia, LEAST)), (centre * lengths[k], 0.0, 0.0))}{body}</body>')
     model, data = world(dt, body, (0.0, 0.0, -g), integrator)
     data.qpos[:] = np.diff(angles, prepend=0.0)
     return running(model, data, lambda: read(np.cumsum(data.qpos)))
@@ -107,7 +165,7 @@ def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4"):
 # ---------------------------------------------------------------------------------------------- contacts
 
 def contacts(mu):
-    """The default of all shapes: friction, and a contact that is damped critically."""
+    """Return the XML of the default of all shapes: friction, and a critically damped contact."""
     return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
             f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
 
@@ -120,12 +178,12 @@ def block(gravity, mu, v, dt, read):
     slides = "".join(f'<joint type="slide" axis="{text(axis)}"/>' for axis in np.eye(3))
     model, data = world(dt, f'<geom type="plane" size="0 0 1"/><body>{slides}<geom size="0.1" pos="0 0 0.1" mass="1"/>'
                         "</body>", (gravity[0], 0.0, gravity[1]), "Euler", contacts(mu))
-    data.qpos[2], data.qvel[0] = -1e-9, v                # inside, so that the first step has a contact
+    data.qpos[2], data.qvel[0] = -1e-9, v                # below the plane, so that the first step has a contact
     return running(model, data, lambda: read(data.qpos))
 
 
 def tower(cubes, dt):
-    """Build a Tower of cubes; return a function that waits and returns (force under each cube [N], its sinking [m])."""
+    """Build a Tower of cubes; return a function that runs it and returns (force under each cube [N], its depth [m])."""
     half, bodies = np.full(3, 0.5 * cubes.size), ""
     for m, y in zip(cubes.masses, cubes.heights()):
         bodies += (f'<body pos="0 0 {text(y)}"><freejoint/><geom type="box" size="{text(half)}" mass="{text(m)}"/>'
@@ -146,9 +204,9 @@ def tower(cubes, dt):
 
 
 def sag(load, m, below):
-    """The depth [m] of each of the four contacts under a cube: a load of a quarter, F (1 − d) τ² (1/m + 1/m')/4.
+    """Return the depth [m] of each of the four contacts under a cube that carry F/4: F (1 − d) τ² (1/m + 1/m')/4.
 
-    m: mass of the cube [kg];    below: of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
+    m: mass of the cube [kg];    below: mass of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
     k = 1/(d τ²) and the regularisation R = (1 − d)/d (1/m + 1/m').
     *Source:* the documentation of MuJoCo, chapter Computation.
     """

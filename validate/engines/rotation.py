@@ -10,7 +10,7 @@ def free_body(p, dt, maximal=False):
     """Make pybullet's free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
     bullet = Rigid(dt)
     body = bullet.body(1.0, p.moments(), (0.0, 0.0, 0.0), p.omega(), maximal)
-    return EngineRun(bullet.step, lambda: bullet.R(body).ravel(), bullet.close)
+    return EngineRun(bullet.begin().step, lambda: bullet.R(body).ravel(), bullet.close)
 
 
 def rolling_ball(ball, v, omega, maximal, dt):
@@ -20,4 +20,4 @@ def rolling_ball(ball, v, omega, maximal, dt):
     body = bullet.body(ball.m, ball.I_body, (0.0, 0.0, ball.radius), omega, maximal,
                        v=v, shape=bullet.ball(ball.radius), mu=ball.mu)
     read = lambda: np.array([bullet.position(body)[0], bullet.velocity(body)[0], ball.radius * bullet.omega(body)[1]])
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)

@@ -9,7 +9,7 @@ from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.reference.orientation import about
 from validate.scene import EngineRun
 
-OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: it sees a contact when there is one
+OVERLAP = 1e-6               # with which pymunk's bodies begin [m], because it detects a contact only if bodies overlap
 HEAVY = 1e9                  # mass of pybullet's turntable over that of the ball [-]: it falls by 1e-7 m in 5 s
 WIDE = 1e12                  # moment of inertia of pybullet's wedge, which cannot turn [kg m²]
 ITERATIONS = 100             # of both engines' contact solvers
@@ -47,6 +47,7 @@ def pybullet_turntable(ball, x, v, omega, dt):
     bullet.body(HEAVY * ball.m, HEAVY * ball.m * np.ones(3), (0.0, 0.0, -half[2]), ball.floor_omega, True, shape=shape,
                 mu=1.0)
     body = bullet.body(ball.m, ball.I_body, x, omega, True, v=v, shape=bullet.ball(ball.radius), mu=ball.mu)
+    bullet.begin()
     weight = (ball.m * ball.gravity).tolist()
 
     def step():
@@ -70,47 +71,40 @@ def pybullet_slab(bullet):
 
 
 def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
-    """Make an EngineRun of a wedge that cannot turn and a block on it, both boxes; nothing rubs.
+    """Make an EngineRun of a wedge that cannot rotate and a block on it, both boxes, without friction.
 
     x (2, 2) centres, m (2,), half: half size of the block, which is a cube, thick (2,): half sizes of the wedge.
     read: x of the wedge, x and y of the block, and their velocities.  The block leaves a contact point behind by its
-    way in a step, and loses it where that is more than the breaking threshold.
+    displacement in a step, and loses the point if that exceeds the breaking threshold.
 
     Each begins a micrometre inside what carries it: without, a rounding decides which contacts the first step has.
-    In maximal coordinates a moment of inertia counts from the second step on, so that the first one is done far from
-    everything and without gravity.
     """
-    bullet = Rigid(dt, iterations=ITERATIONS)
+    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS)
     pb, R, down = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle), np.array([0.0, -OVERLAP])
     pb.setPhysicsEngineParameter(contactBreakingThreshold=1.0)
     slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
     floor, pair = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal)), []
     moments = np.full(3, WIDE), np.full(3, 2.0 / 3.0 * m[1] * half**2)
     places = x[0] + down, x[1] + down - OVERLAP * np.array([np.sin(angle), np.cos(angle)])
-    for mass, moment, sizes in zip(m, moments, ((*thick[:1], 2.0 * half, *thick[1:]), (half, half, half))):
-        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, sizes)))
-        apart = (0.0, 0.0, 10.0 * (1 + len(pair)))
-        pair.append(bullet.body(mass, moment, apart, np.zeros(3), maximal, R=R, shape=shape))
+    sizes = (*thick[:1], 2.0 * half, *thick[1:]), (half, half, half)
+    for mass, moment, size, place in zip(m, moments, sizes, places):
+        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, size)))
+        pair.append(bullet.body(mass, moment, (place[0], 0.0, place[1]), np.zeros(3), maximal, R=R, shape=shape))
     pb.changeDynamics(floor, -1, lateralFriction=0, rollingFriction=0, spinningFriction=0, restitution=0)
-    bullet.step()
-    for body, place in zip(pair, places):
-        q = pb.getBasePositionAndOrientation(body)[1]
-        pb.resetBasePositionAndOrientation(body, [float(place[0]), 0.0, float(place[1])], q)
-    pb.setGravity(0.0, 0.0, -g)
     wedge, block = pair
 
     def read():
         return np.array([bullet.position(wedge)[0], *bullet.position(block)[::2], bullet.velocity(wedge)[0],
                          *bullet.velocity(block)[::2]])
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 # ---------------------------------------------------------------------------------------------- bodies on joints
 
 def pymunk_chain(ends, m, inertia, g, iterations, bias, dt, read):
-    """Make an EngineRun of rods between neighbouring ends (n + 1, 2), on PivotJoints, the first one in its place.
+    """Make an EngineRun of rods between neighbouring ends (n + 1, 2), on PivotJoints; the first end is fixed.
 
-    read(centres (n, 2), angles (n,)).  bias: the part of a joint's gap that is left after a second.
+    read(centres (n, 2), angles (n,)).  bias: the fraction of a joint's gap that remains after a second.
     """
     import pymunk
     space = pymunk_space((0.0, -g))
@@ -134,13 +128,11 @@ def pybullet_chain(ends, m, moments, g, iterations, erp, dt, read):
     pb, rods, half = bullet.pb, [], [0.5 * float(np.linalg.norm(ends[1] - ends[0])), 0.0, 0.0]
     for begin, end in pairwise(ends):
         R, centre = about(np.array([0.0, 1.0, 0.0]), -np.arctan2(*(end - begin)[::-1])), 0.5 * (begin + end)
-        rod = bullet.body(m, moments, (centre[0], 0.0, centre[1]), np.zeros(3), True, R=R)
-        back = [-a for a in half]
-        if rods:
-            pb.createConstraint(rods[-1], -1, rod, -1, pb.JOINT_POINT2POINT, [0, 0, 0], half, back)
-        else:
-            bullet.pivot(rod, back, True)
-        rods.append(rod)
+        rods.append(bullet.body(m, moments, (centre[0], 0.0, centre[1]), np.zeros(3), True, R=R))
+    back = [-a for a in half]
+    bullet.begin().pivot(rods[0], back, True)
+    for above, rod in pairwise(rods):
+        pb.createConstraint(above, -1, rod, -1, pb.JOINT_POINT2POINT, [0, 0, 0], half, back)
 
     def where():
         x, along = np.array([bullet.position(rod) for rod in rods]), np.array([bullet.R(rod)[:, 0] for rod in rods])
@@ -168,15 +160,15 @@ def pymunk_cradle(pivots, x, m, inertia, R, g, dt, read):
 
 def pybullet_cradle(pivots, x, m, inertia, R, g, dt, read):
     """Make the same of spheres in the plane of x and z."""
-    bullet, zero, balls = Impacts(dt, (0.0, 0.0, -g)), (0.0,) * 3, []
+    bullet, zero = Impacts(dt, (0.0, 0.0, -g)), (0.0,) * 3
     pb = bullet.pb
     pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, erp=1.0)
-    for pivot, place in zip(pivots, x):
-        ball = bullet.ball(m, inertia, R, (place[0], 0.0, place[1]), zero, zero, 1.0, 0.0)
+    balls = [bullet.ball(m, inertia, R, (place[0], 0.0, place[1]), zero, zero, 1.0, 0.0) for place in x]
+    bullet.begin()
+    for pivot, place, ball in zip(pivots, x, balls):
         nail = pb.createMultiBody(0, -1, basePosition=[float(pivot[0]), 0.0, float(pivot[1])], useMaximalCoordinates=1)
         arm = [float(pivot[0] - place[0]), 0.0, float(pivot[1] - place[1])]
         pb.createConstraint(ball, -1, nail, -1, pb.JOINT_POINT2POINT, [0, 0, 0], arm, [0, 0, 0])
-        balls.append(ball)
 
     def where():
         plane = lambda values: np.array(values)[:, ::2]

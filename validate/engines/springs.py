@@ -8,9 +8,9 @@ from validate.engines.chipmunk import pymunk_space, pymunk_world
 def pymunk_net(net, dt, observe):
     """Make an EngineRun of point masses and DampedSprings; observe(x (n, d)) reads it.
 
-    Masses are equal, so wind is a part of gravity and viscosity one factor e^(−k_v dt/m) on all velocities.  The
-    factor also reduces the impulse that springs have just given: at rest they stretch e^(k_v dt/m) times too far, a
-    first-order error.
+    Masses are equal, so wind is a part of gravity, and viscosity is one factor e^(−k_v dt/m) on all velocities.  The
+    factor also reduces the impulse that the springs have just given.  At rest they are therefore stretched e^(k_v dt/m)
+    times too far, a first-order error.
     """
     import pymunk
     wide = net.padded()

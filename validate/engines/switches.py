@@ -1,7 +1,7 @@
-"""The engines' own switches: the parts of an engine that can be left out, and how each is switched off.
+"""The engines' own switches: the parts of an engine that can be omitted, and how each is switched off.
 
-Each adapter has its SWITCHES.  A switch acts on a world that is ready to step.  It says whether there was anything to
-switch off.
+Each adapter has its SWITCHES.  A switch acts on a world that is ready to step, and returns whether there was
+anything to switch off.
 """
 
 from collections.abc import Callable
@@ -13,13 +13,13 @@ _listening: list[list] = []  # a list for each block of `worlds_made`, innermost
 
 class Switch(NamedTuple):
     """A part of an engine that can be left out."""
-    part: str                # for people
+    part: str                # its name, shown to readers
     off: Callable            # (world) → whether there was such a part
 
 
 @contextmanager
 def worlds_made():
-    """Give a list of the worlds (pymunk.Space or Bullet) that are made during the block."""
+    """Yield a list of the worlds (pymunk.Space or Bullet) that are made during the block."""
     _listening.append([])
     try:
         yield _listening[-1]
@@ -28,7 +28,7 @@ def worlds_made():
 
 
 def made(world):
-    """Tell who listens that this world was made; return it."""
+    """Add this world to the list of the innermost block that listens, if there is one, and return the world."""
     for worlds in _listening[-1:]:
         worlds.append(world)
     return world

@@ -1,1 +1,1 @@
-"""Points: what a grading test says when it fails, and what an exercise is worth."""
+"""Points: the message of a grading test that fails, and the worth of an exercise."""

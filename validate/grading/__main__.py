@@ -135,7 +135,10 @@ def run(intake, settings, people, terms, jobs, executor, out, given):
 
 
 def collected(intake, settings, jobs, executor, out):
-    """({student: result}, {student: why there is none}): of an earlier run, or found and kept now.  Raises Ended."""
+    """Return ({student: result}, {student: reason for no result}): of an earlier run, or found and kept now.
+
+    Raises Ended.
+    """
     kept, results, todo, failed = out / "results", {}, [], dict(intake.unclear)
     kept.mkdir(exist_ok=True)
     for submission in intake.submissions:

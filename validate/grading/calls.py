@@ -1,4 +1,4 @@
-"""Which system calls a student's code can make: a filter that bubblewrap loads, compiled by the system's libseccomp.
+"""Filter of the system calls of a student's code: bubblewrap loads it, and the system's libseccomp compiles it.
 
 Only the calls of Python and NumPy are allowed.  Every other call fails as if the kernel did not have it (ENOSYS), which
 libraries can handle.  A program therefore has no second process, no socket, and no shared memory outside the limit on
@@ -62,7 +62,7 @@ class Comparison(ctypes.Structure):
 
 
 def refused(error):
-    """SCMP_ACT_ERRNO"""
+    """Return SCMP_ACT_ERRNO."""
     return 0x00050000 | error
 
 

@@ -80,7 +80,7 @@ def apart_from_path(folder):
 
 
 def _begun(end, folder, begin, arguments):
-    """In the child, before its first task."""
+    """Prepare the child, before its first task."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)                       # Ctrl-C reaches everybody; the parent decides
     tempfile.tempdir = tempfile.mkdtemp(dir=folder)
     os.chmod(tempfile.tempdir, 0o755)                                  # the sandbox has another user
@@ -99,7 +99,7 @@ def _wait(end, folder):
 
 @contextlib.contextmanager
 def temporary():
-    """A folder for the temporary files of this run; what other runs have left is removed."""
+    """Yield a folder for the temporary files of this run; remove what earlier runs have left."""
     remove_leftovers()
     folder = tempfile.mkdtemp(prefix=PREFIX)
     os.chmod(folder, 0o755)

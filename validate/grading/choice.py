@@ -1,4 +1,4 @@
-"""Which lessons and exercises are graded, and for how many points: `--lesson friction`, `--exercises 3.1-3.4,3.6=2`."""
+"""Choice of the graded lessons, exercises and their points: `--lesson friction`, `--exercises 3.1-3.4,3.6=2`."""
 
 import math
 import re
@@ -64,7 +64,7 @@ def known(part, exercise):
 
 
 def in_words(numbers):
-    """Rising whole numbers as text: "1 to 11", or "1 to 11, 20"."""
+    """Return increasing whole numbers as text: "1 to 11", or "1 to 11, 20"."""
     runs = []
     for number in numbers:
         if runs and number == runs[-1][1] + 1:

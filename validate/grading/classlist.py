@@ -1,4 +1,4 @@
-"""The class list: who is in the class, with what a student's work is found, dated and handed back by."""
+"""The class list: the students, and the names by which their work is found, dated and handed back."""
 
 import csv
 import io
@@ -56,7 +56,10 @@ def roster(path, tell=print):
 
 
 def decoded(path, tell):
-    """The text of a class list: UTF-8, UTF-16 with its mark, else what Windows calls ANSI, which `tell` hears of."""
+    """Return the text of a class list in UTF-8, UTF-16 with its mark, or else the Windows code page.
+
+    The last case is reported by `tell`.
+    """
     try:
         data = path.read_bytes()
     except OSError as e:

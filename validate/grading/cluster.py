@@ -79,7 +79,7 @@ def refusal(thing, unfit):
 
 
 def parcel(submission, settings, first=None):
-    """Pickle all that a worker needs.  first: the result of a first try, of which a part is done again."""
+    """Pickle everything that a worker needs.  first: the result of a first try, a part of which is repeated."""
     return pickle.dumps((submission, settings, makeup(settings.code), sandbox.private, first))
 
 
@@ -95,7 +95,7 @@ def makeup(code):
 
 
 def graded(client, address, todo, settings):
-    """Grade all submissions.  One that timed out or failed is tried once more at the end, alone on a machine."""
+    """Grade all submissions.  One that timed out or failed is tried again at the end, alone on a machine."""
     again = []
     first_tries = [(submission, None) for submission in todo]
     try:

@@ -1,4 +1,4 @@
-"""What the terminal says at the end of a run: who is graded, who is missing, who is not on the class list, and why."""
+"""The summary in the terminal at the end of a run: graded, missing and unlisted students, with reasons."""
 
 from .texts import line
 

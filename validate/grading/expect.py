@@ -9,7 +9,7 @@ from math import floor, log10
 import numpy as np
 
 DIGITS, MOST_DIGITS = 4, 7   # of a number, where four tell it apart, and at most
-FEW = 4                      # so many numbers are shown whole; of more the first that differs
+FEW = 4                      # up to this many numbers are all shown; of more only the first that differs
 MOST_NUMBERS = (12, 6, 3)    # of one array among the inputs; the later ones where the text is still too long
 LONGEST = 300                # of a text [characters]
 MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumPy prints arrays: [ 1.   -0.25]
@@ -38,7 +38,7 @@ class NotYet(AssertionError):
 # ---------------------------------------------------------------------------------------------- comparing
 
 def numbers(quantity, got, shape, given=""):
-    """got as a float array, or NotYet when it is not one of that shape or holds NaN or infinity."""
+    """Return got as a float array; raise NotYet if it has another shape, or holds NaN or infinity."""
     if got is None:
         raise NotYet(quantity, of_shape(shape), NOTHING, "", "None", given)
     try:
@@ -54,7 +54,7 @@ def numbers(quantity, got, shape, given=""):
 
 
 def close(quantity, got, expected, tolerance, given=""):
-    """got equals expected, entry by entry, within an absolute tolerance.  given: the inputs, in words."""
+    """Require got to equal expected, entry by entry, within an absolute tolerance.  given: the inputs, in words."""
     expected = np.asarray(expected, dtype=float)
     array = numbers(quantity, got, expected.shape, given)
     off = np.abs(array - expected)
@@ -66,7 +66,7 @@ def close(quantity, got, expected, tolerance, given=""):
 
 
 def between(quantity, got, low, high, given=""):
-    """low ≤ got ≤ high, for one number."""
+    """Require low ≤ got ≤ high, for one number."""
     value = float(numbers(quantity, got, (), given))
     if not low <= value <= high:
         edge, shown = apart(low if value < low else high, value)
@@ -76,7 +76,7 @@ def between(quantity, got, low, high, given=""):
 
 
 def truth(quantity, got, expected, given=""):
-    """got is True or False, as expected is; 1 and 0 count as True and False."""
+    """Require got to be True or False, as expected; 1 and 0 count as True and False."""
     if not isinstance(got, (bool, np.bool_, int, float)) or got not in (0, 1):
         raise NotYet(quantity, str(bool(expected)), NOTHING if got is None else kind(got), "", "another kind", given)
     if bool(got) != bool(expected):
@@ -84,7 +84,7 @@ def truth(quantity, got, expected, given=""):
 
 
 def instance(quantity, got, wanted, given=""):
-    """got is of this class, such as a tuple."""
+    """Require got to be of this class, such as a tuple."""
     if not isinstance(got, wanted):
         raise NotYet(quantity, f"a {wanted.__name__}", NOTHING if got is None else kind(got), "", "another kind", given)
 
@@ -97,8 +97,9 @@ def kind(value):
 
 
 def raises(quantity, error, function, *arguments, naming=(), thing=""):
-    """The call raises an error of that class (or of one of that name: compiled and sandboxed code have their own).
+    """Require the call to raise an error of that class, or of one with its name.
 
+    Compiled and sandboxed code have classes of their own.
     naming: values of which the error's sentence must name one, to 1e-6 of it.  thing: how the sentence must begin.
     """
     try:
@@ -124,9 +125,9 @@ OFF = ("slightly off", "clearly off", "grossly off")
 
 
 def how_far(off, size):
-    """One of three words for an error: below a hundredth of the expected size, below all of it, beyond.
+    """Return one of three words for an error: below a hundredth of the expected size, below all of it, beyond.
 
-    Where zero is expected, the size is one unit.  A number here would leak a digit of a secret input with each attempt.
+    If zero is expected, the size is one unit.  A number here would leak a digit of a secret input with each attempt.
     """
     if not np.isfinite(off):
         return OFF[2]
@@ -137,7 +138,7 @@ def how_far(off, size):
 # ---------------------------------------------------------------------------------------------- what is read
 
 def number(x, digits=DIGITS):
-    """Return a number in so many digits, or in as many as it has before its point; a whole one as it is."""
+    """Return a number in this many digits, or in as many as it has before its point; a whole one unchanged."""
     x = float(x)
     if not np.isfinite(x) or x == 0.0:
         return f"{abs(x) if x == 0.0 else x:g}"
@@ -146,7 +147,7 @@ def number(x, digits=DIGITS):
 
 
 def apart(a, b):
-    """Two numbers in as few digits as tell them apart; what is nearer than seven digits can tell as a difference."""
+    """Return two numbers in as few digits as distinguish them; if seven digits do not, return one as a difference."""
     if not np.isfinite(b - a):
         return number(a), number(b)
     for digits in range(DIGITS, MOST_DIGITS + 1):
@@ -174,7 +175,7 @@ def of_shape(shape):
 
 
 def first_of(mask):
-    """Index of the first true entry."""
+    """Return the index of the first true entry."""
     return tuple(int(i[0]) for i in np.nonzero(mask)) if mask.ndim else ()
 
 
@@ -187,7 +188,7 @@ def plus(text, difference):
 
 
 def tidy(text, digits=DIGITS):
-    """A text as people write it: without NumPy's words, with short numbers, and of a long array the beginning."""
+    """Return a text for readers: without NumPy's words, with short numbers, and with the beginning of a long array."""
     text = " ".join(re.sub(r"\bnp\.\w+\(([^()]*)\)|\bnp\.(True|False)_", r"\1\2", str(text)).split())
     text = re.sub(r"\barray\(\[\], shape=\([^)]*\)(, dtype=\w+)?\)", "[]", text)
     text = re.sub(r"\barray\(([^()]*?)(, dtype=\w+)?\)", r"\1", text)
@@ -202,7 +203,7 @@ def tidy(text, digits=DIGITS):
 
 
 def _shortened(x, digits):
-    """Return a number in so many digits; one that is almost as short as 0.5 was made so, and says so: 0.5 - 1e-11."""
+    """Return a number in this many digits; one that is nearly a short one shows the difference: 0.5 - 1e-11."""
     text = number(x, digits)
     rest, short = x - float(text), len(text.partition("e")[0].replace(".", "").strip("-0")) <= 2
     return plus(text, rest) if short and ROUNDING * abs(x) < abs(rest) < NEARLY * abs(x) else text
@@ -223,7 +224,7 @@ def _in_brackets(text, change):
 
 
 def _beginning(array, most):
-    """An array's text; of one with more numbers than that the first of them."""
+    """Return an array's text; of a longer one only the first numbers."""
     found = list(re.finditer(r"[^\s,\[\]]+", array))
     if len(found) <= most:
         return array

@@ -1,4 +1,4 @@
-"""Grade on this machine, several submissions at a time, each in a process of its own while it lasts."""
+"""Grading on this machine: several submissions at a time, each in a process of its own."""
 
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, wait
@@ -11,7 +11,7 @@ DIED = "the grading process ended unexpectedly, or hung"
 def results(jobs, todo, settings):
     """Yield (student, result, "") or (student, None, why the grader failed), as they come.
 
-    If the time was up or the grader failed, other processes may be the cause: it is tried once more at the end, alone.
+    If the time was up or the grader failed, other processes may be the cause: it is tried again at the end, alone.
     """
     again = []
     for submission, result, why in together(jobs, todo, settings):

@@ -1,4 +1,4 @@
-"""Mark one submission: the student's code runs in the sandbox, and the tests, the same for all, run in this process.
+"""Marking of one submission: the student's code runs in the sandbox, and the tests, the same for all, in this process.
 
 A manifest lists every test with its points.  A test that did not pass, for any reason, earns nothing and affects no
 other test.

@@ -1,4 +1,4 @@
-"""Measure the time of a worker: on the processor, asleep or waiting for a disk.  Waiting for the processor is free.
+"""The time of a worker: on the processor, asleep or waiting for a disk.  Waiting for the processor is free.
 
 Busy neighbours therefore cost nothing.  Without /proc, all time counts that passes while we wait for the worker.
 """
@@ -19,7 +19,7 @@ class Meter:
         self.messages, self.ours = 0, time.thread_time()
 
     def follow(self, process):
-        """From now on count the worker that this process has started, which has just said that it is ready."""
+        """Count from now on the worker that this process has started, which has just reported that it is ready."""
         self.process, self.looked = worker_of(process), time.monotonic()
         self.worked, self.ours = self.processor(), time.thread_time()
 

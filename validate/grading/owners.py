@@ -1,4 +1,4 @@
-"""To which student a file or folder belongs, by its name.  Students, Moodle, Canvas and Gradescope write names.
+"""Owners of files and folders, by their names.  Students, Moodle, Canvas and Gradescope write names.
 
 *Source:* moodle/moodle, `mod/assign/classes/downloader.php` (full name, number of the participant, plugin; a group's
 name in place of a person's).  instructure/canvas-lms, `lib/content_zipper.rb` (sortable name in small letters without
@@ -55,7 +55,9 @@ def lesson_at_the_end():
 
 
 def name_of(stem, bare, metadata):
-    """What a name without its ending says.  bare: it may be a lesson file · metadata: as `from_gradescope` returns it.
+    """Return the information in a name without its suffix.
+
+    bare: it may be a lesson file · metadata: as `from_gradescope` returns it.
     """
     if stem in metadata:
         return metadata[stem]
@@ -105,7 +107,7 @@ class People:
 
 
 def letters(text):
-    """A name as it is compared: letters, digits and the sign of an e-mail address, small and in one Unicode form."""
+    """Return a name for comparison: letters, digits and the sign @, in lower case and one Unicode form."""
     return "".join(c for c in unicodedata.normalize("NFKC", text).casefold() if c.isalnum() or c in "@")
 
 
@@ -151,6 +153,6 @@ def scalar(text):
 
 
 def moment(text):
-    """Gradescope's date, 2026-04-26 17:34:00.861687000 Z, in ISO 8601; "" for none."""
+    """Return Gradescope's date, 2026-04-26 17:34:00.861687000 Z, in ISO 8601; "" for none."""
     match = re.fullmatch(r"\W*(\d{4}-\d\d-\d\d)[ T](\d\d:\d\d:\d\d)[\d.]* *(Z|[-+]\d\d:?\d\d)?\W*", text)
     return date("{}T{}{}".format(match[1], match[2], match[3] or ""), "the date") if match else ""

@@ -88,7 +88,7 @@ def tests_of(exercise):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """With --of or --exercise, do not load files without a test of it."""
+    """Ignore files without a selected test if --of or --exercise is given."""
     exercises = config.getoption("--exercise") or [""] * bool(config.getoption("--of"))
     if exercises and collection_path.is_relative_to(TESTS) and collection_path.suffix == ".py":
         return not any(collection_path in tests_of(exercise) for exercise in exercises) or None
@@ -126,7 +126,10 @@ def pytest_runtest_call(item):
 
 
 def box_of(subject):
-    """The sandbox of a subject, or None.  A lesson's module is none, though it answers for every name that it lacks."""
+    """Return the sandbox of a subject, or None.
+
+    A lesson's module is no sandbox, though it answers for every name that it lacks.
+    """
     return None if isinstance(subject, types.ModuleType) else getattr(subject, "box", None)
 
 
@@ -180,7 +183,7 @@ def is_left_out(item, config):
 
 
 def once_compiled(items, config):
-    """By default one test of each lesson runs with compiled answers: each more of them compiles something else."""
+    """Run one test of each lesson with compiled answers by default, because each test compiles something else."""
     if config.getoption("--long") or config.getoption("--compiled") or hasattr(config, "given"):
         return items
     seen, keep = set(), []
@@ -259,7 +262,7 @@ class Draw:
 
 @pytest.fixture
 def draw(request):
-    """The inputs of this test."""
+    """Return the inputs of this test."""
     return Draw(request.config.getoption("--seed"), request.function.__name__)
 
 

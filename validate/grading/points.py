@@ -1,4 +1,4 @@
-"""From test outcomes to points.  An exercise's points are the sum over its tests; what did not pass earns nothing."""
+"""Points from test outcomes.  An exercise's points are the sum over its tests; a test that fails earns nothing."""
 
 import contextlib
 import io
@@ -119,7 +119,10 @@ class FailingCases:
 
 
 def reasons(exercise, states, traces, folder):
-    """Two sentences about an exercise that does not pass, or empty ones: the mistake, and an exercise below it."""
+    """Return two sentences about an exercise that does not pass, or empty ones.
+
+    They name the mistake, and an exercise below it.
+    """
     if exercise not in needs.table():
         return "", ""
     found = mistakes.matching(needs.table()[exercise]["lesson"], exercise, traces)
@@ -143,7 +146,7 @@ def name_of(item):
 
 
 def outcome(mark, name, excinfo, trace=None):
-    """The Outcome of one test from its mark and what it raised, if anything; trace: what the function returned."""
+    """Return the Outcome of one test from its mark and its error, if any; trace: the results of the function."""
     exercise, points, hint = mark.args[0], mark.kwargs["points"], mark.kwargs["hint"]
     if excinfo is None:
         return Outcome(exercise, name, points, "passed")

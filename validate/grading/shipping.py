@@ -1,4 +1,4 @@
-"""Send functions of the tests to the sandbox as code if they use only their arguments, numbers and NumPy.
+"""Functions of the tests as code for the sandbox, if they use only their arguments, numbers and NumPy.
 
 Code goes only from the trusted side to the other, and saves a round trip at every step of a motion.  A function that
 counts its calls or holds a secret has a closure or a mutable global, and is not sent.

@@ -56,7 +56,7 @@ def handed_out(lesson):
 
 
 def own_lines(text, lesson):
-    """Fingerprints of a file's own lines: without what was handed out, comments, blanks and variables' names."""
+    """Return fingerprints of a file's own lines, without handed-out lines, comments, blanks and variables' names."""
     given, kept = handed_out(lesson), []
     lines = [line[:LONGEST] for line in text.splitlines()]
     unread = never_read(lines)

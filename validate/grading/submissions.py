@@ -1,4 +1,4 @@
-"""What students handed in: a folder, a zip or bare lesson files each.
+"""Submissions of students: a folder, a zip or bare lesson files each.
 
 Nothing is unpacked, followed or executed; only the lesson files' bytes are read.  What lies in the class folder
 becomes a submission or a sentence: nothing is overlooked in silence.  A zip is read in a child of little memory and
@@ -45,7 +45,7 @@ class Submission(NamedTuple):
     timestamp: str
 
     def digest(self):
-        """Changes when anything changes that is graded."""
+        """Return a text that changes when anything graded changes."""
         return hashlib.sha256(repr((sorted(self.files.items()), self.problems, self.timestamp)).encode()).hexdigest()
 
 
@@ -58,11 +58,11 @@ class Intake(NamedTuple):
     dated_by_files: bool     # and not by the system that the files come from
 
     def owners_of(self, student):
-        """All whose submission it is."""
+        """Return all owners of a submission."""
         return self.sharing.get(student, (student,))
 
     def everybody(self):
-        """All who handed something in that is read."""
+        """Return all students who submitted something that is read."""
         return [who for one in self.submissions for who in self.owners_of(one.student)]
 
 
@@ -152,7 +152,7 @@ def undecided(things):
 
 
 def teams(things, people):
-    """[(ids of those who share a submission, their Things), …]: a group of the class list, or who hands in together."""
+    """Return [(ids that share a submission, their Things), …]: a group of the class list, or a joint submission."""
     groups, team = {}, {}
     for student, person in people.items():
         groups.setdefault(person.group or (student,), []).append(student)
@@ -259,7 +259,7 @@ def read(path, student, lessons, child):
 
 
 def contents(find, path, lessons):
-    """What is found there: the files, the first problems, fit to be shown, the date, and {lesson: its notebook}."""
+    """Return the content of a submission: files, first problems in readable form, date, and {lesson: its notebook}."""
     files, problems, when, names = find(path, lessons)
     notebooks = {}
     for name in sorted(names, key=lambda name: (name.count("/"), name)):
@@ -289,7 +289,7 @@ def moment(when):
 
 
 def nearest(candidates, problems):
-    """Of {lesson: places}, the one place nearest to the top for each lesson; its own name counts before others."""
+    """Return, of {lesson: places}, the place nearest to the top for each lesson; its own name takes precedence."""
     chosen = {}
     for lesson, places in candidates.items():
         named = [place for place in places if os.path.basename(place) == f"{lesson}.py"]
@@ -324,7 +324,7 @@ def skipped(part):
 
 
 def resembling(names, lessons, found):
-    """Sentences about files that may be meant for lessons that are missing: another spelling, an archive inside."""
+    """Return sentences about files that may be meant for missing lessons: another spelling, an archive inside."""
     for lesson in (lesson for lesson in lessons if lesson not in found):
         alike = [name for name in names if lesson in (base := os.path.basename(name).lower())
                  and base.endswith((".py", ".pyw", ".txt", ".ipynb")) and not base.startswith("test_")]
@@ -384,7 +384,7 @@ def regular(path):
 
 
 def from_zip(path, lessons):
-    """Only entries that are wanted are decompressed, and of those no more than a lesson file may have."""
+    """Decompress only the wanted entries, and of each at most the largest allowed size of a lesson file."""
     problems, candidates, files = [], {}, {}
     if path.stat().st_size > LARGEST_ZIP:
         raise Ungraded(f"larger than {LARGEST_ZIP >> 20} MiB, and was not read: ask for the lesson files alone")
@@ -413,7 +413,7 @@ def entries_of(archive):
 
 
 def unfit(entry):
-    """Why an entry of a zip is not read, or ""."""
+    """Return the reason why an entry of a zip is not read, or ""."""
     if "\0" in entry.orig_filename:
         return "has a name that goes on behind a NUL"
     if stat.S_ISLNK(entry.external_attr >> 16):
@@ -444,7 +444,10 @@ def unanswered(lesson, text):
 
 
 def in_child(child, path, asked):
-    """What `in_cells` returns, in a child; nothing where the notebooks cannot be read: nothing in them is graded."""
+    """Return the result of `in_cells`, from a child.
+
+    Nothing if the notebooks cannot be read, because they are not graded.
+    """
     try:
         return child(children.timed, in_cells, path, asked, patience=children.PATIENCE)
     except Exception:
@@ -452,7 +455,7 @@ def in_child(child, path, asked):
 
 
 def in_cells(path, asked):
-    """{notebook: sentence} of those of {notebook: functions} in whose cells answers are, where nothing is graded."""
+    """Return {notebook: sentence} of {notebook: functions} whose cells contain answers, which are not graded."""
     told = {}
     for place, functions in asked.items():
         if path.is_file():

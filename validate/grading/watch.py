@@ -1,4 +1,4 @@
-"""What may tell that a submission did more than answer: for the instructor to look into, never for points.
+"""Signs that a submission did more than answer: for the instructor to look into, never for points.
 
 The worker notes what a program tries, by Python's audit events, and the parent notes how it ended.  A program that
 goes past Python (native code) is noted when it begins to.  What a file imports is read in its text.  None of this
@@ -38,7 +38,7 @@ MOST = 12                    # imports and words of one file that are told [-]
 
 
 def in_text(text):
-    """Imports and words in a lesson file that no lesson needs: ["import os", "use eval"]."""
+    """Return imports and words in a lesson file that no lesson needs: ["import os", "use eval"]."""
     lines = b"\n".join(line for line in text.splitlines() if not line.lstrip().startswith(b"#"))
     names = [name for name in dict.fromkeys(modules_in(lines)) if name not in NEEDED and name.isidentifier()]
     found = [f"import {name[:LONGEST]}" for name in names]
@@ -54,7 +54,7 @@ def modules_in(lines):
 
 
 def noted(lesson, codes):
-    """[(what, in words; the same with the lesson and its details), …] of what is noted of one lesson."""
+    """Return [(what, in words; the same with the lesson and its details), …] of the notes on one lesson."""
     told = [(SENTENCES[code], f"{lesson}: {SENTENCES[code]}") for code in SENTENCES if code in codes]
     verbs = {"import": "it imports what no lesson needs", "use": "it uses functions that no lesson needs"}
     for verb, what in verbs.items():

@@ -56,7 +56,7 @@ def pack(value, name_of=None):
 
 
 def usual(array):
-    """An array of numbers as one of the kinds that go over the wire.  Raises WireError for what holds no numbers."""
+    """Return an array of numbers as one of the kinds that the wire carries.  Raises WireError for other content."""
     kind = array.dtype.kind
     if array.dtype.str[1:] in DTYPES:
         return array
@@ -92,7 +92,10 @@ def read(stream):
 
 
 def unpack(head, body, function=None, record=None):
-    """The value of a frame.  function(name) and record(name, fields, values) make what only the receiver can make."""
+    """Return the value of a frame.
+
+    function(name) and record(name, fields, values) make the objects that only the receiver can make.
+    """
     position = 0
 
     def array(code, shape):

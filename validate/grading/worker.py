@@ -1,4 +1,4 @@
-"""Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
+"""The program inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
 
 Usage: worker.py CONFIG NOTES.  CONFIG is a JSON object: limits; lesson; student, the folder of the student's file;
 given, the folder of the lessons as handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the
@@ -95,7 +95,7 @@ def students(name):
 
 
 def define(name, *parts):
-    """A function of the tests that runs here."""
+    """Make a function of the tests that runs here."""
     own[name] = shipping.function_of(*parts)
     names[own[name]] = name
 
@@ -139,7 +139,7 @@ class FromParent(Exception):
 
 
 def raised(names, message, where):
-    """An error of the parent's, as the class of that name."""
+    """Return an error of the parent's, as the class of that name."""
     for module in ("solutions.checks", "builtins"):
         kind = getattr(sys.modules.get(module), names[0], None)
         if isinstance(kind, type) and issubclass(kind, Exception):
@@ -181,9 +181,9 @@ def kept(descriptor):
 
 
 def watcher():
-    """An audit hook that notes what a lesson has no need of, in a pipe to the parent.
+    """Return an audit hook that reports operations which no lesson needs, in a pipe to the parent.
 
-    A note cannot be taken back.  The student's code may reach the hook's variables by an error or a signal inside it:
+    A report cannot be taken back.  The student's code may reach the hook's variables by an error or a signal inside it:
     none of them can be changed, and no method of the student's objects is called.
     """
     notes = kept(int(sys.argv[2]))

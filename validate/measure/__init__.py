@@ -1,4 +1,4 @@
-"""Measure one scene: errors, orders and verdicts, then error against run time.
+"""Measurement of one scene: errors, orders and verdicts, then error against run time.
 
 `selection.py` says what is to be done, `accuracy.py` compares it with the truth, `timing.py` times it, `full_loop.py`
 puts in what it leaves out, `film.py` films it. `record.py` writes and `traces.py` reads what pybullet did, for machines

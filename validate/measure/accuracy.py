@@ -15,6 +15,7 @@ from . import film, traces
 from .selection import select, with_overrides
 
 ASYMPTOTIC = 0.5             # limits above this are not compared with a run [-]
+REFERENCE = "the truth here is a run of this engine: a reference, which counts nowhere"
 
 
 class Outcome(NamedTuple):
@@ -53,7 +54,7 @@ def theory(scene):
 
 
 def case_errors(selection, case, p, with_engines):
-    """One case: its truth, and the curves of our methods and the engines."""
+    """Return the errors of one case: its truth, and the curves of our methods and the engines."""
     scene = selection.scene
     truth = np.array(scene.truth(p, scene.duration), dtype=float)
     engines_here = selection.engines_for(p) if with_engines else ()
@@ -61,9 +62,17 @@ def case_errors(selection, case, p, with_engines):
         "params": p._asdict() if hasattr(p, "_asdict") else {},
         "truth": truth.tolist(),
         "quantities": scene.quantity_names(p) if scene.quantity_names else [],
-        "ours": [our_curve(selection, r, p, truth) for r in selection.ours_for(p)],
+        "ours": [*(our_curve(selection, r, p, truth) for r in selection.ours_for(p)),
+                 *(unfinished_curve(r, why) for r, why in selection.unfinished_for(p))],
         "engines": [engine_curve(selection, case, r, p, truth) for r in engines_here],
     }
+
+
+def unfinished_curve(runner, why):
+    """Return the curve of a method of ours that does not come to its end in a case: it has no runs, and says why."""
+    return {"label": runner.label, "rows": [], "order": None, "expected": runner.order, "verdict": Verdict.UNFINISHED,
+            "message": why, "departure_reason": "", "unpredicted": "", "measured": runner.measured, "reference": False,
+            **our_look(runner)}
 
 
 # ---------------------------------------------------------------------------------------------- runs
@@ -96,10 +105,10 @@ def run_to_end(scene, step, p, steps, asked=False):
 
 
 def run_engine_to_end(scene, engine, p, steps):
-    """Return the Outcome of an engine after so many steps."""
+    """Return the Outcome of an engine after this number of steps."""
     world = engine.make(p, scene.duration / steps)
     try:
-        for _ in range(steps):
+        for _ in range(steps // engine.substeps):
             world.step()
         observed = np.array(world.read(), dtype=float)
     finally:
@@ -113,12 +122,15 @@ def finite(observed):
 
 
 def relative(observed, truth):
-    """|observed − truth| / |truth|, Euclidean norms over everything observed; absolute where the truth is zero."""
+    """Return |observed − truth| / |truth|, Euclidean norms over everything observed.
+
+    Absolute where the truth is zero.
+    """
     return relative_to(truth, observed, truth)
 
 
 def relative_to(truth, a, b):
-    """|a − b| / |truth|; absolute where the truth is zero."""
+    """Return |a − b| / |truth|; absolute where the truth is zero."""
     size = np.linalg.norm(truth)
     return float(np.linalg.norm(a - b) / (size if size > 0.0 else 1.0))
 
@@ -130,15 +142,21 @@ def our_curve(selection, runner, p, truth):
     scene, step = selection.fastest(runner)
     runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(runner, p))
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
-    return {**found, "role": Role.OURS, "colour": runner.who.colour, "marker": runner.who.marker, "line": "-"}
+    return {**found, **our_look(runner)}
+
+
+def our_look(runner):
+    """Return how the curve of a method of ours is drawn."""
+    return {"role": Role.OURS, "colour": runner.who.colour, "marker": runner.who.marker, "line": "-"}
 
 
 def engine_curve(selection, case, runner, p, truth):
-    """An engine's errors: live where it is installed, recorded where it is not."""
+    """Return an engine's errors: live if it is installed, recorded otherwise."""
     scene, engine = selection.scene, runner.who
     colour, marker, line = engine_look(engine, [r.who for r in scene.engine_runners])
     about = {"role": Role.ENGINE, "product": engine.product.name, "variant": engine.variant,
-             "settings": engine.settings, "colour": colour, "marker": marker, "line": line}
+             "settings": engine.settings, "substeps": engine.substeps,
+             "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
         source = f"live, {engine.product} {engine.product.installed()}"
         runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(runner, p))
@@ -149,7 +167,8 @@ def engine_curve(selection, case, runner, p, truth):
             nothing = {"label": engine.label, "rows": [], "order": None, "expected": runner.order,
                        "verdict": Verdict.UNDECIDED}
             return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "",
-                    "unpredicted": reason(runner)}
+                    "unpredicted": reason(runner), "measured": runner.measured,
+                    "reference": runner.is_reference(p)}
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
@@ -158,7 +177,7 @@ def engine_curve(selection, case, runner, p, truth):
 
 
 def reason(runner):
-    """Why no theory predicts the error of a runner; empty where one does."""
+    """Return the reason why no theory predicts the error of a runner; empty if one does."""
     return "" if callable(runner.predicted) else runner.predicted
 
 
@@ -196,12 +215,16 @@ def judged(scene, runner, p, truth, runs, enough):
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
+    if runner.is_reference(p):
+        verdict, message = Verdict.REFERENCE, ""
     found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
-             "message": message, "departure_reason": "", "unpredicted": reason(runner)}
+             "message": message, "departure_reason": "", "unpredicted": reason(runner), "measured": runner.measured,
+             "reference": runner.is_reference(p)}
     if departure is None:
         return found
     return {**found, "verdict": Verdict.FOLLOWS_OWN_LAW if verdict is Verdict.AGREES else verdict,
-            "departure_reason": departure.reason, "departure": relative(law, truth), "own_law": law}
+            "departure_reason": departure.reason, "departure_whose": departure.whose,
+            "departure": relative(law, truth), "own_law": law}
 
 
 def verdict_on(rows, law, finest, order, order_shown):
@@ -231,7 +254,7 @@ def verdict_on(rows, law, finest, order, order_shown):
 
 
 def surprise_in(row, law):
-    """A sentence without its subject where a run errs by something else than theory predicts for it; None otherwise."""
+    """Return a sentence without its subject if the error of a run differs from its prediction; None otherwise."""
     if row["predicted"] is None or row["error"] is None:
         return None
     off, size = relative_to(law, row["observed"], row["predicted"]), relative(row["predicted"], law)
@@ -275,7 +298,7 @@ def parity(selection, p):
 
 
 def labels_that_agree(result):
-    """Labels of our methods that agree with the truth in the first case."""
+    """Return labels of our methods that agree with the truth in the first case."""
     first = next(iter(result["cases"].values()))
     return {c["label"] for c in first["ours"] if Verdict(c["verdict"]) is Verdict.AGREES}
 

@@ -43,7 +43,7 @@ def picture(selection, p, agreeing):
 
 
 def films(scene, shown, p):
-    """[{label, role, colour, frames}] in drawing coordinates."""
+    """Return [{label, role, colour, frames}] in drawing coordinates."""
     each = zip(shown.items(), colours(role for role, _ in shown.values()))
     return [{"label": label, "role": role, "colour": colour,
              "frames": [scene.points(observed, p).tolist() for observed in film]}
@@ -95,7 +95,7 @@ def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False, walls=(
 
 
 def links(scene, p):
-    """Pairs of points that the picture joins."""
+    """Return pairs of points that the picture joins."""
     return [list(map(int, pair)) for pair in scene.links(p)] if scene.links else []
 
 

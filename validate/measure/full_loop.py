@@ -1,4 +1,4 @@
-"""The gain of leaving parts out: the whole loop of lesson 10 against the scene's own method.
+"""The gain of leaving parts out: the whole loop of lesson 10 compared with the scene's own method.
 
 The whole loop rotates bodies whose rotation is not observed, searches for contacts that cannot occur, and sweeps over
 what it finds.  Put in place of a step that it contains, it must give the same motion to round-off.
@@ -14,6 +14,7 @@ from ..check import Verdict, jsonable
 from ..methods import DISCRETE, GYROSCOPIC, PENALTY, RATTLE, ROLLING, SLIDING, SYMPLECTIC_EULER
 from . import timing
 from .accuracy import relative, run_to_end
+from .compilation import compilation
 from .selection import select, with_overrides
 from .switches import engine_parts
 from .timing import SAME, Timed, interleaved, time_ours
@@ -60,7 +61,10 @@ class Whole:
 
 
 def points(lessons):
-    """symplectic_euler_step of lesson 1: points that touch nothing, in the plane or in space."""
+    """Make the whole loop in place of symplectic_euler_step of lesson 1.
+
+    It has points that touch nothing, in the plane or in space.
+    """
     whole = []
 
     def symplectic_euler_step(acceleration, t, x, v, dt, p):
@@ -83,7 +87,10 @@ def points(lessons):
 
 
 def sprung_floor(lessons):
-    """penalty_step of lesson 7: a point over a floor whose spring and damper are forces."""
+    """Make the whole loop in place of penalty_step of lesson 7.
+
+    It has a point over a floor whose spring and damper are forces.
+    """
     step, impulses = points(lessons), lessons.impulses
 
     def penalty_step(acceleration, t, x, v, dt, p):
@@ -95,10 +102,12 @@ def sprung_floor(lessons):
 
 
 def stopped_ball(lessons):
-    """discrete_step of lesson 6: a ball that stays where it has met a plane or, seen along its axis, a cylinder.
+    """Make the whole loop in place of discrete_step of lesson 6.
 
-    The loop finds at the beginning of a step what the lesson finds at the end of the one before; between the two
-    nothing moves.  A ball whose speed is round-off has stopped: the lesson asks no more steps of it.
+    It has a ball that stops on a plane or, seen along its axis, on a cylinder.  The loop finds at the beginning of
+    a step what the lesson finds at the end of the one before; between the two nothing moves.  A ball whose speed is
+    round-off has
+    stopped: the lesson takes no more steps of it.
     """
     whole = []
 
@@ -123,7 +132,10 @@ def no_load(t, x, q, v, omega, p):
 
 
 def strings(lessons):
-    """rattle_step of lesson 8 for a pendulum or a rope: rods with joints, and a search for contacts."""
+    """Make the whole loop in place of rattle_step of lesson 8 for a pendulum or a rope.
+
+    It has rods with joints, and a search for contacts.
+    """
     whole, simulator = [], lessons.simulator
 
     def rattle_step(acceleration, t, x, v, dt, network):
@@ -150,14 +162,17 @@ def strings(lessons):
 
 
 def link_angles(x, v):
-    """Angles (n,) [rad] of the links to points 1 … n − 1 of a chain (n, 2), and their rates; 0 for point 0."""
+    """Return angles (n,) [rad] of the links to points 1 … n − 1 of a chain (n, 2), and their rates; 0 for point 0."""
     link, apart = np.diff(x, axis=0), np.diff(v, axis=0)
     rates = (link[:, 0] * apart[:, 1] - link[:, 1] * apart[:, 0]) / np.sum(link * link, axis=1)
     return np.append(0.0, np.arctan2(link[:, 1], link[:, 0])), np.append(0.0, rates)
 
 
 def block(lessons):
-    """sliding_step of lesson 3: a ball that cannot turn, on a plane."""
+    """Make the whole loop in place of sliding_step of lesson 3.
+
+    It has a ball that cannot rotate, on a plane.
+    """
     whole = []
 
     def sliding_step(acceleration, t, x, v, dt, p):
@@ -177,7 +192,10 @@ def block(lessons):
 
 
 def turning_body(lessons):
-    """gyroscopic_step of lesson 5: one body in space that touches nothing."""
+    """Make the whole loop in place of gyroscopic_step of lesson 5.
+
+    It has one body in space that touches nothing.
+    """
     whole, angular_momentum = [], lessons.rotation.body_angular_momentum
 
     def gyroscopic_step(torque, t, q, L, dt, body):
@@ -193,7 +211,10 @@ def turning_body(lessons):
 
 
 def rolling_ball(lessons):
-    """rolling_step of lesson 5: a ball on the plane z = 0, found at every step."""
+    """Make the whole loop in place of rolling_step of lesson 5.
+
+    It has a ball on the plane z = 0, detected at every step.
+    """
     whole, weight = [], lessons.simulator.weight
 
     def rolling_step(load, t, x, q, v, omega, dt, ball):
@@ -221,12 +242,12 @@ def made_when_called(make):
 
 
 def time_whole(scene, make, p):
-    """prepare(steps, dt) for the whole loop, which begins without contacts every time."""
+    """Return prepare(steps, dt) for the whole loop, which begins without contacts every time."""
     return lambda steps, dt: time_ours(scene, make(), p)(steps, dt)
 
 
 def labels_as_expected(result):
-    """Labels of our methods that agree with the truth in the first case, or depart as predicted."""
+    """Return labels of our methods that agree with the truth in the first case, or depart as predicted."""
     first = next(iter(result["cases"].values()))
     return {c["label"] for c in first["ours"] if Verdict(c["verdict"]) in (Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW)}
 
@@ -238,7 +259,7 @@ def steps_that_fail(result, label):
 
 
 def left_out(name, plan, result):
-    """What a scene gains: {method, steps, ratio, same, observed, repeats, note}; a note where there is no number.
+    """Return what a scene saves: {method, steps, ratio, same, observed, repeats, note}; note: why there is no number.
 
     result: the errors of the scene.  A method that departs there is not compared.
     """
@@ -269,10 +290,14 @@ def left_out(name, plan, result):
 
 @with_overrides
 def times(name, plan, result):
-    """Everything about a scene that a clock says: its run times, what it gains by what it leaves out, and what each
-    part of an engine costs.
+    """Return everything about a scene that a clock measures.
+
+    These are its run times, its savings by omission, and the cost of each part.
     """
     selection = select(name, plan)
-    parts = [] if plan.quick or plan.most_steps else engine_parts(selection, selection.first[1])
-    return {**timing.times(name, plan, result), "left_out": jsonable(left_out(name, plan, result)),
-            "engine_parts": parts}
+    _, p = selection.first
+    timed = timing.times(name, plan, result)
+    full = not (plan.quick or plan.most_steps)
+    return {**timed, "left_out": jsonable(left_out(name, plan, result)),
+            "engine_parts": engine_parts(selection, p) if full else [],
+            "compilation": compilation(selection, p, timed["races"]) if full else None}

@@ -1,4 +1,4 @@
-"""Record what pybullet does: its readings at T for every case, setting and step, its run times and its film.
+"""Recorded runs of pybullet: its readings at T for every case, setting and step, its run times and its film.
 
 A record also has the numbers of the reference that take seconds.
 """
@@ -8,7 +8,7 @@ import platform
 from itertools import product
 
 from ..check import jsonable
-from ..reference.stored import RECORDED, computed_anew
+from ..reference.stored import RECORDED, computed_anew, kept
 from ..run.store import whole
 from ..scene import PYBULLET
 from .accuracy import run_engine_to_end
@@ -26,11 +26,13 @@ def record(name):
     witnesses = [r.who for r in scene.engine_runners if r.who.product == PYBULLET]
     if not witnesses:
         return None
-    runs = {case: {r.label: readings(selection, r.who, p) for r in selection.engines_for(p) if r.who in witnesses}
+    runs = {case: {r.label: readings(selection, r.who, p) for r in selection.engines_for(p)
+                   if r.who in witnesses and r.who.recorded_as is None}
             for case, p in scene.cases.items()}
-    p = scene.parameters
+    p, shown = scene.parameters, [e for e in witnesses if e.recorded_as is None][-1]
     items = [Timed(e.label, "engine", n, scene.duration / n, time_engine(e, p))
-             for e in witnesses if scene.moves for n in scene.steps if n <= (e.most_steps or n)]
+             for e in witnesses if scene.moves for n in scene.steps
+             if n <= (e.most_steps or n) and n % e.substeps == 0]
     timed = interleaved(items, {"engine": LONGEST})
     record = {
         "stamp": f"pybullet {PYBULLET.installed()}, {platform.system()} {platform.machine()}, "
@@ -38,10 +40,12 @@ def record(name):
         "settings": {e.label: e.settings for e in witnesses},
         "runs": runs,
         "seconds": {e.label: [{"steps": i.steps, **t} for i, t in timed if i.label == e.label] for e in witnesses},
-        "frames": frames(scene, witnesses[-1], p) if scene.moves else [],
+        "frames": frames(scene, shown, p) if scene.moves else [],
     }
     if numbers := numbers_of(scene):
         record["numbers"] = numbers
+    if agreements := kept(name).get("agreed"):           # which measure/agreement.py computes
+        record["agreed"] = agreements
     RECORDED.mkdir(exist_ok=True)
     path = RECORDED / f"{name}.json"
     with whole(path) as draft:

@@ -1,5 +1,6 @@
-"""What a run does of a scene: its cases, methods, speeds, engines and steps,
-and the notes on what it leaves to `--full`.
+"""The part of a scene that a run measures: its cases, methods, speeds, engines and steps.
+
+Notes say what it leaves to `--full`.
 """
 
 import warnings
@@ -16,7 +17,7 @@ from ..products import PYBULLET, PYMUNK
 from ..scene import Scene
 from ..subject import modules
 
-REPEATS = 7                  # of a timed run, at most
+REPEATS = 9                  # of a timed run; fewer only of long ones in plain Python
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
 
 
@@ -37,7 +38,7 @@ class Plan(NamedTuple):
 
     def repeats(self):
         """Return number of timed repeats; fewer where a reader is waiting."""
-        return 3 if self.most_steps else 5 if self.quick else REPEATS
+        return 3 if self.most_steps else REPEATS
 
     def enough(self):
         """Return how many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.
@@ -60,12 +61,17 @@ class Selection(NamedTuple):
 
     @property
     def first(self):
-        """(name, p) of the case that is timed and drawn."""
+        """Return (name, p) of the case that is timed and drawn."""
         return next(iter(self.cases.items()))
 
     def ours_for(self, p):
         """Return the methods of ours that support this case, and in a quick validation are not too slow in it."""
         return tuple(r for r in self.ours if can_do(r, p) and not (self.plan.quick and self.is_slow(r, p)))
+
+    def unfinished_for(self, p):
+        """Return [(runner, why)] of our methods that do not come to their end in this case."""
+        found = [(runner, runner.unfinished(p)) for runner in self.ours if runner.unfinished]
+        return [(runner, why) for runner, why in found if why]
 
     def engines_for(self, p):
         """Return the engines that support this case; an optional one only where it runs."""
@@ -103,7 +109,8 @@ class Selection(NamedTuple):
         if self.plan.quick:
             most = min(most, runner.most_in_quick or np.inf)
         finer = () if self.plan.quick or p != self.first[1] else runner.finer_in_full
-        return tuple(n for n in self.steps if n <= most) + finer
+        at_once = runner.who.substeps if runner.is_engine else 1
+        return tuple(n for n in self.steps if n <= most and n % at_once == 0) + finer
 
     def fastest(self, runner):
         """Return the same at the fastest speed that was asked for."""
@@ -130,7 +137,9 @@ def left_out(engine, plan):
 
 
 def can_do(runner, p):
-    """Return whether a runner can do this case at all."""
+    """Return whether a runner can do this case at all, and comes to its end."""
+    if runner.unfinished is not None and runner.unfinished(p):
+        return False
     return runner.supports is None or runner.supports(p)
 
 
@@ -146,7 +155,7 @@ def speeds_of(scene, plan, runner):
 
 
 def sweep(scene, plan):
-    """The scene's numbers of steps, and before them three that are too coarse: they show where a method gives up."""
+    """Return the scene's numbers of steps after three that are too coarse, which show where a method fails."""
     first = scene.steps[0]
     coarse = tuple(n for n in (first // 10, first // 5, first // 2) if n >= 2)
     return tuple(n for n in coarse + tuple(scene.steps) if n <= (plan.most_steps or n))
@@ -199,7 +208,7 @@ def load(name, of):
 
 @contextmanager
 def changed(name, changes):
-    """With changed parameters, do not warn of overflow, and raise BadInput for what the scene cannot compute."""
+    """Suppress overflow warnings for changed parameters, and raise BadInput if the scene cannot compute them."""
     if not changes:
         yield
         return

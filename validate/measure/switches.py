@@ -1,4 +1,4 @@
-"""What an engine's own parts cost in a scene, and what they change: each is switched off in turn."""
+"""Cost and effect of an engine's own parts in a scene: each is switched off in turn."""
 
 import numpy as np
 
@@ -11,10 +11,11 @@ LEAST = 50                   # steps of a run
 
 
 def engine_parts(selection, p):
-    """[{engine, product, part, steps, cost, change, observed, repeats}] of the first settings of each engine that runs.
+    """Return the cost of each part of the first settings of each engine that runs.
 
-    cost: time with the part over time without it;    change: relative change of what is observed without it, or None
-    where the run is lost.  Nothing is measured where an engine makes its worlds only while it answers.
+    [{engine, product, part, steps, cost, change, observed, repeats}]
+    cost: time with the part over time without it;    change: relative change of the observed quantities without it, or
+    None if the run is lost.  Nothing is measured if an engine makes its worlds only when it is read.
     """
     scene = selection.scene
     if not (scene.moves and scene.refined):

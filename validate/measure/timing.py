@@ -1,15 +1,15 @@
 """Error against run time.
 
-Only the stepping loop is timed: two warm-ups, then interleaved repeats with garbage collection off.  A loop that is
-shorter than a tenth of a millisecond is repeated inside the clock; one that takes longer than 40 ms is warmed up once
-and repeated less often, because its time varies less.  Errors come from separate, identical runs.
+Only the stepping loop is timed: two warm-ups, then nine interleaved repeats with garbage collection off.  A loop that
+is shorter than a tenth of a millisecond is repeated inside the clock.  One that takes longer than 40 ms is warmed up
+once.  A long loop in plain Python, which decides no race, is repeated less often.  Errors come from separate, identical
+runs.
 """
 
 import gc
 import os
 import time
 import warnings
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,19 +17,20 @@ import numpy as np
 
 from ..check import jsonable
 from . import traces
-from .accuracy import ASYMPTOTIC, labels_that_agree, relative
+from .accuracy import labels_that_agree, relative
+from .calls import costs_of_calls
+from .races import races, reach
 from .selection import REPEATS, select, with_overrides
 
 WARM_UPS, PROBE = 2, 64
-EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SAME = 1e-9                  # relative difference of two motions that count as the same [-]
 LONG = 0.04                  # a timed loop that takes longer is warmed up once [s]
-ENOUGH = 0.3                 # a timed loop is repeated until it has run for so long, or as often as was asked for [s]
+ENOUGH = 0.3                 # in plain Python a loop is repeated until it has run for so long, or as often as all [s]
 LEAST_REPEATS = 3            # but at least so often [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 SHORTEST_LOOK = 0.1          # the system counts hundredths of a second: a shorter look at them is no measurement [s]
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 
 
 class Timed(NamedTuple):
@@ -59,14 +60,15 @@ def times(name, plan, result):
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]}
             for label, speed, n, t in timed if n in found[label]]
     done = {(r["label"], r["speed"]) for r in rows}
+    calls = costs_of_calls(plan.live) if items else []
     return jsonable({
         "rows": rows,
         "untimed": list(dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in done)),
-        "baseline": baseline(plan.live) if scene.moves else {},
+        "calls": calls,
         "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
         "others": others if items else None,
         "time_to_error": times_to_error(rows),
-        "advantage": advantage(rows, result["cases"][case]),
+        "races": races(rows, result["cases"][case], [product.name for product in plan.live], plan.quick, calls),
         "ablations": ablations(selection, p, labels_that_agree(result)),
     })
 
@@ -100,13 +102,13 @@ def engine_items(selection, p, found):
 
 
 def recorded_times(selection, case, p):
-    """[(label, "recorded", steps, times)] of the engines that are not installed."""
+    """Return [(label, "recorded", steps, times)] of the engines that are not installed."""
     return [(r.label, "recorded", row["steps"], row) for r in selection.engines_for(p) if not selection.is_live(r)
             for row in (traces.recorded(selection.name, case, r.who) or {}).get("seconds") or []]
 
 
 def time_ours(scene, step, p, state=None):
-    """prepare(steps, dt) for one of our methods."""
+    """Return prepare(steps, dt) for one of our methods."""
     state = state or scene.start(p)
 
     def prepare(steps, dt):
@@ -116,13 +118,13 @@ def time_ours(scene, step, p, state=None):
 
 
 def time_engine(engine, p):
-    """prepare(steps, dt) for an engine."""
+    """Return prepare(steps, dt) for an engine."""
     def prepare(steps, dt):
         world = engine.make(p, dt)
 
         def loop():
             step = world.step
-            for _ in range(steps):
+            for _ in range(steps // engine.substeps):
                 step()
         return loop, world.close
     return prepare
@@ -131,7 +133,10 @@ def time_engine(engine, p):
 # ---------------------------------------------------------------------------------------------- a busy machine
 
 def cpu_seconds():
-    """(clock, seconds of all cores at work, seconds of this process) [s]; None where the system does not tell."""
+    """Return (clock, busy seconds of all cores, seconds of this process) [s].
+
+    None if the system does not report them.
+    """
     try:
         counts = list(map(int, Path("/proc/stat").read_text(encoding="utf-8").splitlines()[0].split()[1:]))
     except (OSError, ValueError):
@@ -151,7 +156,7 @@ def used_by_others(before, after):
 # ---------------------------------------------------------------------------------------------- the clock
 
 def interleaved(items, time_limits, repeats=REPEATS):
-    """[(item, {seconds, low, high, repeats})]: medians of interleaved repeats, and all of them.
+    """[(item, {seconds, low, high, repeats})]: medians of interleaved repeats, their intervals, and all of them.
 
     Runs longer than `time_limits[speed]` are left out.
     """
@@ -164,17 +169,28 @@ def interleaved(items, time_limits, repeats=REPEATS):
         try:
             for lap in range(repeats):
                 for (item, inner, seconds), sample in zip(chosen, samples):
-                    if lap < LEAST_REPEATS or lap * seconds < ENOUGH:
+                    if item.speed != "plain" or lap < LEAST_REPEATS or lap * seconds < ENOUGH:
                         sample.append(clock(item, inner))
         finally:
             if enabled:
                 gc.enable()
-    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s), "repeats": s})
+    return [(item, {"seconds": float(np.median(s)), **interval(s), "repeats": s})
             for (item, *_), s in zip(chosen, samples)]
 
 
+def interval(repeats):
+    """Return {"low", "high"}: ends between which the median of many more repeats lies, with a chance of 96 %.
+
+    Of nine repeats these are the second and the eighth by size: 1 − 2 (1 + 9)/2⁹.  Of fewer they are the first and the
+    last.  *Source:* the sign test; any distribution will do.
+    """
+    ordered = sorted(repeats)
+    skip = 1 if len(ordered) >= REPEATS else 0
+    return {"low": ordered[skip], "high": ordered[-1 - skip]}
+
+
 def short_enough(items, time_limits):
-    """[(item, repeats inside the clock, seconds)] of what does not take too long, warmed up."""
+    """Return [(item, repeats inside the clock, seconds)] of the items that do not take too long, warmed up."""
     chosen, pace = [], {}                                            # pace: {(label, speed): seconds per step}
     for item in items:
         key = item.label, item.speed
@@ -213,32 +229,10 @@ def clock(item, inner, steps=None):
         close()
 
 
-@cache
-def baseline(live):
-    """Cost of one step of an empty world [s], the Python call included, for each engine.  It is measured once."""
-    costs = {}
-    for product in live:
-        world = product.adapter.empty_world()
-        costs[product.name] = empty_step(world.step)
-        world.close()
-    return costs
-
-
-def empty_step(step):
-    """Median seconds per call."""
-    laps = []
-    for _ in range(REPEATS):
-        begin = time.perf_counter()
-        for _ in range(500):
-            step()
-        laps.append((time.perf_counter() - begin) / 500)
-    return float(np.median(laps))
-
-
 # ---------------------------------------------------------------------------------------------- ablations
 
 def ablations(selection, p, agreeing):
-    """[{what, cost: times longer with it put in, same: the motion is unchanged, note}] for what the scene omits."""
+    """Return [{what, cost: ratio of times with it included, same: the motion is unchanged, note}] for omitted parts."""
     scene = selection.scene
     runner = min((r for r in scene.our_runners if r.label in agreeing), key=selection.rank, default=None)
     if runner is None:
@@ -270,50 +264,10 @@ def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full)
 # ---------------------------------------------------------------------------------------------- reading the diagram
 
 def times_to_error(rows):
-    """{label (speed): {target error: seconds, or None where the sweep does not get there}}, log-log between points."""
-    table = {}
-    for key in dict.fromkeys((r["label"], r["speed"]) for r in rows):
-        points = sorted((r["error"], r["seconds"]) for r in rows if (r["label"], r["speed"]) == key)
-        table[f"{key[0]} ({key[1]})"] = {f"{target:g}": time_to_error(points, target) for target in TARGETS}
-    return table
-
-
-def time_to_error(points, target):
-    """Least time for that error from (error, seconds) points:
-    the cheapest point that is good enough, or between it and the next.
-    """
-    good = [(s, e) for e, s in points if e <= target]
-    if not good:
-        return None
-    seconds, error = min(good)
-    worse = [(e, s) for e, s in points if e > target and s < seconds]
-    if not worse or error <= 0.0:
-        return seconds
-    e, s = min(worse)
-    fraction = np.log(target / error) / np.log(e / error)
-    return float(np.exp(np.log(seconds) + fraction * (np.log(s) - np.log(seconds))))
-
-
-def advantage(rows, case):
-    """For each engine that errs: its smallest error, its time for that, our shortest time to get there,
-    and the ratio.  There is no race where none of our methods was run.
-    """
-    if not case["ours"]:
-        return []
-    product = {c["label"]: c["product"] for c in case["engines"]}
-    result, ours = [], {}
-    for r in rows:
-        if r["speed"] in ("plain", "compiled"):
-            ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
-    worth = [r for r in rows if r["speed"] == "engine" and EXACTLY < r["error"] < ASYMPTOTIC]
-    for label in dict.fromkeys(r["label"] for r in worth):
-        best = min((r for r in worth if r["label"] == label), key=lambda r: r["error"])
-        reached = [(t, name, speed) for (name, speed), points in ours.items()
-                   if (t := time_to_error(sorted(points), best["error"]))]
-        quickest = min(reached, default=(None, "", ""))
-        result.append({
-            "engine": label, "product": product[label], "error": best["error"], "seconds": best["seconds"],
-            "ours": quickest[0], "method": quickest[1], "speed": quickest[2],
-            "ratio": best["seconds"] / quickest[0] if quickest[0] else None,
-        })
-    return result
+    """[{label, speed, seconds}]: of each curve its times to the TARGETS, None where its runs do not get there."""
+    groups = {}
+    for row in rows:
+        groups.setdefault((row["label"], row["speed"]), []).append(row)
+    reached = {key: [reach(group, target) for target in TARGETS] for key, group in groups.items()}
+    return [{"label": label, "speed": speed, "seconds": [one and one.seconds for one in found]}
+            for (label, speed), found in reached.items()]

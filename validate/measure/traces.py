@@ -1,4 +1,4 @@
-"""Read the recorded runs of pybullet, for machines without it; `record.py` writes them."""
+"""Reader of the recorded runs of pybullet, for machines without it; `record.py` writes them."""
 
 from solutions.checks import BadInput
 
@@ -22,7 +22,8 @@ def recorded(name, case, engine):
     if not record["runs"] and engine.product.recorded:
         raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty",
                        f"restore it, or give where pybullet is installed: validate record --scene {name}")
-    runs = record["runs"].get(case, {}).get(engine.label)
+    label = engine.recorded_as or engine.label
+    runs = record["runs"].get(case, {}).get(label)
     return runs and {"source": f"recorded, {record['stamp']}", "runs": runs,
                      "seconds": record["seconds"].get(engine.label)}
 

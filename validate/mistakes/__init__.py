@@ -1,4 +1,4 @@
-"""Name the mistake in an answer: compare what it returns in the grading tests with what known wrong answers return.
+"""The name of the mistake in an answer: its results in the grading tests are compared with those of wrong answers.
 
 The grading tests draw the same public inputs for everyone, so the same mistake gives the same numbers.  While a test
 runs, a Trace keeps one number for each of the first results of the exercise's function, and for some later ones:
@@ -18,13 +18,13 @@ from pathlib import Path
 import numpy as np
 
 FIRST = 64                   # of the calls in a test these are kept, and after them number 128, 256, …
-EVERY = 4096                 # so many are kept while a table is written
+EVERY = 4096                 # number of calls that are kept while a table is written
 SAME, ROUND_OFF = 1e-6, 1e-9   # two sums are the same within this part of their terms, or within this
 VISIBLE = 1e-3               # a result that is off by this part of its own terms is wrong, however small it is
 HUGE, LARGE = "huge", 1e6    # is stored in place of a sum that is above this, and about which round-off decides
 DIGITS = 8                   # of a stored sum
 GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and no two differences are the same
-MOST = 2                     # so many ideas are named where several give the same numbers
+MOST = 2                     # number of ideas that are named if several give the same numbers
 NOTHING = object()           # the last result where there is none
 CHANGED = "has changed its input"
 ONE, TWO = "a one-dimensional array", "a two-dimensional array"
@@ -89,7 +89,7 @@ class Trace:
         self.results[self.calls], self.sorted_out[self.calls] = result, orderless
 
     def changed_input(self):
-        """The last call has changed an array that was handed in."""
+        """Note that the last call has changed an array among its arguments."""
         self.keep(CHANGED, CHANGED)
 
     def watching(self, function):
@@ -173,7 +173,7 @@ def kind(value):
 
 
 def leaves(value):
-    """All numbers of a result, in their order."""
+    """Return all numbers of a result, in their order."""
     if isinstance(value, np.ndarray):
         yield from value.astype(float).ravel()
     elif isinstance(value, (tuple, list)):
@@ -189,7 +189,10 @@ def leaves(value):
 
 
 def same(kept, stored):
-    """Whether a result is the stored one, up to round-off.  None is stored where round-off decides about the result."""
+    """Return whether a result is the stored one, up to round-off.
+
+    None is stored if round-off decides about the result.
+    """
     if stored is None:
         return True
     if stored == HUGE and not isinstance(kept, str):
@@ -223,9 +226,9 @@ def stored(results):
 
 
 def first_difference(trace, right, orderless):
-    """[number of the call, its result, the right one] where a trace first leaves the right one; None if nowhere.
+    """Return [number of the call, its result, the right one] where a trace first leaves the right one, or None.
 
-    Where all results are the same up to round-off, a small result that is wrong for its size: the last such one,
+    If all results are the same up to round-off, it is a small result that is wrong for its size: the last such one,
     because a test ends with the call that fails.
     """
     found, expected = trace.of_calls(orderless), right.of_calls(orderless)
@@ -238,7 +241,7 @@ def first_difference(trace, right, orderless):
 # ---------------------------------------------------------------------------------------------- looking up
 
 def matching(lesson, exercise, traces):
-    """Ideas of the wrong answers that return the same in all tests of the exercise.
+    """Return the ideas of the wrong answers that return the same in all tests of the exercise.
 
     traces: {test: Trace} of the answer.  An answer that returns in all tests what a right one returns has none.
     """
@@ -258,7 +261,7 @@ def matching(lesson, exercise, traces):
 
 
 def misshapen(lesson, exercise, trace):
-    """(expected, got) where the last result is not the kind of thing that the exercise's function returns; or None."""
+    """Return (expected, got) if the last result is not of the kind that the exercise's function returns, or None."""
     expected = table(lesson).get(exercise, {}).get("returns", "")
     got = kind(trace.returned) if trace else ""
     return (expected, got) if expected and got and expected != got else None

@@ -1,4 +1,4 @@
-"""The case in which a check failed, as data: what a function was given, what it returned, and what was expected.
+"""The case in which a check failed, as data: a function's arguments, its result, and the expected result.
 
 pytest writes it for a notebook, which draws it (`notebook/cases.py`).  It is kept for public inputs only, where the
 message of the check names them, too: nothing is traced with a secret seed, nor in the grader's sandbox.
@@ -24,9 +24,9 @@ class Case(NamedTuple):
 
 
 def expected_result(result, got, expected):
-    """The result that a test expects, if it compared all of a result, or parts of it, with numbers; None elsewhere.
+    """Return the expected result if a test compared all of a result, or parts of it, with numbers; None otherwise.
 
-    got is what was compared with `expected`.  A part of a record or tuple is the one that is equal to `got`.
+    got was compared with `expected`.  A part of a record or tuple is the one that is equal to `got`.
     """
     if got is None or expected is None or result is None:
         return None

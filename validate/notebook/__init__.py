@@ -1,4 +1,4 @@
-"""What a notebook needs beside the lesson itself: the learner's code as saved just now, the check, pictures.
+"""Tools of a notebook beside the lesson itself: the learner's code as saved just now, the check, pictures.
 
 The learner's folder is `lessons/`, or the one that the environment variable WORKBOOK_LESSONS names.
 """
@@ -71,7 +71,7 @@ latest: dict = {}                  # {lesson: what `mine` gave last}
 
 
 def mine(lesson):
-    """Your lesson, as saved just now.
+    """Return your lesson, as saved just now.
 
     A file that cannot be loaded is reported in one sentence, and nothing else breaks.
     """
@@ -219,7 +219,7 @@ UNKNOWN_TO_NUMBA = {         # {kind of expression: what people call it}
 
 
 def _why_not_compiled(file, said):
-    """The sentence about a function that numba refuses: its name, and the line and what stands there, where known."""
+    """Return the sentence about a function that numba refuses: its name, and if known the line and its text."""
     place = rf'{re.escape(file.parent.name)}[\\/]{re.escape(file.name)}", line (\d+)'
     lines = [int(n) for n in re.findall(place, said)]
     text = file.read_text(encoding="utf-8", errors="replace")
@@ -237,8 +237,9 @@ def _why_not_compiled(file, said):
 
 
 def opening(notebook, make):
-    """What `make` gives for a notebook's first picture; in a copy without worked answers what it gave when that copy
-    was made.
+    """Return the result of `make` for a notebook's first picture.
+
+    In a copy without worked answers it is the result that was stored when the copy was made.
     """
     made = json.loads(OPENINGS.read_text()) if OPENINGS.is_file() else {}
     if notebook not in made:
@@ -326,7 +327,7 @@ def _lesson_of(exercise):
 # ---------------------------------------------------------------------------------------------- how far
 
 def progress(lesson):
-    """Your points in a lesson so far, and the next exercise of which everything that it calls passes."""
+    """Show your points in a lesson so far, and the next exercise whose called exercises all pass."""
     try:
         own = modules.subject_folder(folder())
         if not needs.of_lesson(lesson):
@@ -371,7 +372,7 @@ class _Progress:
 
 
 def exercise_map():
-    """A table of all exercises: the function that each asks for, and the exercises that this calls."""
+    """Return a table of all exercises: the function of each, and the exercises that it calls."""
     display(_Map())
 
 
@@ -465,7 +466,7 @@ def look(method, **changes):
 
 
 def play(frames, seconds, links=(), height=260, shown_as=None):
-    """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour.
+    """Show a film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour.
 
     shown_as = {label: Method of validate/methods.py}: these have the colour and the marker of their method.
     """
@@ -504,7 +505,7 @@ def _display(picture, height=260):
 
 
 def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=380):
-    """A film in 3D that turns under the mouse: runs = {label: poses}.  The rest is as in validate/measure/film.py."""
+    """Show a film in 3D that the mouse rotates: runs = {label: poses}.  The rest is as in validate/measure/film.py."""
     runs = {label: (Role.TRUTH if label == "truth" else Role.OURS, poses) for label, poses in runs.items()}
     _display3d(film.packed(bodies, runs, seconds, arrows, trail, ground), height)
 
@@ -559,7 +560,7 @@ def measured(name, most_steps=1000, without=None, **changes):
 
 
 def show_motion(result):
-    """The scene's film: truth, your best method, an engine."""
+    """Show the scene's film: truth, your best method, an engine."""
     picture = result["picture"]
     if picture["space"]:
         _display3d(picture["space"])
@@ -568,11 +569,11 @@ def show_motion(result):
 
 
 def show_precision(result):
-    """Error against step, and error against run time: the two figures of the report, with your methods in them."""
+    """Show error against step, and error against run time: the two figures of the report, with your methods in them."""
     plots.show(plots.convergence, result)
     plots.show(plots.work_precision, result)
 
 
 def show_findings(result):
-    """What the numbers say."""
+    """Show what the numbers say."""
     display(Markdown("\n".join(f"- {sentence}" for sentence in words.findings(result))))

@@ -14,12 +14,12 @@ SECONDS = DT * STEPS * FRAMES                    # of a film [s]
 
 
 def points():
-    """Positions of all points at the start."""
+    """Return positions of all points at the start."""
     return np.array([[CELL * column, -CELL * row] for row in range(ROWS) for column in range(COLS)])
 
 
 def threads(springs):
-    """Pairs of points that a thread joins; springs is lesson 2."""
+    """Return the pairs of points that a thread joins; springs is lesson 2."""
     return springs.grid_pairs(ROWS, COLS, springs.STRUCTURAL + springs.SHEAR)
 
 
@@ -30,7 +30,7 @@ def network(springs, fixed=RINGS, wind=(0.03, 0.0)):
 
 
 def film(step, law, p, x=None, dt=DT):
-    """Pictures of a motion from rest: step is a method of lesson 1, law an acceleration with parameters p."""
+    """Return pictures of a motion from rest: step is a method of lesson 1, law an acceleration with parameters p."""
     x = points() if x is None else x
     v, t, frames = np.zeros_like(x), 0.0, []
     for _ in range(FRAMES):
@@ -42,8 +42,10 @@ def film(step, law, p, x=None, dt=DT):
 
 
 def folded(spread):
-    """Positions (n, 3) of all points, z towards the viewer, when the rings are `spread` times as far apart as in
-    `points`, at most 1: the cloth stands in folds, one between two rings, and no thread changes its length.
+    """Return positions (n, 3) of all points, z towards the viewer, of a cloth with other distances of its rings.
+
+    The distances are `spread` ≤ 1 times those in `points`.  The cloth stands in folds, one between two rings, and
+    no thread changes its length.
     """
     depth = CELL * np.sqrt(1.0 - spread**2)
     x = points()
@@ -51,13 +53,14 @@ def folded(spread):
 
 
 def drawn(x):
-    """Points to draw (n, 2) of positions (n, 3): z comes obliquely towards the viewer, to the lower left."""
+    """Return points to draw (n, 2) of positions (n, 3): z comes obliquely towards the viewer, to the lower left."""
     return x[:, :2] + x[:, 2:] * [-0.4, -0.3]
 
 
 def drawn_aside(step, law, network, spreads):
-    """Pictures (n, 3) of a curtain in space; in picture k its rings are spreads[k] times as far apart as in `points`.
+    """Return pictures (n, 3) of a curtain in space.
 
+    In picture k its rings are spreads[k] times as far apart as in `points`.
     step is one of lesson 8, for a network whose immovable points are the rings: they keep the velocity that they get.
     """
     x, rings, frames = folded(spreads[0]), list(RINGS), []
@@ -103,7 +106,7 @@ ALONG_X = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])           # of a body
 
 
 def ring_mesh(radius, wire, around=24, across=8):
-    """Corners (n, 3) [m] and faces (k, 3) of a ring about z: a closed mesh, as lesson 4 takes it."""
+    """Return corners (n, 3) [m] and faces (k, 3) of a ring about z: a closed mesh, as lesson 4 takes it."""
     i, j = (part.ravel() for part in np.meshgrid(np.arange(around), np.arange(across), indexing="ij"))
     a, b = 2.0 * np.pi * i / around, 2.0 * np.pi * j / across
     out = radius + wire * np.cos(b)
@@ -134,7 +137,7 @@ def sheet(slipped=False):
 
 
 def shapes(rings=RINGS, slipped=False):
-    """Pole, two balls, curtain and rings in space, for show3d."""
+    """Return the pole, two balls, the curtain and the rings in space, for show3d."""
     knobs = [drawing.sphere(radius) for radius, _ in KNOBS]
     return [drawing.cylinder(POLE, POLE_LENGTH), *knobs, sheet(slipped), *[RING] * len(rings)]
 

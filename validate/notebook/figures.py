@@ -1,4 +1,4 @@
-"""What a figure shows, in words, for readers who cannot see it: every figure that a notebook shows carries them.
+"""Descriptions of figures in words, for readers who cannot see them: every figure of a notebook has one.
 
 JupyterLab shows a PNG without a description, even if its metadata has one; of HTML it keeps the description.  So
 a figure is sent as HTML with the PNG in it, and as the PNG, whose metadata the book reads.
@@ -45,7 +45,10 @@ def _sentence(axes):
 
 
 def _quantities(axes):
-    """What is drawn against what; a plot without a label of its own has that of the plot whose axis it shares."""
+    """Return the quantities of a plot's axes.
+
+    A plot without a label of its own has that of the plot whose axis it shares.
+    """
     x, y = (_label(axes, name) for name in "xy")
     logarithmic = " and ".join(name for name in "xy" if getattr(axes, f"get_{name}scale")() == "log")
     said = f"{y} against {x}" if x and y else x or y
@@ -74,7 +77,7 @@ def _bars(axes):
 
 
 def _ends(axes, handle):
-    """The values of a curve where it begins and ends, if it is a function of x; not of a drawing in the plane."""
+    """Return the first and last values of a curve if it is a function of x, and not a drawing in the plane."""
     if axes.get_aspect() == "equal" or not hasattr(handle, "get_xdata"):
         return ""
     try:

@@ -1,4 +1,4 @@
-"""Imported by the process that checks are copied from: pytest has run once, so a copy finds everything imported."""
+"""Imports of the process from which checks are forked: pytest has run once, so a copy finds everything imported."""
 
 import gc
 import tempfile

@@ -68,7 +68,7 @@ def first_on_the_path(folder):
 
 
 def in_this_one(*arguments):
-    """The same without another process.  The tests' modules are dropped, so that the next check reads them anew."""
+    """Do the same in this process.  The tests' modules are dropped, so the next check reads them anew."""
     kept = set(sys.modules)
     try:
         return quiet(*arguments)

@@ -10,14 +10,14 @@ from scipy.optimize import brentq, linprog
 
 
 def sweeps_needed(r, omega, small):
-    """Return the number of relaxed sweeps from zero after which two forces are right to `small`, relative.
+    """Return the number of relaxed sweeps from zero after which two forces have a relative error below `small`.
 
     A body of mass r stands on a body of mass 1.  The forces are F = ((1 + r) g, r g), from below.  The errors
     e = λ/F − 1 obey, with the lower contact first,
 
         e₀' = (1 − ω) e₀ + ω r/(1 + r) e₁,      e₁' = (1 − ω) e₁ + ω e₀'
 
-    and start at −1.  (The upper contact needs as much as would stop its approach, which is r/(1 + r) of λ₀, and
+    and start at −1.  (The force needed to stop the approach of the upper contact is r/(1 + r) of λ₀, and
     F₁ = r/(1 + r) F₀.)  With ω = 1 both are −ρᵏ after k sweeps, with ρ = r/(1 + r): k = ln(small)/ln ρ.
     """
     if omega == 1.0:
@@ -58,7 +58,7 @@ def arch_holds(n, t, mu):
     """Return whether forces exist that hold the arch: a linear program, after Heyman's safe theorem.
 
     Each joint pushes at its inner and outer end with f_n ≥ 0 and |f_t| ≤ μ f_n.  Every stone is in balance: two
-    forces, one moment.  Nothing is optimised.  SciPy's HiGHS says whether there is a solution.
+    forces, one moment.  The program has no objective; SciPy's HiGHS reports whether it has a solution.
     """
     stones = arch(n, t)
     balance, cone = np.zeros((n, 3, n + 1, 2, 2)), np.zeros((n + 1, 2, 2, n + 1, 2, 2))
@@ -82,7 +82,7 @@ def arch_holds(n, t, mu):
 
 
 def bisected(holds, falls, safe, width):
-    """Return where `holds` turns True between two numbers, relative `width` apart."""
+    """Return the number at which `holds` turns True between two numbers, to the relative `width`."""
     while abs(safe - falls) > width * safe:
         middle = 0.5 * (falls + safe)
         falls, safe = (falls, middle) if holds(middle) else (middle, safe)
@@ -91,22 +91,22 @@ def bisected(holds, falls, safe, width):
 
 @cache
 def least_thickness(n, mu):
-    """Return the least t/R at which the arch stands, to 1e-8."""
+    """Return the smallest t/R at which the arch stands, to 1e-8."""
     return bisected(lambda t: arch_holds(n, t, mu), 0.02, 0.5, 1e-8)
 
 
 @cache
 def least_friction(n, t):
-    """Return the least μ at which the arch stands, to 1e-8."""
+    """Return the smallest μ at which the arch stands, to 1e-8."""
     return bisected(lambda mu: arch_holds(n, t, mu), 0.05, 2.0, 1e-8)
 
 
 def hinged_thickness(n):
-    """Return the least t/R of an even number of stones by moments about hinges; friction is enough.
+    """Return the smallest t/R of an even number of stones by moments about hinges, for sufficient friction.
 
-    Half the arch, with the crown a joint: the thrust H enters at the outer end of the crown.  It needs to hold the part
-    above each joint β (from the crown) about its inner end, and must not overturn the half about the outer end of
-    the springing.  With W(β) weight and M(β) moment about the crown of that part:
+    Consider half of the arch, with a joint at the crown.  The thrust H enters at the outer end of the crown.  It
+    must hold the part above each joint β (from the crown) about its inner end, and must not overturn the half about
+    the outer end of the springing.  With W(β) the weight of that part and M(β) its moment about the crown:
 
         H (R − r cos β) ≥ W r sin β − M  for all joints,      H R ≤ W R − M  at β = 90°
 
@@ -123,13 +123,13 @@ def hinged_thickness(n):
 # ---------------------------------------------------------------------- a judge of impulses from any solver
 
 def in_space(vectors):
-    """Return vectors (m, 2) with a third coordinate 0, and vectors (m, 3) as they are."""
+    """Return vectors (m, 2) with a third coordinate 0; return vectors (m, 3) unchanged."""
     vectors = np.asarray(vectors, dtype=float)
     return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
 
 def turning(omega, inv_inertia):
-    """Return (ω (n, 3), I⁻¹ (n, 3, 3)) of bodies in the plane, ω (n,) and I⁻¹ (n,), or in space as they are."""
+    """Return (ω (n, 3), I⁻¹ (n, 3, 3)) of bodies in the plane, ω (n,) and I⁻¹ (n,); return those in space unchanged."""
     omega, inv_inertia = np.asarray(omega, dtype=float), np.asarray(inv_inertia, dtype=float)
     if omega.ndim == 2:
         return omega, inv_inertia
@@ -138,7 +138,7 @@ def turning(omega, inv_inertia):
 
 
 def natural_residual(bodies, contacts, J, mu, dt):
-    """Return how far [m/s] impulses J (m, d) of a step dt are from the laws of Signorini and Coulomb, d = 2 or 3.
+    """Return the residual [m/s] of the laws of Signorini and Coulomb for impulses J (m, d) of a step dt, d = 2 or 3.
 
     bodies = (x, v, ω, inverse masses, inverse moments) after the step.  contacts = (a, b, n, p, gap), n from b to a.
     With the relative velocity u of a contact, and k_n and k_t its effective inverse masses, the laws hold where
@@ -146,8 +146,8 @@ def natural_residual(bodies, contacts, J, mu, dt):
         J_n = max(0, J_n − (u_n + max(gap, 0)/dt)/k_n)
         J_t = the point of the disc |J_t| ≤ μ J_n that is nearest to J_t − u_t/k_t
 
-    The residual is the largest k_n or k_t times the distance of the two sides.  k_t may be any positive number: here
-    the trace of the contact's matrix less k_n.  The lesson's residual goes by matrices instead.
+    The residual is the largest k_n or k_t times the distance of the two sides.  k_t may be any positive number; here it
+    is the trace of the contact's matrix minus k_n.  The lesson's residual uses matrices instead.
     *Source:* the natural map; Acary and Brogliato 2008.
     """
     (x, v, omega, inv_mass, inv_inertia), (a, b, n, p, gap) = bodies, contacts
@@ -173,7 +173,7 @@ def natural_residual(bodies, contacts, J, mu, dt):
 
 
 def enumerated(A, b):
-    """Return λ ≥ 0 with A λ + b ≥ 0 and λ ⊥ A λ + b, by trying all sets of contacts that push; NaN if there is none."""
+    """Return λ ≥ 0 with A λ + b ≥ 0 and λ ⊥ A λ + b, by trying all sets of active contacts; NaN if there is none."""
     for number in range(2 ** len(b)):
         on = np.array([bool(number >> k & 1) for k in range(len(b))])
         lam = np.zeros(len(b))
@@ -197,14 +197,14 @@ class Settling(NamedTuple):
 
 @cache
 def sway_of_tower(masses, size, g, how):
-    """Return the relative error of the forces in the joints of a tower, after so many seconds of soft contacts.
+    """Return the relative error of the forces in the joints of a tower, after this many seconds of soft contacts.
 
-    Boxes of that size stand on each other without a gap, and fall onto their springs.  Places are linear in the motion,
-    (x, y, θ) of each box, since it moves by less than 1e-4 of its size: a joint has the same two corners all the time,
-    of which the lever arms and normals stay.  What is left is the recursion of the sweeps: those of soft contacts, and
-    those at rest.  A pile numbers the two corners above the lowest box first, then those below it, then the others
-    upwards, and visits number 0, 5, 10, …, then 1, 6, 11, … and so on, which makes the tower rock.  Nothing of the
-    lesson is used.
+    Boxes of that size stand on each other without a gap, and sink onto their soft contacts.  The equations are
+    linear in the motion (x, y, θ) of each box, because it moves by less than 1e-4 of its size.  A joint therefore
+    keeps the same two corners, with constant lever arms and normals.  The recursion consists of the sweeps, first
+    those of soft contacts and then those at rest.  A pile numbers the two corners above the lowest box first, then
+    those below it, then the others upwards.  It visits number 0, 5, 10, …, then 1, 6, 11, … and so on, which makes
+    the tower rock.  Nothing of the lesson is used.
     """
     m = np.asarray(masses, dtype=float)
     n, h = len(m), how.dt / how.substeps
@@ -245,7 +245,7 @@ def sway_of_tower(masses, size, g, how):
 
 
 def rounded_force(masses, size, g, hertz):
-    """Return the relative error of the forces of a tower if a gap is off by a spacing of floats at its height.
+    """Return the relative error of the forces of a tower if a gap is off by the spacing of floats at its height.
 
     A soft contact turns a gap into (2π hertz)²/k_n times as much force; the corner of a box of mass m has k_n = 2.5/m.
     """
@@ -260,16 +260,17 @@ class Towers(NamedTuple):
     """Settings for a tower of boxes in an engine."""
     dt: float                # [s]
     iterations: int          # per step
-    slop: float              # overlap that is tolerated [m]
+    slop: float              # tolerated overlap [m]
     overlap: float           # of neighbours at the start [m]
     frictions: tuple         # of the joints, from below [-]
     seconds: float           # [s]
 
 
 class ChipmunkTower(NamedTuple):
-    """A tower of boxes as Chipmunk keeps it, from below; the last body stands for the floor, and never moves.
+    """A tower of boxes as Chipmunk stores it, from below; the last body is the floor and never moves.
 
-    Places and velocities are (x, y, θ) of each body: places are linear in the motion, and lever arms stay.
+    Positions and velocities are (x, y, θ) of each body.  Positions are linear in the motion, and lever arms are
+    constant.
     """
     w: list                  # 1/mass of each body [1/kg]
     turn: list               # 1/moment of inertia [1/(kg m²)]
@@ -277,7 +278,7 @@ class ChipmunkTower(NamedTuple):
     effective: list          # effective mass at the corners of each joint, the same along it [kg]
     places: list
     v: list
-    push: list               # the velocities that take overlaps back; each step begins without them
+    push: list               # the velocities that remove overlaps; each step begins without them
     J: list                  # impulses of the two corners of each joint, across it [N s]
     F: list                  # along it
 
@@ -293,7 +294,7 @@ def chipmunk_tower(masses, size, overlap):
 
 
 def kick(tower, v, k, x, normal, along):
-    """Change the velocities of the box above joint k and of what is below it by impulses at a corner."""
+    """Change the velocities of the box above joint k and of the body below it by impulses at a corner."""
     for body, sign in ((k, 1.0), (k - 1, -1.0)):
         v[body][0] += sign * tower.w[body] * along
         v[body][1] += sign * tower.w[body] * normal
@@ -306,10 +307,10 @@ def opening(v, k, x):
 
 
 def overlapping_corners(tower, how):
-    """[[joint, corner, its x, velocity that takes its overlap back, impulse for that]], in Chipmunk's order.
+    """Return [[joint, corner, its x, velocity that removes its overlap, impulse for that]], in Chipmunk's order.
 
-    That is from the highest joint to the lowest, the left corner first, but on the floor the right one.  The impulses
-    of the last step are applied; those of a corner that has opened are forgotten.
+    The order is from the highest joint to the lowest, the left corner first, but on the floor the right one first.  The
+    impulses of the last step are applied; those of a corner that has opened are dropped.
     """
     found, order = [], [(joint, c) for joint in reversed(range(len(tower.J))) for c in ((0, 1) if joint else (1, 0))]
     for k, c in order:
@@ -327,7 +328,7 @@ def overlapping_corners(tower, how):
 def chipmunk_sweep(tower, corners, frictions):
     """Sweep once through the corners; return the largest change of a velocity [m/s].
 
-    A corner's normal impulse and friction begin from the same velocities.
+    The normal impulse and the friction of a corner are computed from the same velocities.
     """
     v, push, J, F, arm, most = tower.v, tower.push, tower.J, tower.F, tower.arm, 0.0
     for corner in corners:
@@ -346,11 +347,11 @@ def chipmunk_sweep(tower, corners, frictions):
 
 @cache
 def unrest_in_pymunk(masses, size, g, how):
-    """Return the relative error of the forces in the joints of a tower in pymunk, after so many seconds.
+    """Return the relative error of the forces in the joints of a tower in pymunk, after this many seconds.
 
-    A step of Chipmunk moves with the old velocities; finds the corners that overlap; adds gravity and the impulses of
-    the last step; and sweeps through the corners.  A second set of velocities takes 1 − 0.9^(60 dt) of an overlap
-    beyond the slop back, and is then forgotten.  A sweep that changes no velocity by 1e-17 m/s is the last.
+    A step of Chipmunk moves with the old velocities, finds the corners that overlap, adds gravity and the impulses of
+    the last step, and sweeps through the corners.  A second set of velocities removes 1 − 0.9^(60 dt) of an overlap
+    beyond the slop, and is then discarded.  The sweeps end when no velocity changes by 1e-17 m/s.
     *Source:* Munk2D, cpSpaceStep.c and cpArbiter.c.
     """
     tower, n, dt = chipmunk_tower(masses, size, how.overlap), len(masses), how.dt
@@ -368,10 +369,11 @@ def unrest_in_pymunk(masses, size, g, how):
 
 
 def rounded_overlap(masses, size, g, share, dt):
-    """Return the relative error of the forces of a tower if an engine finds an overlap wrong by ten roundings.
+    """Return the relative error of the forces of a tower if an engine's overlap is wrong by ten rounding errors.
 
-    It takes a share of the overlap back in a step: the whole tower gets  share · error/dt  as a velocity, within dt.
-    Ten: each corner comes from places, turns and half sizes, which are as large as the tower.
+    The engine removes a fraction of the overlap per step.  The whole tower gets the velocity  share · error/dt
+    within dt. There are ten rounding errors, because each corner is computed from positions, rotations and half
+    sizes that are as large as the tower.
     """
     error = 10.0 * np.spacing(len(masses) * size)
     return share * error / dt**2 * np.sum(masses) / np.linalg.norm(g * np.cumsum(masses[::-1]))

@@ -32,7 +32,7 @@ def block_in_space(x, v, block):
 
 @cache
 def slips(p):
-    """Return ((begin, end, sign, x at the beginning), …): the slips up to T [s], x [m]."""
+    """Return ((begin, end, sign, x at the beginning), …) of all slips up to T [s]; x [m]."""
     A, hold, w = p.force / p.m, p.mu * p.g, p.omega
     found, t, x = [], 0.0, 0.0
     while abs(A) > hold:
@@ -54,7 +54,7 @@ def slips(p):
 
 
 def travelled(p, slip, t):
-    """Return the distance [m] since a slip began:  sign · ∫∫ (A |cos| − μg)."""
+    """Return the distance [m] since the start of a slip:  sign · ∫∫ (A |cos| − μg)."""
     begin, _, sign, _ = slip
     A, hold, w = p.force / p.m, p.mu * p.g, p.omega
     s = t - begin
@@ -62,7 +62,7 @@ def travelled(p, slip, t):
 
 
 def slip_position(p, t):
-    """x(t): during a slip from t₁,  ẍ = A cos ωt ∓ μg  integrated twice; constant between.
+    """x(t): during a slip from t₁  ẍ = A cos ωt ∓ μg, integrated twice; constant between slips.
 
     A slip begins where |A cos ωt| = μg, and ends where  ± A/ω (sin ωt − sin ωt₁) = μg (t − t₁);  A = F/m.
     Source: Den Hartog 1931, forced vibrations with friction; the second equation solved by Brent's method.
@@ -75,16 +75,16 @@ def slip_position(p, t):
 
 
 def slip_limits(p, dt):
-    """Friction and the force are smooth within a slip, so an event found late by dt costs only dt².
+    """Friction and the force are smooth within a slip, so an event that is detected late by dt costs only dt².
 
-    A slip begins and ends at the limit of friction, which is why its detection error is of second order.
+    A slip begins and ends at the limit of friction, so the error of late detection is of second order.
 
     Order 1 uses the force at the beginning of each step for all of it: in a slip of s seconds in which A |cos ωt|
     changes by V its velocity is wrong by ½ dt V.  In order 2, a midpoint step, the velocity is wrong by dt² Aω² s/24,
     and the distance by another dt² Aω s/6.  The velocity error at the end, divided by the deceleration there, is the
-    delay of the stop.  If the next slip begins at that moment, it lacks its first acceleration for the same time.  In
+    delay of the stop.  If the next slip begins at that moment, it loses its first acceleration for the same time.  In
     order 1 the terms in dt² are bounded by Aω dt² s each for the beginning, the end and the sum.  The engines use
-    the same forces at the same times.  That pymunk moves with the old velocity has no effect, because a slip begins
+    the same forces at the same times.  pymunk moves with the old velocity.  This has no effect, because a slip begins
     and ends at rest.
     """
     A, w, hold = p.force / p.m, p.omega, p.mu * p.g
@@ -104,15 +104,15 @@ def slip_limits(p, dt):
 
 
 def carried_limit(p, dt):
-    """pybullet loses the slab that moves by more than half its length in a step: no limit there."""
+    """pybullet has no limit if the slab moves by more than half its length in a step, because it then loses it."""
     return slip_limits(p, dt)[1] if carried_along(p, dt) else np.inf
 
 
 @cache
 def pushed_in_steps(p, steps, new):
-    """Return x at T and the greatest speed of a block with the force of the beginning of each step for all of it.
+    """Return x at T and the largest speed of a block if the force at the beginning of each step acts for all of it.
 
-    It moves by one velocity.  Friction takes at most μg dt of the velocity, and at most all of it.
+    It moves with one velocity per step.  Friction removes at most μg dt of the velocity, and at most all of it.
     """
     dt, x, v, fastest = T / steps, 0.0, 0.0, 0.0
     for n in range(steps):
@@ -124,17 +124,17 @@ def pushed_in_steps(p, steps, new):
 
 
 def carried_along(p, dt):
-    """Return whether pybullet's slab keeps its four contact points: its way in a step is less than half its length.
+    """Return whether pybullet's slab keeps its four contact points: it moves by less than half its length per step.
 
-    pybullet finds the points of the last step again by the nearest place on the floor.  The points are one length
-    apart: beyond half of it a front point may be taken for a rear one, and the slab tips.
+    pybullet matches the points of the last step by the nearest place on the floor.  The points are one length apart.
+    Beyond half a length it may take a front point for a rear one, and the slab tips.
     """
     steps = round(T / dt)
     return pushed_in_steps(p, steps, True)[1] * dt < HALF
 
 
 def slip_error(p, dt, new=True, left=0.0):
-    """The same rule in plain numbers, with the force from the beginning of each step.
+    """The prediction is the same rule in plain numbers, with the force from the beginning of each step.
 
     Our sliding step and pybullet move with the new velocity, pymunk with the old one.  The engines' sweeps leave 1e-9.
     """
@@ -152,17 +152,17 @@ def carried_slip_error(p, dt):
 
 # ---------------------------------------------------------------------------------------------- MuJoCo's contact
 
-HOPS = 4                     # runs that begin a little apart, to see how far hops let them go
+HOPS = 4                     # runs whose starts differ slightly, to measure how far hops separate them
 APART = 1e-9                 # of two such starts [m]
-CLOSE = 1e-6                 # how near a run comes, relative, where nothing hops: its solver leaves 1e-9 in a step
+CLOSE = 1e-6                 # relative error of a run without hops: the solver leaves 1e-9 per step
 
 
 class SoftBlock(NamedTuple):
-    """A block of mass 1 on MuJoCo's contact: forces (N, F) that are the least in the cone |F| ≤ μN, in the sense of
+    """A block of mass 1 on MuJoCo's contact, whose forces (N, F) are the smallest in the cone |F| ≤ μN, in the sense of
 
         ½ fᵀ(1 + ρ) f + fᵀ c,    c = (−g_n + b v_n + k r, g_t + b v_t),    ρ = (1 − d)/d,  b = 2/(d τ),  k = 1/(d τ²)
 
-    r: gap [m], negative inside;    d: impedance, τ: time constant [s], twice the step at least.
+    r: gap [m], negative inside;    d: impedance, τ: time constant [s], at least twice the step.
     *Source:* the documentation of MuJoCo, chapter Computation; Todorov 2014.
     """
     g_t: float               # gravity along the plane [m/s²]
@@ -176,7 +176,7 @@ class SoftBlock(NamedTuple):
         return (1.0 - self.d) / self.d, 2.0 / (self.d * self.tau), 1.0 / (self.d * self.tau**2)
 
     def force(self, r, v_n, v_t):
-        """(N, F) [N] in contact: inside of the cone, on its surface, or none."""
+        """Return (N, F) [N] in contact: inside the cone, on its surface, or zero."""
         rho, b, k = self.numbers()
         normal, along = -self.g_n + b * v_n + k * r, self.g_t + b * v_t
         N, F = -normal / (1.0 + rho), -along / (1.0 + rho)
@@ -186,12 +186,15 @@ class SoftBlock(NamedTuple):
         return N, -self.mu * N if along > 0.0 else self.mu * N
 
     def creep(self):
-        """The speed [m/s] at which it slides where friction holds it: b v = ρ g_t, because no force is without one."""
+        """Return the speed [m/s] of a block that friction holds: b v = ρ g_t, as this friction vanishes at rest."""
         rho, b, _ = self.numbers()
         return rho * self.g_t / b
 
     def steps(self, v, dt, count, r=0.0):
-        """The way [m] after so many semi-implicit Euler steps.  Above the plane there is no contact."""
+        """Return the displacement [m] after this number of semi-implicit Euler steps.
+
+        Above the plane there is no contact.
+        """
         way, v_n, law = 0.0, 0.0, self._replace(tau=max(self.tau, 2.0 * dt))
         for _ in range(count):
             N, F = law.force(r, v_n, v) if r < 0.0 else (0.0, 0.0)
@@ -200,18 +203,19 @@ class SoftBlock(NamedTuple):
         return way
 
     def hopping(self, v, dt, count):
-        """(mean, half range) of the way of runs that begin a little apart.
+        """Return (mean, half range) of the displacement of runs whose starts differ slightly.
 
-        A block that slides fast is lifted out of its contact, falls back, and is lifted again.  Every impulse is on
-        the surface of the cone, so that  v_t + μ v_n  is exact, and a hop moves the end by μ times its height.
+        A fast block is lifted out of its contact, falls back, and is lifted again.  Every impulse is on the surface
+        of the cone.  Hence  v_t + μ v_n  is exact, and a hop changes the end by μ times its height.
         """
         ways = [self.steps(v, dt, count, -APART * (n + 1.0)) for n in range(HOPS)]
         return 0.5 * (max(ways) + min(ways)), 0.5 * (max(ways) - min(ways))
 
     def arrest(self, v, t):
-        """The way [m] at t, of a block that is thrown up and held, for dt → 0.
+        """Return the displacement [m] at t of a block that is thrown up and held, for dt → 0.
 
-        Coulomb's law as long as it hops on its contact; then the contact's own equations, which end in the creep.
+        Coulomb's law holds as long as the block hops on its contact.  Then the contact's own equations hold, which
+        end in the creep.
         """
         rho, b, _ = self.numbers()
         left = self.g_n * ((1.0 + rho) * (1.0 + self.mu**2) - 1.0) / self.mu           # here N is the weight

@@ -1,6 +1,6 @@
 """Impacts for the engines, and reference solutions for the scenes of lesson 7.
 
-Neither engine solves for the time of an impact: a body that overlaps at the end of a step is reflected then.  Both
+Neither engine solves for the time of an impact: it reflects a body that overlaps at the end of a step.  Both
 are therefore late by up to one step, depending on where in the step the impact falls.  For that reason each scene
 runs COPIES of itself with staggered starts.
 
@@ -21,14 +21,15 @@ ONLY_ROUND_OFF = "exact: only round-off is left, and the limit bounds it"
 COPIES = 16
 APART = 10.0                 # distance between copies in an engine's world [m]: they never touch
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-# steps by which an impact may be late: it is detected at the end of a step, and the fall before it is ½ dt off,
+# steps by which an impact may be late: it is detected at the end of a step, and the fall before it is off by ½ dt,
 # because its height is ½ g t dt off at v = g t
 LATE = 1.5
 
 
 def delays(window):
-    """Return (COPIES,) start delays [s] between 0 and window: no two fall on the same phase of a step, and the
-    first is not quite 0, where round-off would decide in which step an impact is found.
+    """Return (COPIES,) start delays [s] between 0 and window, each at a different phase of a step.
+
+    The first is slightly above 0, where round-off would decide in which step an impact is detected.
     """
     return window * np.mod(GOLDEN * (0.001 + np.arange(COPIES)), 1.0)
 
@@ -53,8 +54,8 @@ def all_at_once(m, inv_inertia, y, r, n, e, rough):
     Every point leaves with −e times its own normal velocity:
         smooth    n · u⁺ = −e n · u  at every point, impulses along n
         rough     u⁺ = −e (n · u) n, impulses in any direction
-    One linear system for all points, solved by the pseudo-inverse.  With more points than a body has degrees of
-    freedom the impulses are not unique, but their effect is.
+    The pseudo-inverse solves one linear system for all points.  With more points than a body has degrees of freedom
+    the impulses are not unique, but their effect is.
     """
     M = inverse_matrix(m, inv_inertia)
     D = np.eye(3) if rough else n[None]
@@ -64,7 +65,7 @@ def all_at_once(m, inv_inertia, y, r, n, e, rough):
 
 
 def each_in_turn(m, inv_inertia, y, r, n, e, rough):
-    """Return the same with the points in sequence, each once, on the body as the previous one left it: another law."""
+    """Return the same with the points in sequence, each once, on the velocities after the previous one: another law."""
     for arm in r:
         u = point_rows(arm) @ y
         if u @ n < 0.0:
@@ -75,17 +76,17 @@ def each_in_turn(m, inv_inertia, y, r, n, e, rough):
 # ---------------------------------------------------------------------------------------------- a soft floor
 
 def soft_bounce(height, speed, t, g, omega, zeta):
-    """Return (height, speed) after t of a ball over a floor that is a spring and a damper and never pulls.
+    """Return (height, speed) after t of a ball over a floor that is a spring with a damper and never pulls.
 
-    In the air a parabola; inside  z̈ = −2ζω ż − ω² z,  z = y + g/ω²,  until  ω² y + 2ζω ẏ = 0,  where the floor
-    would begin to pull.
+    In the air the motion is a parabola.  Inside,  z̈ = −2ζω ż − ω² z,  z = y + g/ω²,  until  ω² y + 2ζω ẏ = 0,
+    where the floor would begin to pull.
     """
     y, v = height, speed
     sigma, delta = omega * np.sqrt(1.0 - zeta * zeta), omega * zeta
     rest = g / omega**2
     while True:
         flight = (v + np.sqrt(v * v + 2.0 * g * max(y, 0.0))) / g if y >= 0.0 or v > 0.0 else 0.0
-        # it leaves from below, where the floor has stopped pushing
+        # it leaves from below the surface, where the floor stops pushing
         if y < 0.0:
             flight = (v + np.sqrt(v * v + 2.0 * g * y)) / g
         if flight >= t:
@@ -105,7 +106,7 @@ def soft_bounce(height, speed, t, g, omega, zeta):
         times = np.linspace(0.0, np.pi / sigma, 65)[1:]
         pulls = next((k for k, s in enumerate(times) if push(s) < 0.0), None)
         if pulls is None:
-            return inside(t)                                             # it stays
+            return inside(t)                                             # it stays in contact
         until = brentq(push, times[pulls - 1] if pulls else 0.0, times[pulls], xtol=1e-15)
         if until >= t:
             return inside(t)
@@ -114,14 +115,14 @@ def soft_bounce(height, speed, t, g, omega, zeta):
 
 # ---------------------------------------------------------------------------------------------- balls, step by step
 
-CLOSE_CALL = 1e-12           # part of the steps of a flight up to which round-off decides whether the last one hits [-]
-MOST_WAYS = 64               # that close calls may lead to
+CLOSE_CALL = 1e-12           # fraction of a flight's steps below which round-off decides whether the last one hits [-]
+MOST_WAYS = 64               # largest number of outcomes of close calls
 PYMUNK_SLOP = 1e-5           # overlap that pymunk leaves [m]
-PYMUNK_BIAS = float(np.float32(0.9)) ** 60     # share of the rest that is left after a second; 0.9 has 32 bits [-]
+PYMUNK_BIAS = float(np.float32(0.9)) ** 60     # fraction of an overlap that remains after a second; 0.9 has 32 bits [-]
 
 
 class ImpactRule(NamedTuple):
-    """The treatment of impacts by a method or an engine.  Its step adds a push to the position of the next one."""
+    """The treatment of impacts by a method or an engine.  Its step adds a push to the position of the next step."""
     ahead: float             # 1: positions take the new velocity, −1: the old one
     step: Callable           # of a ball above a floor, (y, v, push, g, e, dt) → (y, v, push [m], whether it hit)
     at_end: bool             # it bounces at the end of the step that finds an overlap; False: at the start of the next
@@ -131,7 +132,7 @@ class ImpactRule(NamedTuple):
 
 
 def set_on_floor(y, v, push, g, e, dt):
-    """The lesson's: fall with the new velocity; if that ends below the floor, bounce and start again on it."""
+    """Take a step of the lesson: fall with the new velocity; if that ends below the floor, bounce and restart on it."""
     v = v - g * dt
     y = y + v * dt
     hits = y < 0.0 and v < 0.0
@@ -139,14 +140,20 @@ def set_on_floor(y, v, push, g, e, dt):
 
 
 def hit_then_fall(y, v, push, g, e, dt):
-    """pybullet's: a ball that overlaps leaves with −e of its velocity before gravity, and then it moves."""
+    """Take a step of pybullet: reverse the velocity of a ball that overlaps, times e, before gravity acts.
+
+    Then move.
+    """
     hits = y < 0.0 and v < 0.0
     new = max(v - g * dt, max(-e * v, 0.0)) if y < 0.0 else v - g * dt
     return y + new * dt, new, 0.0, hits
 
 
 def fall_then_hit(y, v, push, g, e, dt):
-    """pymunk's: it moves with the old velocity, and then leaves.  An overlap beyond the slop shrinks in positions."""
+    """Take a step of pymunk: move with the old velocity, and then bounce.
+
+    An overlap beyond the slop shrinks by a correction of positions.
+    """
     y = y + v * dt + push
     new, push, hits = v - g * dt, 0.0, y < 0.0 and v < 0.0
     if y < 0.0:
@@ -161,9 +168,9 @@ CHIPMUNK_RULE = ImpactRule(-1.0, fall_then_hit, True, lambda dt: 1.0 - PYMUNK_BI
 
 
 def flying_steps(y, v, g, dt, ahead):
-    """Return [(how many steps from y ≥ 0 end above the floor, 0)], or two where round-off decides, the second with the
-    little [m] by which it must be lower to hit.
+    """Return [(number of steps from y ≥ 0 that end above the floor, 0)], or two such pairs if round-off decides.
 
+    The second number of a pair is the small height [m] by which the ball must be lower to hit.
     After k steps the height is  y + k (v ∓ ½ g dt) dt − ½ g dt² k²,  − for new velocities, + for old ones.
     """
     rise, curve = (v - 0.5 * ahead * g * dt) * dt, g * dt * dt
@@ -182,9 +189,11 @@ def flying_steps(y, v, g, dt, ahead):
 
 
 def dropped(rule, y, v, g, e, dt, steps):
-    """Return [(y, v, number of the step whose end found the first impact)] of one ball, for each close call both ways.
+    """Return [(y, v, number of the step whose end detects the first impact)] of a ball.
 
-    In the air many steps are one parabola, so that this takes a time per impact and not per step.
+    Each close call gives both outcomes.
+
+    Many steps in the air are one parabola, so the time is proportional to the impacts and not to the steps.
     """
     open_runs, ends = [(y, v, 0.0, 0, np.inf)], []
     while open_runs:
@@ -209,9 +218,9 @@ def dropped(rule, y, v, g, e, dt, steps):
 
 
 def all_dropped(rule, y, v, g, e, dt, steps):
-    """Return (runs (n, 3) of n balls as `dropped`, by how much they may be off (n, 3)); None for too many ways.
+    """Return (runs (n, 3) of n balls as `dropped`, their possible errors (n, 3)); None if there are too many outcomes.
 
-    Where a close call leads to several ends, it is the middle of them.
+    If a close call leads to several ends, it returns the middle of them.
     """
     runs = [dropped(rule, *ball, g, e, dt, steps) for ball in zip(y, v)]
     if None in runs:
@@ -222,7 +231,7 @@ def all_dropped(rule, y, v, g, e, dt, steps):
 
 
 def pushed(y, v, g, stiffness, damping, dt, steps):
-    """Return (height, speed) of balls y, v (n,) over a soft floor by symplectic Euler, which finds it step by step."""
+    """Return (height, speed) of balls y, v (n,) over a soft floor by symplectic Euler, step by step."""
     for _ in range(steps):
         v = v + dt * (np.where(y < 0.0, np.maximum(0.0, -stiffness * y - damping * v), 0.0) - g)
         y = y + dt * v
@@ -230,11 +239,11 @@ def pushed(y, v, g, stiffness, damping, dt, steps):
 
 
 def struck(rule, a, b, v, reach, m_a, m_b, e, dt, steps):
-    """Return the end of two discs at a and b, all complex, of which b rests and a flies with v: (a, v_a, b, v_b).
+    """Return the end of two discs at a and b, complex numbers; b rests and a moves with v: (a, v_a, b, v_b).
 
-    They overlap first at the end of a step, and turn along the line of centres at that moment.  The lesson's step moves
-    them apart at once, pybullet never, and pymunk in positions by a part of the overlap per step.  None where round-off
-    decides in which step.
+    They first overlap at the end of a step, and bounce along the line of centres at that moment.  The lesson's step
+    moves them apart at once, pybullet never, and pymunk moves them by a fraction of the overlap per step.  None if
+    round-off decides in which step.
     """
     along = ((b - a) * v.conjugate()).real / abs(v)
     half = np.sqrt(reach**2 - abs(b - a) ** 2 + along**2)
@@ -260,11 +269,13 @@ def struck(rule, a, b, v, reach, m_a, m_b, e, dt, steps):
 
 
 def passed_on(rule, x, v, reach, dt, steps):
-    """Return [(x, v)] of equal balls in a row, x (n,), of which the first flies with v, for each close call both ways.
+    """Return [(x, v)] of equal balls in a row, x (n,), the first of which moves with v.
+
+    Each close call gives both outcomes.
 
     Each impact passes v on at the end of the first step that ends with an overlap.  The lesson's step shares the
-    overlap between the two at once, pybullet leaves it, and pymunk takes a part of it away in the next step.  None for
-    too many ways.
+    overlap between the two at once, pybullet leaves it, and pymunk removes a fraction of it in the next step.  None if
+    there are too many outcomes.
     """
     open_runs, ends = [(tuple(x), 0, 0)], []
     while open_runs:
@@ -290,5 +301,5 @@ def passed_on(rule, x, v, reach, dt, steps):
 
 
 def rounded_steps(T, dt, size):
-    """Return how far round-off may bring a run of T/dt steps, relative: a few spacings for each, and some dozen."""
+    """Return the relative round-off of a run of T/dt steps: a few spacings of floats per step, and some dozen."""
     return (2.0 * T / dt + 50.0) * ROUND_OFF * size

@@ -22,7 +22,7 @@ def perihelion(p):
 
 
 def attraction(x, mu):
-    """a = −μ x/|x|³"""
+    """Return a = −μ x/|x|³."""
     return -mu / np.linalg.norm(x) ** 3 * x
 
 
@@ -76,9 +76,9 @@ def drift(p, T, dt, k):
     time |x| = 0 lies about 1/rate away, which sets the growth of Taylor's coefficients.  A passage lasts 1/rate.  It
     changes v by (rate dt)ᵏ v, and the energy, relative to μ/2a, by
         ε_k = 2 (1 + e)/(1 − e) (rate dt)ᵏ.
-    A method of even order does that on the way in and undoes it on the way out, by time reversal.  Only ε_k₊₁ is left
-    at every passage (and nothing for symplectic methods).  A method of order 1 leaves ε₁ at every passage.  By Kepler's
-    third law n changes by 3/2 ε, so the phase at T is wrong by
+    A method of even order makes this error on the way in and reverses it on the way out, by time reversal.  Only ε_k₊₁
+    remains at every passage (and nothing for symplectic methods).  A method of order 1 leaves ε₁ at every passage.  By
+    Kepler's third law n changes by 3/2 ε, so the phase at T is wrong by
         φ = 3/2 n T (ε_k + ε_k₊₁ n T/4π)        for even k,
         φ = 3/2 n T ε₁ (1 + n T/4π)              for k = 1;        in metres |v(T)|/n φ.
     The two terms may differ in sign: for the midpoint method they cancel at one step size.
@@ -97,27 +97,27 @@ def passage_weight(p, T):
 
 
 def round_off(p, T, dt):
-    """Return the relative error of position at T that round-off leaves, which grows like a method's own."""
+    """Return the relative error of position at T caused by round-off, which grows like a method's own error."""
     return passage_weight(p, T) * (1e-12 + T / dt * ROUND_OFF)
 
 
 def random_round_off(p, T, dt):
-    """Return the same where roundings have either sign: a random walk, ten times its standard deviation."""
+    """Return the same if rounding errors have either sign: a random walk, ten times its standard deviation."""
     return passage_weight(p, T) * 10.0 * np.sqrt(T / dt) * ROUND_OFF + 1e-11
 
 
 def late_start(p, T, dt, side):
     """Return the relative error at T of leapfrog with a first velocity dt/2 before (side +1) or after (−1) the start.
 
-    Symplectic Euler and the engines are leapfrog with v(0) in place of v(∓½dt): exactly the ellipse of a planet
-    with the velocity v(0) ± ½dt a(0).  At the nearest point a is normal to v, so the energy changes only by dt²:
-    the ellipse turns, its period stays.  This error does not grow with time while leapfrog's own does, so a sweep
-    of dt shows an order between 1 and 2.
+    Symplectic Euler and the engines are leapfrog with v(0) in place of v(∓½dt).  That is exactly the ellipse of a
+    planet with the velocity v(0) ± ½dt a(0).  At the nearest point a is normal to v, so the energy changes only by
+    dt².  The ellipse turns, and its period stays the same.  This error does not grow with time while leapfrog's own
+    does, so a sweep of dt shows an order between 1 and 2.
     """
     x, v = perihelion(p)
     shifted, _ = orbit(x, v + side * 0.5 * dt * attraction(x, p.mu), p.mu, T)
     error = np.linalg.norm(shifted - kepler_position(p, T)) / np.linalg.norm(kepler_position(p, T))
-    # it escapes: no limit
+    # the planet escapes: no limit
     return error if np.isfinite(error) else 1.0
 
 
@@ -133,9 +133,10 @@ def adaptive_limit(p, T, share):
 
 
 def adaptive_march(law, x, v, share, T):
-    """Return x at T of adaptive steps of Blanes and Moan's table, in complex numbers: x·v/x² is the real part of v/x.
+    """Return x at T of adaptive steps with Blanes and Moan's table.
 
-    The middle of each step has the rate ρ, √(|a|/|x|) continued by ρ̇ = −3/2 ρ x·v/x²; the step is share/ρ.
+    In complex numbers x·v/x² is the real part of v/x.  The middle of each step has the rate ρ, which is √(|a|/|x|)
+    continued by ρ̇ = −3/2 ρ x·v/x²; the step is share/ρ.
     Source: Hairer and Söderlind 2005.
     """
     move, t = step_of(BLANES_MOAN), 0.0
@@ -168,7 +169,7 @@ def early_limit(T):
     return limit
 
 
-EVEN = {2: (2, 4, 6), 4: (4, 6, 8)}      # powers of dt in the error of a method that is its own inverse, by its order
+EVEN = {2: (2, 4, 6), 4: (4, 6, 8)}      # powers of dt in the error of a symmetric method, by its order
 FINEST = {1: 20000, 2: 10000, 4: 4000}   # steps of the finest run of a table, by its order
 FINEST_RK4, FINEST_ADAPTIVE = 10000, 2000
 

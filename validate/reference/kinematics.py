@@ -1,4 +1,4 @@
-"""Planar arms by complex numbers, what they can reach, and pybullet's inverse kinematics, written out.
+"""Planar arms by complex numbers, their reach, and an independent version of pybullet's inverse kinematics.
 
 pybullet's calculateInverseKinematics repeats, at most 20 times by default,
     Δθ = (JᵀJ + d 1)⁻¹ Jᵀ e,     scaled so that no joint turns by more than π/4,     d = ½ without jointDamping
@@ -15,56 +15,56 @@ import numpy as np
 
 from ..scene import ROUND_OFF, Prediction
 
-NUDGE = 1e-11                # of the angles at the start, to measure how rounding errors grow [rad]
+NUDGE = 1e-11                # of the angles at the start, to measure the growth of round-off [rad]
 ASIDE = np.array([0.5, -0.4, -1.0])                      # a direction without symmetry
-ROUNDINGS = 30.0             # spacings of floats by which the angles of an iteration may be off [-]
-SURE = 0.1                   # a band above this part of the tolerance is no prediction [-]
+ROUNDINGS = 30.0             # error of the angles per iteration, in spacings of floats [-]
+SURE = 0.1                   # a band above this fraction of the tolerance is no prediction [-]
 DAMPING, LARGEST, ITERATIONS, THRESHOLD = 0.5, 0.25 * np.pi, 20, 1e-4         # [m²], [rad], [-], [m]
 
 
 def links_of(theta, lengths):
-    """The links as complex numbers."""
+    """Return the links as complex numbers."""
     return np.asarray(lengths) * np.exp(1j * np.cumsum(theta))
 
 
 def end_of(theta, lengths):
-    """End of the arm (2,)."""
+    """Return the end of the arm (2,)."""
     z = np.sum(links_of(theta, lengths))
     return np.array([z.real, z.imag])
 
 
 def joints_of(theta, lengths):
-    """Joints and end (n + 1, 2)."""
+    """Return the joints and the end (n + 1, 2)."""
     z = np.append(0.0, np.cumsum(links_of(theta, lengths)))
     return np.stack((z.real, z.imag), axis=1)
 
 
 def jacobian_of(theta, lengths):
-    """J (2, n): joint k turns all links from the k-th on."""
+    """Return J (2, n): joint k turns all links from the k-th on."""
     z = 1j * np.cumsum(links_of(theta, lengths)[::-1])[::-1]
     return np.stack((z.real, z.imag))
 
 
 def curvature_of(theta, lengths, e):
-    """Σ_c e_c ∂²x_c/∂θ_i∂θ_k (n, n): joints i and k together turn the links from the later one on, twice by i."""
+    """Return Σ_c e_c ∂²x_c/∂θ_i∂θ_k (n, n): joints i and k together turn all links from the later of the two on."""
     beyond = np.cumsum(links_of(theta, lengths)[::-1])[::-1]
     later = np.maximum.outer(np.arange(len(beyond)), np.arange(len(beyond)))
     return -(beyond.real * e[0] + beyond.imag * e[1])[later]
 
 
 def annulus(lengths):
-    """(inner, outer) radius of what a planar arm reaches: the hole is what the longest link is more than the others."""
+    """Return (inner, outer) radius of a planar arm's reach; inner: the longest link minus all others, if positive."""
     return max(0.0, 2.0 * max(lengths) - sum(lengths)), float(sum(lengths))
 
 
 def nearest_reachable(target, lengths):
-    """The point of the annulus that is nearest to a target which is not at its centre."""
+    """Return the point of the annulus that is nearest to a target which is not at its centre."""
     r, (inner, outer) = np.hypot(*target), annulus(lengths)
     return np.asarray(target) * (min(max(r, inner), outer) / r)
 
 
 def bent_to(target, lengths):
-    """Angles (3,) of an arm that reaches a target by a bend of its first two joints: the law of cosines."""
+    """Return angles (3,) of an arm that reaches a target by a bend of its first two joints: the law of cosines."""
     r, rest = np.hypot(*target), lengths[1] + lengths[2]
     bend = np.pi - np.arccos((lengths[0] ** 2 + rest**2 - r * r) / (2.0 * lengths[0] * rest))
     first = np.arctan2(target[1], target[0]) - np.arctan2(rest * np.sin(bend), lengths[0] + rest * np.cos(bend))
@@ -72,15 +72,16 @@ def bent_to(target, lengths):
 
 
 def bullet_ik(theta, target, lengths, direction=None, **settings):
-    """Angles that pybullet returns for a planar arm; settings as in `bullet_search`."""
+    """Return the angles that pybullet finds for a planar arm; settings as in `bullet_search`."""
     return bullet_search(theta, target, lengths, direction, **settings)[0]
 
 
 def single_rounding(theta, target, lengths, direction):
-    """What is in doubt [rad] of pybullet's angles by default, because 2 arccos w, w near 1, is rounded to 32 bits.
+    """Return the uncertainty [rad] of pybullet's angles by default, from rounding 2 arccos w, w near 1, to 32 bits.
 
-    w is rounded to 1.1e-16, and so is the quaternion that it comes from: a few times 2.2e-16/sin(φ/2) of the angle φ.
-    Where that does not tell to which float of 32 bits φ is rounded, the search is run with the other one, too.
+    w is rounded to 1.1e-16, and so is the quaternion from which it is computed.  The angle φ is off by a few times
+    2.2e-16/sin(φ/2).  If that does not determine to which 32-bit float φ is rounded, the search is repeated with
+    the other float.
     """
     missing, doubt = [], 0.0
     angles, _ = bullet_search(theta, target, lengths, direction, missing=missing)
@@ -95,10 +96,10 @@ def single_rounding(theta, target, lengths, direction):
 
 def bullet_search(theta, target, lengths, direction=None, damping=DAMPING, iterations=ITERATIONS, threshold=THRESHOLD,
                   missing=None, off=(-1, 0.0)):
-    """(angles that pybullet returns for a planar arm, iterations).
+    """Return (angles that pybullet finds for a planar arm, iterations).
 
-    With a direction [rad] of the last link it has six rows.  The angle of the rotation that is missing goes through a
-    float of 32 bits there.  A list `missing` receives these angles; off = (k, δ) adds δ to that of iteration k.
+    With a direction [rad] of the last link the system has six rows.  The missing rotation angle then passes through a
+    float of 32 bits.  A list `missing` receives these angles; off = (k, δ) adds δ to the angle of iteration k.
     """
     theta, n = np.array(theta, float), len(theta)
     for k in range(iterations):
@@ -117,14 +118,14 @@ def bullet_search(theta, target, lengths, direction=None, damping=DAMPING, itera
 
 
 def turned(axis, angle):
-    """R (3, 3): Rodrigues's formula."""
+    """Return R (3, 3) by Rodrigues's formula."""
     a, b, c = axis
     K = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
     return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
 
 
 def spatial_end(theta, axes, offsets):
-    """(end (3,), R (3, 3) of the last link) of a chain in space, by matrices."""
+    """Return (end (3,), R (3, 3) of the last link) of a chain in space, by matrices."""
     x, R = np.zeros(3), np.eye(3)
     for angle, axis, offset in zip(theta, axes, offsets):
         R = R @ turned(axis, angle)
@@ -132,10 +133,10 @@ def spatial_end(theta, axes, offsets):
     return x, R
 
 
-# ---------------------------------------------------------------------------------------------- every search once more
+# ---------------------------------------------------------------------------------------------- independent searches
 
 def chain(theta, lengths):
-    """Joints and end [complex numbers] of a planar arm."""
+    """Return the joints and the end [complex numbers] of a planar arm."""
     x, phi = [0j], 0.0
     for angle, length in zip(theta, lengths):
         phi += angle
@@ -144,14 +145,14 @@ def chain(theta, lengths):
 
 
 def descended(theta, x, e, turn, gain, damping):
-    """θ + α Jᵀ e: joint k moves the end at a right angle to its way there."""
+    """Return θ + α Jᵀ e: joint k moves the end at a right angle to its lever arm."""
     end = x[-1]
     return [angle + gain * (((end - joint) * 1j).conjugate() * e).real + (gain * turn if turn is not None else 0.0)
             for angle, joint in zip(theta, x)]
 
 
 def solved(theta, x, e, turn, gain, damping):
-    """θ + (JᵀJ + λ² 1)⁻¹ Jᵀ e, by n equations; the shortest least squares where λ = 0."""
+    """Return θ + (JᵀJ + λ² 1)⁻¹ Jᵀ e, by n equations; the minimum-norm least-squares solution if λ = 0."""
     levers = 1j * (x[-1] - np.array(x[:-1]))
     J, e = np.stack((levers.real, levers.imag)), np.array([e.real, e.imag])
     if turn is not None:
@@ -162,7 +163,7 @@ def solved(theta, x, e, turn, gain, damping):
 
 
 def pointed(theta, x, e, turn, gain, damping):
-    """From the last joint to the first, each turns the end into the direction of the target."""
+    """Turn each joint, from the last to the first, so that the end points at the target."""
     end, target, new = x[-1], x[-1] + e, list(theta)
     for k in reversed(range(len(theta))):
         angle = phase((target - x[k]) * (end - x[k]).conjugate())
@@ -172,7 +173,7 @@ def pointed(theta, x, e, turn, gain, damping):
 
 
 def pulled(theta, x, e, turn, gain, damping):
-    """The end goes to the target and pulls the joints, each along its line to the next; then the base pulls back."""
+    """Put the end on the target and pull each joint along its line to the next; then do the same from the base."""
     lengths, n = [abs(b - a) for a, b in pairwise(x)], len(theta)
     x = [*x[:-1], x[-1] + e]
     for k in reversed(range(n)):
@@ -185,15 +186,15 @@ def pulled(theta, x, e, turn, gain, damping):
 
 
 def solved_undamped(theta, x, e, turn, gain, damping):
-    """θ + J⁺ e."""
+    """Return θ + J⁺ e."""
     return solved(theta, x, e, turn, gain, 0.0)
 
 
 def searched(step, theta, target, lengths, enough, most, gain, damping):
-    """(θ, iterations) of a search that ends when |e| ≤ enough, or after `most` iterations.
+    """Return (θ, iterations) of a search that ends when |e| ≤ enough, or after `most` iterations.
 
     step: one of the five functions above.
-    A target with a direction [rad], (x, y, φ), has that as a third row of J.  Nothing here is shared with the lesson.
+    A target with a direction [rad], (x, y, φ), adds a third row to J.  Nothing here is shared with the lesson.
     """
     theta, goal = list(theta), complex(*target[:2])
     for n in range(most):
@@ -208,9 +209,9 @@ def searched(step, theta, target, lengths, enough, most, gain, damping):
 def search_errors(searches, seen, truth, limit):
     """Return the field `predicted` of a Runner that searches.
 
-    searches(p) → functions of a nudge (3,) [rad] of the start that return (θ, iterations); none where only round-off
+    searches(p) → functions of a nudge (3,) [rad] of the start that return (θ, iterations); none if only round-off
     decides
-    seen(angles, p), truth(p, t), limit(p, dt) → what is observed, shall be, and may be off, relative
+    seen(angles, p), truth(p, t), limit(p, dt) → observed quantities, their truth, and their relative limit
     """
     @cache
     def found(p, dt):
@@ -225,9 +226,9 @@ def search_errors(searches, seen, truth, limit):
         return Prediction(error, band) if band < SURE * limit(p, dt) else None
 
     def predicted_error(p, dt):
-        """The search itself, iteration by iteration, by complex numbers and other equations than the lesson's: it ends
-        as far from the target as this one does.  A nudge of the start says what roundings may grow to; where that is
-        not small, as on a jump near a singular arm, only the limit judges.
+        """The prediction is the search itself, iteration by iteration, by complex numbers and other equations than the
+        lesson's: a run ends as far from the target as this search does.  A nudge of the start measures how
+        round-off grows. Where that growth is not small, as on a jump near a singular arm, only the limit judges.
         """
         return found(p, dt)
 

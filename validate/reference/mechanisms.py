@@ -1,4 +1,4 @@
-"""Truths for mechanisms: bodies whose joints form closed loops.  Independent of the lessons."""
+"""Reference solutions for mechanisms, whose joints form closed loops; independent of the lessons."""
 
 from typing import NamedTuple
 
@@ -7,11 +7,11 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
 RTOL, ATOL = 1e-12, 1e-13
-ZERO = 1e-10                 # singular value over the greatest that counts as 0 [-]
+ZERO = 1e-10                 # a singular value below this fraction of the largest counts as 0 [-]
 
 
 class Mechanism(NamedTuple):
-    """n bodies, of which the last is the world and has infinite mass; in space all begin unturned."""
+    """n bodies, the last of which is the world and has infinite mass; in space all begin without rotation."""
     x: np.ndarray            # (n, d) centres [m]
     q: np.ndarray            # (n,) angles [rad], or (n, 4) unit quaternions
     v: np.ndarray            # (n, d) [m/s]
@@ -87,7 +87,7 @@ def inverse_mass_matrix(mechanism, q):
 def solved(mechanism, q, u, F):
     """Return (u̇, forces (k, d) [N] of the joints on bodies a) under loads F = (force, torque) of all bodies.
 
-    The pseudo-inverse of G M⁻¹ Gᵀ, by singular values, gives the shortest forces where many are possible.
+    The pseudo-inverse of G M⁻¹ Gᵀ, by singular values, gives the forces of smallest norm where many are possible.
     """
     d, n = mechanism.x.shape[1], len(mechanism.m)
     W, rows = inverse_mass_matrix(mechanism, q), u.reshape(n, -1)
@@ -102,7 +102,7 @@ def solved(mechanism, q, u, F):
 
 
 def consistent(mechanism, u):
-    """Return the velocities u at the start, less what the joints do not allow."""
+    """Return the velocities u at the start, without the part that the joints do not allow."""
     W = inverse_mass_matrix(mechanism, mechanism.q)
     G, _ = constraints(mechanism, mechanism.q, 0.0 * mechanism.omega)
     return u - W @ G.T @ np.linalg.pinv(G @ W @ G.T, ZERO) @ G @ u
@@ -111,7 +111,7 @@ def consistent(mechanism, u):
 def motion(mechanism, u, F, T):
     """Return (x, q, u) after T under constant loads F, in all coordinates of all bodies, by DOP853.
 
-    Nothing closes the joints: with these tolerances they open by round-off only.
+    No correction closes the joints.  With these tolerances they open by round-off only.
     """
     n, d = mechanism.x.shape
     ends = np.cumsum([mechanism.x.size, mechanism.q.size])
@@ -129,7 +129,7 @@ def motion(mechanism, u, F, T):
 
 
 def half_product(omega, q):
-    """Return ½ (0, ω) q: how fast a quaternion turns."""
+    """Return ½ (0, ω) q: the rate of a quaternion."""
     return 0.5 * np.append(-omega @ q[1:], q[0] * omega + np.cross(omega, q[1:]))
 
 
@@ -138,8 +138,8 @@ def half_product(omega, q):
 def four_bars(loops, angle, omega, masses=None):
     """Return the Mechanism of loops + 1 cranks, side by side on the ground, and couplers between their tops.
 
-    All rods are uniform, 1 m long and of 1 kg, or of masses (crank, coupler, crank …).  Rows alternate likewise, so
-    that only near joints share a body.  Source: IFToMM benchmark A02.
+    All rods are uniform and 1 m long.  Their mass is 1 kg, or (crank, coupler, crank …).  Rows of the constraints
+    alternate in the same way, so that only neighbouring joints share a body.  Source: IFToMM benchmark A02.
     """
     along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     m = np.ones(2 * loops + 1) if masses is None else np.asarray(masses, float)
@@ -159,9 +159,10 @@ def four_bars(loops, angle, omega, masses=None):
 
 
 def four_bars_motion(mechanism, g, t):
-    """Return (angle, rate) of the cranks of four_bars at t: all stay parallel, so one angle tells all.
+    """Return (angle, rate) of the cranks of four_bars at t; all cranks stay parallel, so one angle describes them.
 
-    I θ̈ = −G cos θ,   I = Σ m/3 of the cranks + Σ m of the couplers,   G = (Σ ½ m of the cranks + Σ m of the couplers) g
+    I θ̈ = −G cos θ,   I = Σ m/3 of the cranks + Σ m of the couplers,   G = (Σ ½ m of the cranks + Σ m of the
+    couplers) g
     """
     cranks, couplers = np.sum(mechanism.m[:-1:2]), np.sum(mechanism.m[1:-1:2])
     rate = (0.5 * cranks + couplers) * g / (cranks / 3.0 + couplers)
@@ -174,14 +175,14 @@ def four_bars_motion(mechanism, g, t):
 CUBE = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 1.0), (0.0, 1.0, 1.0), (0.0, 0.0, 1.0)])
 EDGES = np.roll(CUBE, -1, axis=0) - CUBE     # rod k from corner k to corner k + 1; the last is the ground
 AXES = np.cross(np.roll(EDGES, 1, axis=0), EDGES)        # of hinge k, between rods k − 1 and k
-THICK = 1e-3                 # moment of a rod about itself over that across [-]
+THICK = 1e-3                 # moment of a rod about its axis over that across [-]
 
 
 def bricard():
     """Return the Mechanism of five rods of 1 m and 1 kg on six hinges, each of two points on its axis.
 
-    The rods lie along edges of a cube.  Counted, it has no freedom, and it moves all the same: its constraints depend
-    on each other in every position.  Source: Bricard 1897; IFToMM benchmark A04.
+    The rods lie along edges of a cube.  By counting constraints it has no degree of freedom, and yet it moves: its
+    constraints depend on each other in every position.  Source: Bricard 1897; IFToMM benchmark A04.
     """
     joints = [(k - 1 if k > 0 else -1, k if k < 5 else -1, CUBE[k] + side * AXES[k])
               for k in range(6) for side in (0.5, -0.5)]
@@ -213,7 +214,9 @@ def bricard_state(psi):
 
 
 def bricard_motion(g, t):
-    """Return (centres (5, 3) [m] at t, ψ, ψ̇): released from the cube, gravity along −y; Lagrange's equation for ψ.
+    """Return (centres (5, 3) [m] at t, ψ, ψ̇), released from the cube, with gravity along −y.
+
+    Lagrange's equation for ψ.
 
     I(ψ) ψ̈ + ½ I′ ψ̇² + V′ = 0, with derivatives by complex steps.
     """
@@ -276,5 +279,5 @@ def andrews_load(t, x, q, v, omega, p):
 
 
 def andrews_angles(q):
-    """Return the seven angles of the problem from those of the bodies."""
+    """Return the seven angles of the problem, computed from those of the bodies."""
     return np.array([q[0], q[1] - q[0], q[2], q[3] - q[4], q[4], q[5] - q[6], q[6]])

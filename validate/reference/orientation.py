@@ -16,7 +16,7 @@ def about(axis, angle):
 
 
 def quaternion_matrix(w, x, y, z):
-    """Return R (3, 3) of a unit quaternion: a turn by 2 acos w about (x, y, z)."""
+    """Return R (3, 3) of a unit quaternion, which is a rotation by 2 acos w about (x, y, z)."""
     s = np.sqrt(x * x + y * y + z * z)
     return about(np.array([x, y, z]) / s, 2.0 * np.arctan2(s, w)) if s > 0.0 else np.eye(3)
 
@@ -36,10 +36,10 @@ def quaternion(R):
 
 
 def relative_turn(R, S):
-    """Return the angle [rad] of the turn between two orientations: |R − S| = 2√2 sin(½ angle) in Frobenius' norm."""
+    """Return the angle [rad] between two orientations: |R − S| = 2√2 sin(½ angle) in Frobenius' norm."""
     return 2.0 * np.arcsin(min(1.0, np.linalg.norm(R - S) / np.sqrt(8.0)))
 
 
 def leaning(first, second):
-    """Return R (3, 3): a turn about y, then about x."""
+    """Return R (3, 3) of a rotation about y, then about x."""
     return about(np.array([1.0, 0.0, 0.0]), first) @ about(np.array([0.0, 1.0, 0.0]), second)

@@ -1,11 +1,10 @@
 """Reference solutions for the pendulums, ropes and cloths of lesson 8, and for the engines' ropes.
 
 Nothing here uses the functions of `solutions`.  A pendulum is an elliptic function.  A rope is a set of angles, so its
-links keep their length exactly; SciPy's DOP853 integrates them.  A cloth is a set of springs; SciPy integrates it and
-finds its rest state.
+links keep their length exactly, and SciPy's DOP853 integrates them.  A cloth is a set of springs; SciPy integrates it
+and finds its rest state.
 """
 
-from cmath import rect
 from collections.abc import Callable
 from functools import cache, partial
 from typing import NamedTuple
@@ -48,7 +47,7 @@ def tensions(theta, omega, l, m, g, late=0.0):
     The relative acceleration along each link is −l ω²,  e_k·(a_k − a_{k−1}) = −l ω_k²:
         T_{k−1} e_k·u_{k−1} − 2 T_k + T_{k+1} e_k·u_{k+1} = −m l ω_k²
     The first link has one point, and gravity:  −T_1 + T_2 e_1·u_2 = −m (l ω_1² + g cos θ_1).
-    The tensions pull along u = e + late ω t, t normal to e; u = e for a real rope.
+    The tensions pull along u = e + late ω t, t normal to e; a real rope has u = e.
     *Source:* Newton's law for every point, with the tensions as unknowns.
     """
     n, apart = theta.size, np.diff(theta)
@@ -77,9 +76,9 @@ def rope_slope(l, m, g, late=0.0):
 
 
 def rods_slope(n, l, m, g, inertia):
-    """Return the same where each point is a body with a moment of inertia [kg m²] that turns with the link above it.
+    """Return the same if each point is a body with a moment of inertia [kg m²] that rotates with the link above it.
 
-    Σ_j μ_max(k,j) l² (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + μ_k l g sin θ_k = 0
+        Σ_j μ_max(k,j) l² (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + μ_k l g sin θ_k = 0
     μ_k is the mass from k on.
     *Source:* Lagrange's equations.
     """
@@ -95,7 +94,7 @@ def rods_slope(n, l, m, g, inertia):
 
 @cache
 def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
-    """Solve for (θ, ω) of a rope released horizontally along x, with the velocity of `ahead` seconds later."""
+    """Solve for (θ, ω) of a rope released horizontally along x, with the velocity that it has `ahead` seconds later."""
     slope = rods_slope(n, l, m, g, inertia) if inertia else rope_slope(l, m, g, late)
     start = np.concatenate((np.full(n, 0.5 * np.pi), np.zeros(n)))
     start[n:] = ahead * slope(0.0, start)[n:]
@@ -103,18 +102,17 @@ def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
 
 
 @cache
-def rope_lag(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0):
+def rope_lag(n, l, m, g, T, late=0.0, ahead=0.0):
     """Return |∂x/∂dt| [m/s] of all points at T: the error of a first-order method to first order in dt.
 
     The projection method takes the links' forces at the end of each step,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt²
     (g + W Jᵀ(xₙ₊₁) λₙ₊₁). Relative to the middle, tensions pull along e + dt ė (late = 1).  Its start,
-    x₁ − x₀ = dt² a, is that of the velocity ½dt later (ahead = ½).  The engines take the links' directions in the
-    middle of that difference (late = 0).  pybullet begins as we do, ahead = ½; pymunk moves before it pulls,
-    x₁ = x₀: ahead = −½.
+    x₁ − x₀ = dt² a, is that of the velocity ½dt later (ahead = ½).  pymunk takes the links' directions in the
+    middle of that difference (late = 0) and moves before it pulls, x₁ = x₀: ahead = −½.
     """
     # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: 0.01 m/s
     h = 1e-4
-    motion = lambda dt: rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-7)
+    motion = lambda dt: rope_motion(n, l, m, g, T, 0.0, late * dt, ahead * dt, 1e-7)
     ends = [rope_places(motion(dt).y[:n, -1], l) for dt in (h, -h)]
     return float(np.linalg.norm(ends[0] - ends[1]) / (2.0 * h))
 
@@ -133,7 +131,7 @@ def rope_energy(y, l, m, g):
 
 @cache
 def rope_rates(n, l, m, g, T):
-    """Return (∫ρ dt, ∫ρ³ dt, ∫ρ⁵ dt, greatest tension [N]) of a rope's own motion; ρ(t) is its fastest rate [1/s].
+    """Return (∫ρ dt, ∫ρ³ dt, ∫ρ⁵ dt, largest tension [N]) of a rope's own motion; ρ(t) is its fastest rate [1/s].
 
     A link turns with ω_k, and under the tension T its ends oscillate about it with at most 2√(T/ml):
     ρ = max |ω_k| + 2√(max T/ml).
@@ -169,7 +167,7 @@ class ClothReference(NamedTuple):
 
 
 def weave(n, spacing, m, k, g):
-    """Return n × n points in the plane y = 0 … −(n − 1) spacing, held at the two corners of y = 0; z is up."""
+    """Return n × n points in the plane y = 0 … −(n − 1) spacing, held at the two corners with y = 0; z is up."""
     r, c = np.divmod(np.arange(n * n), n)
     number = np.arange(n * n).reshape(n, n)
     ends = (
@@ -204,10 +202,10 @@ def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-8):
 
 
 def weave_rest(cloth, begin):
-    """Return x (n, 3), the rest state of a cloth: the minimum of its energy, by sparse Newton's method.
+    """Return x (n, 3), the rest state of a cloth: the minimum of its energy, by a sparse Newton method.
 
-    As much of the identity is added to the Hessian as makes the step lead downhill.  `begin` (n, 3) chooses among
-    the folds in which the cloth can hang.
+    As much of the identity is added to the Hessian as is needed for a descent direction.  `begin` (n, 3) selects one of
+    the folded states in which the cloth can hang.
 
     U = Σ ½k (l − rest)² + Σ m g z;   ∂²U of a spring:  k n nᵀ + k (1 − rest/l)(1 − n nᵀ)
     """
@@ -243,7 +241,7 @@ def weave_rest(cloth, begin):
     return x
 
 
-# ---------------------------------------------------------------------- what a step does get wrong
+# ---------------------------------------------------------------------- predicted errors
 
 class Rope(NamedTuple):
     """Points joined by rigid links, the first one fixed."""
@@ -260,9 +258,9 @@ def links_of(x):
 
 
 def along_links(x, z, right):
-    """The change of all points along the links of x for which (link s of z) · (change of link s) is right[s].
+    """Return the change of all points along the links of x with (link s of z) · (change of link s) = right[s].
 
-    Σ_r (z_s · x_r) (BBᵀ)_sr λ_r = right_s,  with the rows of the fixed point left out of B; a dense solve.
+    Σ_r (z_s · x_r) (BBᵀ)_sr λ_r = right_s,  without the rows of the fixed point of B; a dense solve.
     """
     d, n = links_of(x), len(x) - 1
     weights = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
@@ -280,12 +278,12 @@ def excess(x, l):
 
 
 def held(v, x):
-    """Return v without its part along the links of x."""
+    """Return v without its component along the links of x."""
     return v + along_links(x, x, -np.sum(links_of(x) * links_of(v), axis=1))
 
 
 def rattle(x, v, h, l, a, corrections=50):
-    """One step of RATTLE, which takes as many corrections as change anything."""
+    """Take a step of RATTLE, with corrections until nothing changes."""
     half = v + 0.5 * h * a
     for _ in range(corrections):
         change = along_links(x, x + h * half, excess(x + h * half, l) / h)
@@ -313,7 +311,7 @@ def onto_circle(x, v, h, l, a):
 
 
 def chipmunk_rope(x, v, h, l, a):
-    """Points move, gravity acts, and converged PinJoints give each link the rate  (l − length)/h."""
+    """Move the points, apply gravity, and then let converged PinJoints give each link the rate  (l − length)/h."""
     x, v = x + h * v, v + h * a
     d = links_of(x)
     length = np.linalg.norm(d, axis=1)
@@ -322,7 +320,7 @@ def chipmunk_rope(x, v, h, l, a):
 
 
 def nudged(rope, nudge):
-    """The places of a rope of which each link is turned a little, so that it keeps its length."""
+    """Return the points of a rope after a small rotation of each link, which keeps its length."""
     d = links_of(rope.x)
     angles = nudge / rope.l * np.cos(np.arange(1.0, len(rope.x)) ** 2)
     turned = d + angles[:, None] * np.stack((-d[:, 1], d[:, 0]), axis=1)
@@ -330,7 +328,7 @@ def nudged(rope, nudge):
 
 
 def rope_after(step, rope, h, steps):
-    """Return x (N + 1, 2) after so many steps (x, v, h, l, a) → (x, v) from rest."""
+    """Return x (N + 1, 2) after this number of steps (x, v, h, l, a) → (x, v) from rest."""
     x, v, a = rope.x, np.zeros_like(rope.x), np.zeros_like(rope.x)
     a[1:, 1] = -rope.g
     for _ in range(steps):
@@ -340,11 +338,10 @@ def rope_after(step, rope, h, steps):
 
 FINEST = {1: 800, 2: 800, 4: 400}    # steps of the finest run of such a step, by its order
 UNFINISHED = 0.5             # of the error of a rope whose sweeps stop before all links are right [-]
-OTHER_ORDER = 0.02           # of the error of pybullet's rope: sweeps in another order leave another error [-]
 
 
 class RopeMotion(NamedTuple):
-    """A scene's description of its rope, as the Motion of validate/reference/schemes.py does of points."""
+    """A scene's description of its rope; Motion in validate/reference/schemes.py is the same for points."""
     T: float                 # the output time [s]
     rope: Callable           # p → Rope
     seen: Callable           # x (N + 1, 2) → what the scene observes
@@ -362,7 +359,7 @@ class RopeMotion(NamedTuple):
         return law
 
     def predict(self, step, order):
-        """Return the field `predicted` of a Runner that makes such steps."""
+        """Return the field `predicted` of a Runner that takes these steps."""
         law = self.error_law(partial(rope_after, step), order, FINEST[order])
 
         def predicted_error(p, dt):
@@ -373,81 +370,23 @@ class RopeMotion(NamedTuple):
         return predicted_error
 
     def predict_unfinished(self, step, order):
-        """Return the same where sweeps stop before all links are right: it is known within a factor of two only."""
+        """Return the same for sweeps that stop before all links are right.
+
+        Their error is known to a factor of two only.
+        """
         law = self.error_law(partial(rope_after, step), order, FINEST[order])
 
         def predicted_error(p, dt):
-            """pymunk moves the points first and then corrects each link within one step.  In a rope its sweeps do not
-            finish: the band is wider by half of the error.
+            """pymunk moves the points first and then corrects each link within one step.
+
+            In a rope of several links its sweeps do
+            not converge: the band is wider by half of the error.
             """
             return widened(law(p), dt, self.floor(p, dt), UNFINISHED)
         return predicted_error
 
-    def predict_bullet(self, share, sweeps):
-        """Return the same for pybullet's rope; I = share · m l², sweeps(links) → how often a step visits each link.
-
-        The engine sorts its joints; sweeps up and down the rope differ by 1 % of the error at most.
-        """
-        law = self.error_law(lambda rope, h, steps: bullet_rope(rope.x[1:], share, rope.l, rope.g, h, steps,
-                                                                sweeps(len(rope.x) - 1)), 1, 1600)
-
-        def predicted_error(p, dt):
-            """pybullet: its own step of bodies on joints, from the law that bodies obey, with as many sweeps as it has.
-            They are in another order there: the band is wider by 2 % of the error.
-            """
-            return widened(law(p), dt, self.floor(p, dt), OTHER_ORDER)
-        return predicted_error
-
 
 def widened(law, dt, floor, share):
-    """Return the Prediction of an ErrorLaw, its band wider by that share of the error; None where it has none."""
+    """Return the Prediction of an ErrorLaw with its band widened by that fraction of the error; None if it has none."""
     found = law.prediction(dt, floor)
     return found and found._replace(band=found.band + share * np.linalg.norm(found.error) / law.size)
-
-
-def bullet_bob(bob, m, inertia, g, dt, steps):
-    """Return where pybullet's bob (2,) is, a body with a moment of inertia that turns about a point in the origin.
-
-    Symplectic Euler; an impulse J at the pivot then gives its velocity there, v + ω × r, the value −(bob + r)/dt, which
-    takes back in one step what the joint has opened (erp 1). Along r that acts on m alone, across it on  1/m + |r|²/I.
-    """
-    x, v, angle, omega = complex(*bob), 0j, 0.0, 0.0
-    arm = -x
-    for _ in range(steps):
-        r, v = arm * rect(1.0, angle), v - 1j * g * dt
-        along = r / abs(r)
-        want = (-(x + r) / dt - v - 1j * omega * r) * along.conjugate()
-        J = along * complex(m * want.real, want.imag / (1.0 / m + abs(r) ** 2 / inertia))
-        v, omega = v + J / m, omega + (r.conjugate() * J).imag / inertia
-        x, angle = x + v * dt, angle + omega * dt
-    return np.array([x.real, x.imag])
-
-
-def bullet_rope(x, share, l, g, dt, steps, sweeps):
-    """Return the bodies (n, 2) of a rope in pybullet; x (n, 2) are the places at rest, I = share · m l².
-
-    As the bob: a joint holds the end of each arm at the centre of the body above.  From no impulses at all, so many
-    Gauss–Seidel sweeps over the rows of the joints leave  (−L⁻¹ U)^sweeps  of them, where L + U is their matrix.
-    """
-    n = len(x)
-    begin = x[:, 0] + 1j * x[:, 1]
-    z, v, arm = begin, np.zeros(n, dtype=complex), np.append(0.0, begin[:-1]) - begin
-    angle, omega, inverse = np.zeros(n), np.zeros(n), np.tile([1.0, 1.0, 1.0 / (share * l * l)], n)
-    k, rows = np.arange(n), np.zeros((2 * n, 3 * n))
-    rows[2 * k, 3 * k] = rows[2 * k + 1, 3 * k + 1] = 1.0
-    rows[2 * k[1:], 3 * k[:-1]] = rows[2 * k[1:] + 1, 3 * k[:-1] + 1] = -1.0
-    for _ in range(steps):
-        r = arm * np.exp(1j * angle)
-        rows[2 * k, 3 * k + 2], rows[2 * k + 1, 3 * k + 2] = -r.imag, r.real
-        gap = z + r - np.append(0.0, z[:-1])
-        u = np.stack((v.real, v.imag - g * dt, omega), axis=1).ravel()
-        A = rows * inverse @ rows.T
-        J = np.linalg.solve(A, -np.stack((gap.real, gap.imag), axis=1).ravel() / dt - rows @ u)
-        sweep = np.linalg.solve(np.tril(A), -np.triu(A, 1))
-        left, ten = np.linalg.matrix_power(sweep, sweeps % 10) @ J, np.linalg.matrix_power(sweep, 10)
-        for _ in range(sweeps // 10):
-            left = ten @ left
-        u += inverse * ((J - left) @ rows)
-        v, omega = u[::3] + 1j * u[1::3], u[2::3]
-        z, angle = z + v * dt, angle + omega * dt
-    return np.stack((z.real, z.imag), axis=1)

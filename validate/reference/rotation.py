@@ -55,7 +55,7 @@ class FreeTop:
 
     @staticmethod
     def knows(I, omega):
-        """Return whether the formulas hold for this body: moments in order, L² > 2E I₂, and not quite about an axis."""
+        """Return whether the formulas hold: moments in order, L² > 2E I₂, and no rotation about a single axis."""
         a, b, c = I * (I - I[1]) * omega**2                              # their sum: L² − 2E I₂
         return I[0] < I[1] < I[2] and a + b + c > 0.0 and (omega[0] != 0.0 or omega[1] != 0.0)
 
@@ -79,7 +79,7 @@ class FreeTop:
         return np.array([self.A[0] * cn, self.A[1] * sn, self.A[2] * dn])
 
     def flips(self):
-        """Return the times at which ω₂ changes sign, the first two after the start [s]."""
+        """Return the first two times after the start at which ω₂ changes sign [s]."""
         K = ellipkm1(self.minor)
         return (np.array([2.0, 4.0]) * K - self.tau) / self.n
 
@@ -89,7 +89,7 @@ class FreeTop:
         return self.L * (one + two) / (self.I[0] * one + self.I[1] * two)
 
     def frame(self, t):
-        """Return (3, 3) from body coordinates to ones with z along L, but for a turn about L; rows are body vectors."""
+        """Return (3, 3), from the body to axes with z along L, up to a rotation about L; rows are body vectors."""
         z = self.I * self.omega(t) / self.L
         x = np.array([z[1], -z[0], 0.0]) / np.hypot(z[0], z[1])
         return np.stack((x, np.cross(z, x), z))
@@ -114,7 +114,7 @@ def symmetric_top(I, omega, t):
 # ---------------------------------------------------------------------------------------------- a heavy top
 
 class HeavyTop:
-    """A symmetric top about its pivot, released at the tilt θ₀ with nothing but its spin ω₃; u = cos θ.
+    """A symmetric top about its pivot, released at the tilt θ₀ with no angular velocity but its spin ω₃; u = cos θ.
 
     With  β = 2Mgl/I₁,  α = (I₃ω₃/I₁)²:   u̇² = (u₀ − u)[β(1 − u²) − α(u₀ − u)] = β(u₀ − u)(u − u₁)(u₂ − u)
         u = u₀ − (u₀ − u₁) (1 − cd²),   cd = sn(κt + K),   κ = ½√(β(u₂ − u₁)),   k² = (u₀ − u₁)/(u₂ − u₁)
@@ -149,7 +149,7 @@ class HeavyTop:
         return self.a * self.drop(t) / self.sine_squared(t)
 
     def tips(self, ts):
-        """Return the horizontal coordinates (n, 2) of the unit vector along the top; at 0 it is at (0, −sin θ₀)."""
+        """Return the horizontal coordinates (n, 2) of the unit vector along the top; at t = 0 it is at (0, −sin θ₀)."""
         turned = lambda begin, end: integral(lambda s: self.precession(begin + s), end - begin, 4.0 * self.a)
         phi = np.cumsum([turned(begin, end) for begin, end in zip([0.0, *ts], ts)])
         return np.sqrt(self.sine_squared(ts))[:, None] * np.stack((np.sin(phi), -np.cos(phi)), axis=1)
@@ -158,7 +158,7 @@ class HeavyTop:
         return self.tips([t])[0]
 
 
-# ---------------------------------------------------------------------- what a step may get wrong
+# ---------------------------------------------------------------------- bounds of the error
 
 FIRST_ORDER = L_KEPT, BY_COLUMNS, EXPLICIT, IMPLICIT = ("L kept", "L kept, by columns", "gyroscopic",
                                                         "gyroscopic, implicit")
@@ -212,15 +212,15 @@ def growth_of_errors(I, omega, T):
 def free_limits(T, kinds=FIRST_ORDER):
     """Return function(p, dt) → {order k: largest relative error of R at T} on the free body of p.
 
-    kinds: what steps of first order may get wrong.
+    kinds: the errors that a first-order step can make.
     """
     def limits(p, dt):
         """Errors grow as neighbouring motions separate, by the propagator Φ of the linearised motion.
 
-        First order: the worst of its kinds of step, χ = C dt, as χ e^χ where the expansion is no longer exact, plus the
-        limit of second order.  The constants C follow from that motion, too; two kinds are pybullet's two kinds of
-        body.  Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by (rate dt)ᵏ⁺¹
-        in its angle, which accumulates.  Round-off, an error of 1e-16 per step, grows like the former.
+        First order: the largest of its kinds of step, χ = C dt, as χ e^χ where the expansion is no longer exact,
+        plus the limit of second order.  The constants C follow from that motion, too; two kinds are pybullet's two
+        kinds of body.  Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by
+        (rate dt)ᵏ⁺¹ in its angle, which accumulates.  Round-off, an error of 1e-16 per step, grows like the former.
         """
         rate, grown, first = growth_of_errors(tuple(p.moments()), tuple(p.omega()), T)
         noise, plain = (1.0 + grown / (rate * T)) * T / dt * ROUND_OFF, by_order(rate, T, dt)

@@ -1,11 +1,11 @@
-"""Every method of lesson 1 once more, as a table of numbers, and the error that such a table predicts.
+"""Every method of lesson 1 in an independent form, as a table of numbers, and the error that such a table predicts.
 
 A partitioned Runge–Kutta method has stages i and the weights of its result:
 
     Xᵢ = x + h Σⱼ αᵢⱼ Vⱼ      Vᵢ = v + h Σⱼ βᵢⱼ Aⱼ      Aᵢ = a(t + cᵢ h, Xᵢ, Vᵢ)
     x ← x + h Σᵢ aᵢ Vᵢ        v ← v + h Σᵢ bᵢ Aᵢ
 
-One loop runs all of them, with forces of validate/reference: nothing here is shared with `solutions`.
+One loop runs all of them, with forces of validate/reference.  Nothing here is shared with `solutions`.
 *Source:* Hairer, Lubich, Wanner 2006, II.1 (Runge–Kutta) and II.2 (partitioned).
 """
 
@@ -18,13 +18,13 @@ import numpy as np
 from ..scene import ROUND_OFF, Prediction
 
 MOST_ITERATIONS = 200        # of an implicit stage: h times the fastest rate must be well below 1
-CLOSE = 1e-5                 # how near a run comes to the same table's error at the same step [-]
-EXPANDED = 0.01              # and to its expansion, beside what that misses [-]
-SAFETY = 2.0                 # over what an expansion misses in its own check [-]
-UNSURE = 0.1                 # an expansion that misses its own check by more needs finer runs [-]
+CLOSE = 1e-5                 # allowed difference of a run from the same table's error at the same step [-]
+EXPANDED = 0.01              # and from its expansion, in addition to what the expansion misses [-]
+SAFETY = 2.0                 # factor on what an expansion misses in its own check [-]
+UNSURE = 0.1                 # if an expansion misses its own check by more, it needs finer runs [-]
 MOST_DOUBLINGS = 3
 NUDGE = 1e-13                # of a start, relative to what is observed [-]
-LARGE = 1e-3                 # errors above this may belong to a run that multiplies roundings [-]
+LARGE = 1e-3                 # a run with a larger error may amplify round-off [-]
 PREDICTABLE = 0.1            # larger errors, relative to the truth, are not predicted [-]
 FINEST = {1: 800, 2: 400, 4: 200}    # steps that the table is run with, by its order: errors clear of round-off
 
@@ -40,12 +40,12 @@ class Tableau(NamedTuple):
 
 
 def both(order, c, rows, weights):
-    """The same weights for position and velocity: an ordinary Runge–Kutta method."""
+    """Return the Tableau of an ordinary Runge–Kutta method, with the same weights for position and velocity."""
     return Tableau(order, c, rows, rows, weights, weights)
 
 
 def kicks_and_drifts(order, kicks, drifts):
-    """Velocity and position by turns.  Stage 2i is before kick i, stage 2i + 1 after it."""
+    """Return the Tableau of alternating kicks and drifts.  Stage 2i is before kick i, stage 2i + 1 after it."""
     c, alpha, beta, moved, pushed, t = [], [], [], (), (), 0.0
     for i, (kick, drift) in enumerate(zip(kicks, (*drifts, 0.0), strict=True)):
         c += [t, t]
@@ -83,14 +83,14 @@ def weighted(weights, values):
 
 
 def stages(tableau):
-    """[(c, row of α, row of β, weight of the stage itself or None, whether its acceleration is used)]"""
+    """Return [(c, row of α, row of β, weight of the stage itself or None, whether its acceleration is used)]."""
     used = {stage for row in (*tableau.beta, tableau.b) for stage, _ in row}
     return [(c, alpha, beta, dict(beta).get(i), i in used)
             for i, (c, alpha, beta) in enumerate(zip(tableau.c, tableau.alpha, tableau.beta, strict=True))]
 
 
 def step_of(tableau):
-    """The function (law, t, x, v, h) → (x, v) of one step; x and v are floats, complex numbers or arrays."""
+    """Return the function (law, t, x, v, h) → (x, v) of one step; x and v are floats, complex numbers or arrays."""
     rows, a, b = stages(tableau), tableau.a, tableau.b
 
     def step(law, t, x, v, h):
@@ -107,9 +107,9 @@ def step_of(tableau):
 
 
 def implicit_stage(law, t, x, v, h):
-    """The V with V = v + h a(t, x + h V, V), and that acceleration, by iteration.
+    """Return V = v + h a(t, x + h V, V) and that acceleration, by fixed-point iteration.
 
-    Raises ArithmeticError where it does not converge.
+    Raises ArithmeticError if it does not converge.
     """
     V = v
     for _ in range(MOST_ITERATIONS):
@@ -121,7 +121,7 @@ def implicit_stage(law, t, x, v, h):
 
 
 def advance(scheme, law, x, v, h, steps):
-    """(x, v) after so many steps.  A scheme is a Tableau, or a function like those of `step_of`."""
+    """Return (x, v) after this number of steps.  A scheme is a Tableau, or a function like those of `step_of`."""
     move = scheme if callable(scheme) else step_of(scheme)
     with np.errstate(all="ignore"):
         for n in range(steps):
@@ -130,7 +130,7 @@ def advance(scheme, law, x, v, h, steps):
 
 
 def advance_modes(scheme, law, x, v, h, steps):
-    """The same for a law −ω² x − c v of each coordinate on its own: the power of the (2, 2) matrix of one step."""
+    """Return the same for a law −ω² x − c v of each coordinate on its own, by powers of the (2, 2) matrix of a step."""
     one, none = np.ones_like(x), np.zeros_like(x)
     with np.errstate(all="ignore"):
         columns = [np.stack(advance(scheme, law, *begin, h, 1), axis=-1) for begin in ((one, none), (none, one))]
@@ -139,36 +139,40 @@ def advance_modes(scheme, law, x, v, h, steps):
 
 
 class ErrorLaw:
-    """The error of a method over its step, from the same method's table at a few coarse steps.
+    """The error of a method as a function of its step, from a few coarse runs of the same method's table.
 
-    It is exact to round-off where the table is run with as many steps, up to `finest`.  Beyond, an expansion of three
-    terms, such as  e(h) = C hᵏ + D hᵏ⁺¹ + E hᵏ⁺²,  goes through the three finest of the table's runs.  How far the
-    expansion through the three runs before misses the finest one says how far it can be trusted.
-    *Source:* Hairer, Nørsett, Wanner 1993, II.8: the error of a one-step method has an expansion in powers of h.
+    It is exact to round-off as long as the table is run with the same number of steps, up to `finest`.  For more
+    steps it is an expansion of three terms, such as  e(h) = C hᵏ + D hᵏ⁺¹ + E hᵏ⁺²,  through the three finest runs
+    of the table. Its uncertainty is the amount by which the expansion through the three runs before misses the
+    finest one. *Source:* Hairer, Nørsett, Wanner 1993, II.8: the error of a one-step method has an expansion in
+    powers of h.
     """
 
     def __init__(self, run, law, powers, T, finest, doublings=MOST_DOUBLINGS):
-        """run(steps, nudge) → what is observed at T; nudge [m] moves the start; doublings: how often `finest` may."""
+        """Store run(steps, nudge) → what is observed at T.
+
+        nudge [m] moves the start; doublings: how often `finest` may double.
+        """
         self.run, self.law, self.T, self.known, self.doublings = run, law, T, {}, doublings
         self.powers = np.array(powers if isinstance(powers, tuple) else (powers, powers + 1, powers + 2))
         self.size = np.linalg.norm(law) or 1.0
         self.finest = max(finest // 8, 1) * 8
 
     def error(self, steps, nudge=0.0):
-        """What the table's run of so many steps is off by."""
+        """Return the error of the table's run with this number of steps."""
         if (steps, nudge) not in self.known:
             try:
                 with np.errstate(all="ignore"):
                     error = np.array(self.run(steps, nudge), dtype=float) - self.law
-            except (ArithmeticError, ValueError, np.linalg.LinAlgError):       # it left the range of numbers
+            except (ArithmeticError, ValueError, np.linalg.LinAlgError):       # overflow
                 error = np.full_like(self.law, np.nan)
             self.known[steps, nudge] = error
         return self.known[steps, nudge]
 
     def round_off(self, steps):
-        """What roundings may grow to, relative: ten standard deviations of a random walk, as a nudged start grows.
+        """Return a bound of round-off: ten standard deviations of a random walk that grows as a nudged start.
 
-        Only a run with a large error can be one that multiplies them.
+        Only a run with a large error can amplify round-off.
         """
         error = self.error(steps)
         if np.linalg.norm(error) < LARGE * self.size:
@@ -177,11 +181,11 @@ class ErrorLaw:
         return 10.0 * np.sqrt(steps) * ROUND_OFF * growth
 
     def missed(self, finest):
-        """Return the error of the expansion at the finest run, when it is fitted to the coarser runs only."""
+        """Return the error of the expansion at the finest run if it is fitted to the coarser runs only."""
         return np.linalg.norm(self.expanded(finest, finest // 2) - self.error(finest))
 
     def settle(self, floor):
-        """Take more steps until the expansion can be trusted."""
+        """Take more steps until the expansion is accurate enough."""
         for left in reversed(range(self.doublings + 1)):
             size = np.linalg.norm(self.error(self.finest))
             if size < PREDICTABLE * self.size and self.missed(self.finest) <= max(UNSURE * size, floor * self.size):
@@ -190,14 +194,14 @@ class ErrorLaw:
         return False
 
     def expanded(self, steps, most):
-        """The error at `steps` by the expansion through the runs of most/4, most/2 and `most` steps."""
+        """Return the error at `steps` by the expansion through the runs of most/4, most/2 and `most` steps."""
         through = (most // 4, most // 2, most)
         h = np.array([most / n for n in through])[:, None]
         terms = np.linalg.solve(h**self.powers, np.array([self.error(n) for n in through]))
         return (most / steps) ** self.powers @ terms
 
     def prediction(self, dt, floor):
-        """The Prediction for a step; None where the error is too large, or the expansion cannot be trusted."""
+        """Return the Prediction for a step; None if the error is too large or the expansion too inaccurate."""
         steps = round(self.T / dt)
         settled = steps <= self.finest or self.settle(floor)
         if steps <= self.finest:                                             # settle() may have raised it
@@ -218,10 +222,11 @@ class Model(NamedTuple):
 
 
 def table_model(scheme, law, begin, seen, order=1, ahead=0.0, march=advance):
-    """The Model of a method or an engine that does what a scheme does: a Tableau, or p → a function like those of
-    `step_of`.
+    """Return the Model of a method or an engine that follows a scheme.
 
-    Its first velocity is that of begin(p) and  ahead h a  at the start.  march: `advance`, or its like for such a law.
+    A scheme is a Tableau, or p → a function like those of `step_of`.
+
+    Its first velocity is that of begin(p) plus  ahead h a  at the start.  march: `advance`, or another function for it.
     """
     @cache                                              # a method and an engine may have the same model
     def run(p, h, steps, nudge):
@@ -247,12 +252,12 @@ class Motion(NamedTuple):
     march: Callable = advance            # or `advance_modes` for modes that do not touch
 
     def model(self, scheme, law=None, ahead=0.0):
-        """Return the Model of a method or an engine that does what a scheme does; law: another one than the scene's."""
+        """Return the Model of a method or an engine that follows a scheme; law: replaces the law of the scene."""
         order = scheme.order if isinstance(scheme, Tableau) else 1
         return table_model(scheme, law or self.law, self.begin, self.seen, order, ahead, self.march)
 
     def predict(self, scheme, law=None, follows=None, ahead=0.0, finest=None, powers=None):
-        """Return the field `predicted` of a Runner that does what a scheme does, as `predict_model` does."""
+        """Return the field `predicted` of a Runner that follows a scheme, as `predict_model` does."""
         return self.predict_model(self.model(scheme, law, ahead), follows, finest, powers)
 
     def predict_model(self, model, follows=None, finest=None, powers=None):
@@ -279,7 +284,7 @@ class Motion(NamedTuple):
 
 
 def summed(velocity, T, dt, new):
-    """The way [m] that a run covers with the right velocity(t) (n,) → (n, …) at every step, but for all of the step.
+    """Return the displacement [m] of a run with the exact velocity(t) (n,) → (n, …), held for each step.
 
     It is the sum of the new velocities, or of the old ones: the rectangle rule.
     """

@@ -1,4 +1,4 @@
-"""Truths for the lesson on simulators, independent of it."""
+"""Reference solutions for the lesson on simulators, independent of it."""
 
 from functools import cache
 
@@ -12,8 +12,8 @@ def rocking(half_width, half_height, g, lean, t, pushed=0.0):
     """Return (angle [rad], rate [rad/s], times and rates (before, after) of the impacts) of a uniform block at t.
 
     It begins at `lean` on its left corner, with the rate `pushed`.  About a corner 4/3 m R² θ̈ = −m g R sin(α − θ), by
-    DOP853 until the angle is zero; then the moment of momentum about the other corner stays: with the products of
-    inertia written out,
+    DOP853 until the angle is zero.  The impact conserves the angular momentum about the other corner.  With the moments
+    written out,
         before:  I ω + m (h² − b²) ω,       after:  (I + m R²) ω⁺,       I = m R²/3
     *Source:* Housner 1963.
     """
@@ -60,7 +60,7 @@ def rods_slope(n, l, m, inertia, g):
 
 @cache
 def rods_motion(n, l, m, inertia, g, T, ahead=0.0, rtol=RTOL):
-    """Solve for (θ, ω) of such a chain, let go horizontally with the velocity of `ahead` seconds later, by DOP853."""
+    """Solve for (θ, ω) of such a chain by DOP853, released horizontally with the velocity of `ahead` seconds later."""
     slope = rods_slope(n, l, m, inertia, g)
     start = np.concatenate((np.full(n, 0.5 * np.pi), np.zeros(n)))
     start[n:] = ahead * slope(0.0, start)[n:]
@@ -74,10 +74,10 @@ def rods_ends(theta, l):
 
 @cache
 def rods_lag(n, l, m, inertia, g, T):
-    """Return |∂x/∂dt| [m/s] of all ends at T where the first velocity is that of ½ dt later (or earlier).
+    """Return |∂x/∂dt| [m/s] of all ends at T if the first velocity is that of ½ dt later (or earlier).
 
     Both engines move bodies by xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² (g + forces of the joints at xₙ), which is of second order.
-    What is of first order is the start: pybullet has x₁ − x₀ = dt² a, pymunk x₁ = x₀, and ½ dt² a would be right.
+    Only the start is of first order: pybullet has x₁ − x₀ = dt² a, pymunk x₁ = x₀, and ½ dt² a would be right.
     """
     h = 1e-4
     ends = [rods_ends(rods_motion(n, l, m, inertia, g, T, 0.5 * dt, 1e-9).y[:n, -1], l) for dt in (h, -h)]
@@ -87,9 +87,8 @@ def rods_lag(n, l, m, inertia, g, T):
 def rods_step(theta, p, h, C, inertia, w):
     """Return (θ, p) after h by the discrete Lagrangian  ½ m |Δx|²/h + ½ I |Δθ|²/h − ½ h (V + V').
 
-    That is what RATTLE does, in angles, so that nothing has to be projected:  p = −∂L/∂θ gives the new θ by Newton's
-    method, and p' = ∂L/∂θ'.
-    *Source:* Marsden and West 2001, 3.5.
+    RATTLE takes the same step in Cartesian coordinates.  In angles nothing has to be projected: p = −∂L/∂θ gives
+    the new θ by Newton's method, and p' = ∂L/∂θ'. *Source:* Marsden and West 2001, 3.5.
     """
     here = np.sum(C * np.sin(theta[:, None] - theta), axis=1) + 0.5 * h * h * w * np.sin(theta)
     now = theta + h * np.linalg.solve(C * np.cos(theta[:, None] - theta) + inertia * np.eye(theta.size), p)
@@ -106,7 +105,7 @@ def rods_step(theta, p, h, C, inertia, w):
 
 @cache
 def rods_error(n, l, m, inertia, g, T, steps, shares=(1.0,)):
-    """Return |error| [m] of all ends at T after so many steps, each of substeps with these shares of it."""
+    """Return |error| [m] of all ends at T after this number of steps, each divided into substeps with these shares."""
     k = np.arange(n)
     C = m * l * l * (n - 0.5 - np.maximum.outer(k, k))
     C[k, k] -= 0.25 * m * l * l
@@ -119,10 +118,10 @@ def rods_error(n, l, m, inertia, g, T, steps, shares=(1.0,)):
 
 @cache
 def rods_gaps(n, l, m, inertia, g, T):
-    """Return (how far [m/s²] all ends can be off over dt² where joints are closed one step late, greatest ω [rad/s]).
+    """Return (possible error [m/s²] of all ends over dt² if joints are closed one step late, largest ω [rad/s]).
 
-    A rod that turns with ω leaves its tangent by ½ ω² l dt² in a step: that gap, at the most in the whole motion, of
-    all joints above an end.
+    A rod that turns with ω leaves its tangent by ½ ω² l dt² per step.  The gap of an end is the sum over all joints
+    above it, at the largest value during the motion.
     """
     omega = rods_motion(n, l, m, inertia, g, T).sol(np.linspace(0.0, T, 1001))[n:]
     return float(np.linalg.norm(np.cumsum(0.5 * l * np.max(omega**2, axis=1)))), float(np.max(np.abs(omega)))
@@ -141,8 +140,9 @@ def rods_energy(y, l, m, inertia, g):
 # ---------------------------------------------------------------------------------------------- balls on rods
 
 def cradle_gaps(theta, pitch, L, R):
-    """Return gaps (n − 1,) [m] of balls on rods of length L, pivots one pitch apart, and their derivatives (n − 1, 2)
-    by the angles of both.
+    """Return gaps (n − 1,) [m] of balls on rods of length L, pivots one pitch apart, and their derivatives (n − 1, 2).
+
+    The derivatives are by the angles of both neighbours.
     """
     x = np.stack((pitch * np.arange(theta.size) + L * np.sin(theta), -L * np.cos(theta)), axis=1)
     way, turns = np.diff(x, axis=0), L * np.stack((np.cos(theta), np.sin(theta)), axis=1)
@@ -155,8 +155,8 @@ def cradle_gaps(theta, pitch, L, R):
 def cradle_motion(lifted, angle, n, pitch, L, R, g, inertia, T):
     """Return (θ (n,), ω (n,), impacts) at T of n pendulums, the first `lifted` of which begin at −angle.
 
-    inertia: moment of each about its pivot over its mass [m²].  Swings by DOP853 until a gap closes; there the impulse
-    along its normal reverses the gap's velocity, and each angle takes it by its own lever: e = 1.
+    inertia: moment of each about its pivot over its mass [m²].  DOP853 integrates the swing until a gap closes.  There
+    the impulse along its normal reverses the gap's velocity and acts on each angle by its own lever arm: e = 1.
     impacts: [(time, number of the gap, rates before, rates after)].
     """
     y, now, impacts = np.concatenate((np.where(np.arange(n) < lifted, -angle, 0.0), np.zeros(n))), 0.0, []
@@ -181,13 +181,13 @@ def cradle_motion(lifted, angle, n, pitch, L, R, g, inertia, T):
     return y[:n], y[n:], impacts
 
 
-# ---------------------------------------------------------------------------------------------- when a support lets go
+# ---------------------------------------------------------------------------------------------- release from a support
 
 def leaves_ball(start, speed, R, g):
     """Return (time [s], angle [rad]) at which a puck leaves a ball on which it slides without friction.
 
-    Its centre is at R from that of the ball, at the angle `start` from the top, and goes down with `speed` > 0.
-    The ball pushes with m (g cos θ − R ω²), and R²ω² = speed² + 2 g R (cos start − cos θ), so that the force ends at
+    Its centre is at R from that of the ball, at the angle `start` from the top, and moves down with `speed` > 0.
+    The ball pushes with m (g cos θ − R ω²), and R²ω² = speed² + 2 g R (cos start − cos θ).  So the force ends at
         cos θ = (2 cos start + speed²/(g R))/3
     *Source:* energy; ∫ dθ/ω is the time.
     """
@@ -197,7 +197,7 @@ def leaves_ball(start, speed, R, g):
 
 
 def slides_on_ball(start, speed, R, g, t):
-    """Return (angle [rad], speed [m/s]) of that puck at t [s], before or after, by DOP853."""
+    """Return (angle [rad], speed [m/s]) of that puck at t [s], before or after the start, by DOP853."""
     run = solve_ivp(lambda _, y: (y[1], g / R * np.sin(y[0])), (0.0, t), (start, speed / R), method="DOP853", rtol=RTOL,
                     atol=ATOL)
     return run.y[0, -1], R * run.y[1, -1]
@@ -207,7 +207,7 @@ def leaves_platform(depth, speed, rate, g):
     """Return the time [s] at which a box leaves a platform that oscillates up and down, x = −D cos(rate t + φ).
 
     It begins at x = −depth with `speed` upwards: D cos φ = depth, rate D sin φ = speed.  The platform pushes with
-    m (g + ẍ), so that the force ends at  cos(rate t + φ) = −g/(rate² D);  inf if D ≤ g/rate².
+    m (g + ẍ), so the force ends at  cos(rate t + φ) = −g/(rate² D);  inf if D ≤ g/rate².
     *Source:* Newton's second law.
     """
     D, phi = np.hypot(depth, speed / rate), np.arctan2(speed / rate, depth)
@@ -217,11 +217,13 @@ def leaves_platform(depth, speed, rate, g):
 # ---------------------------------------------------------------------------------------------- boxes at rest
 
 def least_friction(a, b, n, p, x, weights):
-    """Return the least friction μ with which bodies at x (k, 2) with these weights (k,) [N] can rest; inf if none does.
+    """Return the smallest friction μ with which bodies at x (k, 2) with these weights (k,) [N] can rest.
 
-    Contact c pushes body a[c] at p[c] with F_n n + F_t t, 0 ≤ F_n and |F_t| ≤ μ F_n, and b[c] with the contrary;
-    numbers beyond k are ground.  Bisection on μ; for each, a linear program says whether such forces can balance all
-    loads and torques.
+    Inf if none does.
+
+    Contact c pushes body a[c] at p[c] with F_n n + F_t t, 0 ≤ F_n and |F_t| ≤ μ F_n, and body b[c] with the opposite
+    force; numbers beyond k are ground.  For each μ of a bisection, a linear program decides whether such forces can
+    balance all loads and torques.
     """
     from scipy.optimize import linprog
     k, m = len(x), len(a)
@@ -250,13 +252,14 @@ def least_friction(a, b, n, p, x, weights):
 
 
 def wedge_pushed_out(m, angle, g, overlap, share, dt, steps):
-    """Return (way (4,) [m], velocity (4,) [m/s]): x and y of a wedge on a floor, then of a block on it, by Bullet.
+    """Return (displacement (4,) [m], velocity (4,) [m/s]) in Bullet: x and y of a wedge on a floor, then of its block.
 
-    Nothing rubs or turns.  Both begin with an overlap.  A step adds gravity to the velocities, then finds the impulses
-    at both contacts after which each opens at  share · overlap left/dt,  and moves with the new velocities.
+    There is no friction and no rotation.  Both bodies begin with an overlap.  A step adds gravity to the
+    velocities, then finds the impulses at both contacts after which each opens at  share · remaining overlap/dt,
+    and moves with the new velocities.
     """
     s, c = np.sin(angle), np.cos(angle)
-    normals = np.array([(0.0, 1.0, 0.0, 0.0), (-s, -c, s, c)])                    # how fast a contact opens
+    normals = np.array([(0.0, 1.0, 0.0, 0.0), (-s, -c, s, c)])                    # rate at which a contact opens
     lightness, way, v = 1.0 / np.repeat(m, 2), np.zeros(4), np.zeros(4)
     inverse = np.linalg.inv(normals * lightness @ normals.T)
     for _ in range(steps):

@@ -1,7 +1,7 @@
 """Reference solutions of lesson 2: masses on springs.
 
-Nothing here uses the forces of `solutions`.  A net's springs are one matrix: B (s, n), with −1 at one end of each
-spring and +1 at the other, maps points to springs, r = B x, and its transpose maps tensions back to forces.  SciPy
+Nothing here uses the forces of `solutions`.  The springs of a net are one matrix B (s, n), with −1 at one end of each
+spring and +1 at the other.  It maps points to springs, r = B x, and its transpose maps tensions back to forces.  SciPy
 integrates the net (DOP853), Newton's method finds its rest state, and a complex step gives its stiffness and hence
 its modes.
 """
@@ -17,12 +17,12 @@ from scipy.optimize import minimize, root
 from validate.reference.schemes import Model, Motion, nudged
 from validate.scene import EXACT, ROUND_OFF
 
-RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts: a step errs by less than it rounds
+RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts: the error of a step is below its round-off
 TINY = 1e-30                 # a complex step [m]: its square vanishes beside 1, so the derivative is exact to round-off
 
 
 class ReferenceNetwork(NamedTuple):
-    """Equal masses, equal springs.  Springs rest at the lengths in `rest`."""
+    """Equal masses joined by equal springs, whose natural lengths are `rest`."""
     x: np.ndarray            # (n, d) initial positions [m]
     v: np.ndarray            # (n, d) initial velocities [m/s]
     fixed: tuple             # numbers of the fixed points
@@ -41,7 +41,7 @@ class ReferenceNetwork(NamedTuple):
         return one[self.pairs[:, 1]] - one[self.pairs[:, 0]]
 
     def free(self):
-        """(n,) bool."""
+        """Return (n,) bool: whether each point can move."""
         return ~np.isin(np.arange(len(self.x)), self.fixed)
 
     def padded(self):
@@ -96,7 +96,7 @@ def forces(x, v, net, B):
 
 
 def motion(net, T, rtol=RTOL):
-    """Return x(t) (n, d) by DOP853, a function of t in [0, T], interpolated between its steps but not at T."""
+    """Return x(t) (n, d) by DOP853, a function of t in [0, T], interpolated between its own steps but not at T."""
     B, free, shape = net.spring_matrix(), net.free()[:, None], net.x.shape
 
     def slope(t, y):
@@ -111,8 +111,9 @@ def motion(net, T, rtol=RTOL):
 def rest_positions(net):
     """Return (n, d), the rest state of the net: the minimum of its energy by BFGS, then by Newton's method.
 
-    U = Σ ½k (|Bx| − rest)² − Σ (m g + wind) · x.  Newton's method alone, from far away, may end where the forces
-    vanish but the energy has no minimum.
+        U = Σ ½k (|Bx| − rest)² − Σ (m g + wind) · x
+
+    Newton's method alone, started far away, may end where the forces vanish but the energy has no minimum.
     """
     B, free = net.spring_matrix(), net.free()
 
@@ -131,11 +132,11 @@ def rest_positions(net):
 
 
 def _jacobian(function, y):
-    """Return ∂function/∂y by complex steps, which take no difference and cancel no digits."""
+    """Return ∂function/∂y by complex steps, which involve no difference and hence no cancellation."""
     return np.stack([function(y + 1j * TINY * e).imag / TINY for e in np.eye(y.size)], axis=1)
 
 
-# ---------------------------------------------------------------------- what a step may get wrong
+# ---------------------------------------------------------------------- bounds of the error
 
 def modes(net):
     """Return (omega, c, amplitude) of each mode about rest: frequency [rad/s], damping [1/s], initial amplitude [m].
@@ -161,11 +162,11 @@ def modes(net):
 
 
 def by_mode(omega, c, amplitude, size, T, dt, uncertainty):
-    """Return {order k: largest relative error at T}: each mode errs on its own, at its rate ω + c and by its amplitude.
+    """Return {order k: largest relative error at T}: each mode errs on its own, by its rate ω + c and its amplitude.
 
-    A step that errs by (rate dt)ᵏ⁺¹ multiplies a mode by e^z + δ with |δ| ≤ (rate dt)ᵏ⁺¹, |e^z| ≤ 1.  After T/dt
-    steps that is off by at most χ e^χ,  χ = rate T (rate dt)ᵏ:  fast modes may be tiny and still spoil a coarse run
-    by growing. size [m] is that of the reference solution at T.  Round-off and Newton's method are as in
+    A step with the error (rate dt)ᵏ⁺¹ multiplies a mode by e^z + δ with |δ| ≤ (rate dt)ᵏ⁺¹, |e^z| ≤ 1.  After T/dt
+    steps the error is at most χ e^χ,  χ = rate T (rate dt)ᵏ.  So even a fast mode of tiny amplitude can spoil a coarse
+    run by growing.  size [m] is that of the reference solution at T.  Round-off and Newton's method are as in
     scene.by_order.
     """
     floor = 1e-12 + T / dt * ROUND_OFF + uncertainty
@@ -184,10 +185,10 @@ def _noted(make, p):
 def net_limits(make, T, truth, uncertainty):
     """Return the field `limit` of a net: by_mode, with √2 times its frequencies at rest, but none above the largest.
 
-    Released without tension, threads oscillate between zero and twice their rest tension.  A slow mode is held by
-    tension, so its ω² oscillates between zero and twice its value.  A spring's stiffness is k along it and k
-    (1 − rest/l) < k across, so no mode of any shape of the net exceeds √(k/m) |B|.
-    make(p) → ReferenceNetwork;    truth(p, t);    uncertainty: of the truth, relative [-]
+    Released without tension, threads oscillate between zero and twice their rest tension.  Tension holds a slow
+    mode, so its ω² oscillates between zero and twice its value.  A spring's stiffness is k along it and k (1 −
+    rest/l) < k across, so no mode of any shape of the net exceeds √(k/m) |B|. make(p) → ReferenceNetwork;
+    truth(p, t);    uncertainty: of the truth, relative [-]
     """
     def limits(p, dt):
         """Each mode on its own, with a margin for large motion; every engine here is symplectic Euler, order 1."""
@@ -197,7 +198,7 @@ def net_limits(make, T, truth, uncertainty):
     return limits
 
 
-# ---------------------------------------------------------------------- what a step does get wrong
+# ---------------------------------------------------------------------- predicted errors
 
 def net_law(make):
     """Return p → a(t, x, v) of the net of make(p)."""
@@ -209,10 +210,10 @@ def net_law(make):
 
 
 def implicit_net(net, h, steps):
-    """Return x after `steps` of linearly implicit Euler, by a dense matrix.
+    """Return x after `steps` steps of linearly implicit Euler, by a dense matrix.
 
-    (m − h ∂F/∂v − h² ∂F/∂x) Δv = h (F + h ∂F/∂x v).  As in lesson 2, ∂F/∂x leaves out the push of compressed springs
-    across and the damper's share.
+    (m − h ∂F/∂v − h² ∂F/∂x) Δv = h (F + h ∂F/∂x v).  As in lesson 2, ∂F/∂x leaves out the sideways push of compressed
+    springs and the contribution of the damper.
     """
     B, d, x, v, free = net.spring_matrix(), net.x.shape[1], net.x, net.v, np.repeat(net.free(), net.x.shape[1])
     mass = (net.m + h * net.k_v) * np.eye(free.sum())
@@ -239,13 +240,13 @@ def implicit_net(net, h, steps):
 
 
 def pymunk_net_model(net, h, steps, iterations=10):
-    """Return x (n, d) after `steps` of what Chipmunk does with a net, in its order.
+    """Return x (n, d) after `steps` steps of Chipmunk's treatment of a net, in its order.
 
-    Points move with their old velocities; the springs pull at the new places; then e^(−k_v h/m) reduces all velocities,
-    and gravity acts.  Then every damper in turn brings the rate of its spring nearer to its aim, by the share
-    1 − e^(−k_d h/m'),  1/m' = Σ 1/m of the free ends;  the aim is zero and then the rate that the last visit left.  One
-    round of visits is one triangular system.
-    *Source:* Chipmunk 7, cpSpaceStep.c and cpDampedSpring.c.
+    Points move with their old velocities; the springs pull at the new positions; then e^(−k_v h/m) reduces all
+    velocities, and gravity acts.  Then each damper in sequence moves the rate of its spring towards its target, by
+    the fraction  1 − e^(−k_d h/m'),  1/m' = Σ 1/m of the free ends.  The target is zero on the first visit, and
+    then the rate that the last visit left.  One round of visits is one triangular system. *Source:* Chipmunk 7,
+    cpSpaceStep.c and cpDampedSpring.c.
     """
     held = np.array([net.free()[i] or net.free()[j] for i, j in net.pairs])
     B, free, x, v = net.spring_matrix()[held], net.free()[:, None], net.x, net.v
@@ -261,7 +262,7 @@ def pymunk_net_model(net, h, steps, iterations=10):
         if net.k_d == 0.0:
             continue
         J = (n[:, None, :] * (B * net.free())[:, :, None]).reshape(len(n), -1)
-        coupling = J @ J.T / net.m / per_mass                    # what a change at one spring changes at the others
+        coupling = J @ J.T / net.m / per_mass                    # effect of an impulse on the rates of other springs
         visits = np.tril(coupling, -1) + np.diag(1.0 / lost)
         rates, aims, total = J @ v.ravel(), np.zeros(len(n)), np.zeros(len(n))
         for _ in range(iterations):
@@ -274,7 +275,7 @@ def pymunk_net_model(net, h, steps, iterations=10):
 
 
 def net_model(make, run):
-    """Return the Model of order 1 of what run(net, h, steps) → x does with the net of make(p)."""
+    """Return the Model of order 1 that applies run(net, h, steps) → x to the net of make(p)."""
     def observed(p, h, steps, nudge):
         net = make(p)
         return run(net._replace(x=nudged(net.x, nudge)), h, steps).ravel()
@@ -282,7 +283,7 @@ def net_model(make, run):
 
 
 def net_steps(make, T, truth, uncertainty):
-    """Return the Motion of the net of make(p), of which a scene observes every point, as in net_limits."""
+    """Return the Motion of the net of make(p), of which a scene observes every point; the rest is as in net_limits."""
     return Motion(T, net_law(make), lambda p: (make(p).x, make(p).v), lambda x, p: x.ravel(), truth,
                   lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty)
 

@@ -1,8 +1,8 @@
-"""Every step of lesson 5 once more, and what engines do with a turning body, for the errors that they make.
+"""Every step of lesson 5 in an independent form, and the engines' steps for a rotating body, to predict their errors.
 
 An orientation is a pair of complex numbers (Cayley and Klein): (α, β) with |α|² + |β|² = 1 is the quaternion
 w = Re α, z = −Im α, y = −Re β, x = −Im β.  A step is step(torque, R, L, I, h) → (R, L); L and the torque [N m] are
-tuples in world coordinates.  Plain numbers, because arrays of three cost ten times as much.
+tuples in world coordinates.  The numbers are plain floats, because arrays of three take ten times as long.
 """
 
 from collections.abc import Callable
@@ -17,10 +17,10 @@ from .orientation import quaternion
 from .schemes import ErrorLaw
 
 GAMMA = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))                # Suzuki 1990
-EVEN = {2: (2, 4, 6), 4: (4, 6, 8)}  # powers of the step in the error of a step that is its own inverse, by its order
+EVEN = {2: (2, 4, 6), 4: (4, 6, 8)}  # powers of the step in the error of a symmetric step, by its order
 FINEST = {1: 1000, 2: 800, 4: 400}
 DOUBLINGS = {1: 4, 2: 3, 4: 3}
-NEWTON = 12                  # iterations at most; from a near guess each doubles the digits
+NEWTON = 12                  # largest number of iterations; from a close guess each doubles the number of digits
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -45,7 +45,7 @@ def length(a):
 
 
 def product(p, q):
-    """The rotation q, then p."""
+    """Return the pair of the rotation q followed by p."""
     return p[0] * q[0] - p[1] * q[1].conjugate(), p[0] * q[1] + p[1] * q[0].conjugate()
 
 
@@ -55,23 +55,23 @@ def unit(q):
 
 
 def turn(omega, scale, real):
-    """The pair with the real part `real` and the vector part  scale ω."""
+    """Return the pair with the real part `real` and the vector part  scale ω."""
     return complex(real, -scale * omega[2]), complex(-scale * omega[1], -scale * omega[0])
 
 
 def rotation(phi):
-    """The pair of a rotation by the vector φ."""
+    """Return the pair of a rotation by the vector φ."""
     angle = length(phi)
     return turn(phi, sin(0.5 * angle) / angle if angle else 0.5, cos(0.5 * angle))
 
 
 def tangent(omega, h):
-    """About ω by the angle 2 arctan(½|ω|h)."""
+    """Return the pair of a rotation about ω by the angle 2 arctan(½|ω|h)."""
     return unit(turn(omega, 0.5 * h, 1.0))
 
 
 def matrix(q, s=2.0):
-    """(3, 3) as three rows, of a pair of length 1; of any pair with s = 2 over its square."""
+    """Return R (3, 3) of a pair as three rows; s = 2 for a pair of length 1, else 2 over the square of its length."""
     w, z, y, x = q[0].real, -q[0].imag, -q[1].real, -q[1].imag
     w = s * w
     return ((1.0 - s * (y * y + z * z), s * x * y - w * z, s * x * z + w * y),
@@ -94,7 +94,7 @@ def to_body(M, r):
 # ---------------------------------------------------------------------------------------------- first order
 
 def kept_L(update):
-    """L first, then R by `update` at ω = I⁻¹L."""
+    """Update L first, then R by `update` at ω = I⁻¹L."""
     def step(torque, q, L, I, h):
         M = matrix(q)
         L = plus(L, torque(M), h)
@@ -103,7 +103,7 @@ def kept_L(update):
 
 
 def by_columns(q, omega, h):
-    """(1 + h ω*) R, its columns made orthonormal from the first to the last."""
+    """Return (1 + h ω*) R with its columns made orthonormal from the first to the last."""
     moves = zip(*(cross(omega, column) for column in zip(*matrix(q))))
     a, b, c = zip(*(plus(row, move, h) for row, move in zip(matrix(q), moves)))
     a = tuple(x / length(a) for x in a)
@@ -123,7 +123,7 @@ def nearly(q, omega, h):
 
 
 def kept_omega(implicit, update):
-    """ω first, by Euler's equations in body coordinates; R by the new ω; L belongs to both."""
+    """Update ω first, by Euler's equations in body coordinates; rotate R by the new ω; compute L from both."""
     def step(torque, q, L, I, h):
         M = matrix(q)
         l = to_body(M, L)
@@ -143,7 +143,7 @@ def kept_omega(implicit, update):
 
 
 def solve(columns, right):
-    """Cramer's rule."""
+    """Solve a (3, 3) system by Cramer's rule."""
     a, b, c = columns
     whole = dot(a, cross(b, c))
     return dot(right, cross(b, c)) / whole, dot(a, cross(right, c)) / whole, dot(a, cross(b, right)) / whole
@@ -152,7 +152,10 @@ def solve(columns, right):
 # ---------------------------------------------------------------------------------------------- higher order
 
 def classical(torque, q, L, I, h):
-    """Runge–Kutta 4 on the pair and L; between the stages the pair's length is not quite 1, but R is a rotation."""
+    """Take a step of Runge–Kutta 4 on the pair and L.
+
+    Between the stages the length of the pair differs slightly from 1, but R is a rotation.
+    """
     def slope(q, L):
         M = matrix(q, 2.0 / (abs(q[0]) ** 2 + abs(q[1]) ** 2))
         omega = to_world(M, over(to_body(M, L), I))
@@ -171,9 +174,10 @@ def classical(torque, q, L, I, h):
 
 
 def munthe_kaas(torque, q, L, I, h):
-    """Runge–Kutta 4 on ω and on the turn u since the beginning of the step, R exp(u*), all in body coordinates.
+    """Take a step of Runge–Kutta 4 on ω and on the rotation vector u since the start of the step, in body coordinates.
 
-    u̇ = ω + ½ u × ω + c u × (u × ω),  c = (1 − ½|u| cot ½|u|)/|u|²: without these terms it would be of order 2.
+    The orientation is R exp(u*), and  u̇ = ω + ½ u × ω + c u × (u × ω),  c = (1 − ½|u| cot ½|u|)/|u|².  Without these
+    terms the method would be of order 2.
     *Source:* Munthe-Kaas 1998; Hairer, Lubich, Wanner 2006, IV.8.
     """
     def slope(u, w):
@@ -193,7 +197,7 @@ def munthe_kaas(torque, q, L, I, h):
 
 
 def free_midpoint(q, L, I, h):
-    """m = ℓ + ½h m × I⁻¹m by iteration of its linear part, then Cayley's rotation about m in the body."""
+    """Solve m = ℓ + ½h m × I⁻¹m by iteration of its linear part, then apply Cayley's rotation about m in the body."""
     l = to_body(matrix(q), L)
     m = l
     for _ in range(NEWTON):
@@ -208,7 +212,7 @@ def free_midpoint(q, L, I, h):
 
 
 def free_splitting(q, L, I, h):
-    """Half about axis a of the body, all about c, half about a, and all of the common turn about L."""
+    """Rotate half about axis a of the body, fully about c, half about a, and then apply the common rotation about L."""
     middle = sorted(range(3), key=lambda k: I[k])[1] if len(set(I)) == 3 else next(
         k for k in range(3) if (I[(k + 1) % 3] - I[k]) * (I[k] - I[(k + 2) % 3]) >= 0.0)
     a, c = (middle + 1) % 3, (middle + 2) % 3
@@ -222,7 +226,7 @@ def free_splitting(q, L, I, h):
 
 
 def kicked(free):
-    """Half of the angular impulse, the free motion, the other half."""
+    """Apply half of the angular impulse, the free motion, and the other half."""
     def step(torque, q, L, I, h):
         L = plus(L, torque(matrix(q)), 0.5 * h)
         q = free(q, L, I, h)
@@ -257,7 +261,7 @@ MIDPOINT_TURN = Turn(2, kicked(free_midpoint), EVEN[2])
 SPLITTING = Turn(2, kicked(free_splitting), EVEN[2])
 COMPOSED_SPLITTING = Turn(4, composed(SPLITTING.step), EVEN[4])
 COMPOSED_MIDPOINT = Turn(4, composed(MIDPOINT_TURN.step), EVEN[4])
-# what engines do: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω; Runge–Kutta 4
+# the engines: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω; Runge–Kutta 4
 EXPLICIT_TERM = Turn(1, kept_omega(False, exactly))
 IMPLICIT_TERM = Turn(1, kept_omega(True, exactly))
 MUNTHE_KAAS = Turn(4, munthe_kaas)
@@ -279,7 +283,7 @@ class TurningBody(NamedTuple):
     doublings: dict = DOUBLINGS          # {order: as in ErrorLaw}
 
     def predict(self, turn):
-        """Return the field `predicted` of a Runner that does what a Turn does."""
+        """Return the field `predicted` of a Runner that follows a Turn."""
         @cache
         def error_law(p):
             I = tuple(map(float, self.moments(p)))
@@ -294,10 +298,12 @@ class TurningBody(NamedTuple):
                             FINEST[turn.order], self.doublings[turn.order])
 
         def predicted_error(p, dt):
-            """The error, with its sign, of the same step written once more in complex numbers: at the same step where
-            that is coarse, else by its expansion in powers of dt.  pybullet turns its bodies by the gyroscopic term,
-            explicit in reduced coordinates and implicit in maximal ones; MuJoCo by Runge–Kutta 4 in the form of
-            Munthe-Kaas, and by default like pybullet in reduced coordinates.
+            """The error, with its sign, of the same step written independently in complex numbers.
+
+            It is taken at the same step where that is coarse, else by its expansion in powers of dt.  pybullet
+            turns its bodies by the gyroscopic term, explicit in reduced coordinates and implicit in maximal ones.
+            MuJoCo uses Runge–Kutta 4 in the form of Munthe-Kaas; its default step is like that of pybullet in
+            reduced coordinates.
             """
             return error_law(p).prediction(dt, self.floor(p, dt))
         return predicted_error
@@ -306,21 +312,22 @@ class TurningBody(NamedTuple):
 def free_turning(T, truth, uncertainty):
     """Return the TurningBody of a free body that starts at R = 1, with p.moments() and p.omega().
 
-    The floor is round-off, u = 1.1e-16.  A step rounds the orientation by about u in each direction.  A rounding about
-    L or about the axis of symmetry stays what it is.  One that tilts the axis by δ at t also changes the rate of spin,
-    which is (1/I₃ − 1/I₁) L₃: at the end the spin is off by  δ S (1 − t/T),  S = |1/I₃ − 1/I₁| |L| T.  For the
-    axisymmetric body S = 54.
+    The floor is round-off, u = 1.1e-16.  A step rounds the orientation by about u in each direction.  An error
+    about L or about the axis of symmetry stays constant.  An error that tilts the axis by δ at time t also changes
+    the rate of spin, which is (1/I₃ − 1/I₁) L₃.  At the end the spin is off by  δ S (1 − t/T),  S = |1/I₃ − 1/I₁|
+    |L| T.  For the axisymmetric body S = 54.
 
-    If the δ are independent, with standard deviation σ, n steps end S σ √(n/3) off; a mean of μ adds ½ S μ n.  Counted
-    on 100,000 steps of the splitting against the same steps in 80 bits: σ = 0.74 u, and μ = 0.0045 ± 0.0024 u.  The
-    random walk gives 8e-13, and the roundings as they were, each with its weight, 4.2e-12.  That is five standard
-    deviations of a random walk: their mean is not 0 and drifts slowly.  (Error at the end: 3.5e-12.)  So √n rules below
-    some 30,000 steps and n above: from there to a million the error is 0.17 to 0.31 u n (four bodies: 0.08 to 0.6 u n).
-    The limit of 2 u n is what a mean tilt of 4/S u = 0.07 u, a tenth of σ, would give.
+    If the δ are independent, with standard deviation σ, the error after n steps is S σ √(n/3); a mean of μ adds ½ S
+    μ n. A count of 100,000 steps of the splitting against the same steps in 80 bits gave σ = 0.74 u and μ = 0.0045
+    ± 0.0024 u. The random walk predicts 8e-13, and the measured errors, each with its weight, give 4.2e-12.  That
+    is five standard deviations of a random walk, so their mean is not 0, and it drifts slowly.  (The error at the
+    end is 3.5e-12.)  So √n dominates below some 30,000 steps and n above; from there to a million steps the error
+    is 0.17 to 0.31 u n (0.08 to 0.6 u n for four bodies).  The limit of 2 u n corresponds to a mean tilt of 4/S u =
+    0.07 u, a tenth of σ.
     """
     def begin(p):
         return (1.0 + 0j, 0j), tuple(map(float, p.moments() * p.omega()))
-    # roundings as derived above, 1e-12 of Newton's method, and what the truth leaves open
+    # round-off as derived above, 1e-12 of Newton's method, and the uncertainty of the truth
     floor = lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty
     return TurningBody(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
                        {**DOUBLINGS, 1: 0})

@@ -1,4 +1,4 @@
-"""Write the report: one folder of static pages that need no network, and the same content as JSON."""
+"""The report: one folder of static pages that need no network, and the same content as JSON."""
 
 import json
 from functools import cache
@@ -9,15 +9,18 @@ from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
 from ..check import Verdict
+from ..measure.races import HEADLINE, LEVELS
+from ..measure.timing import TARGETS
 from ..products import PRODUCTS
 from ..run.store import whole
-from . import films, plots, tables, words
-from .answers import answers
+from . import choice, films, numbers, plots, races, tables, words
+from .answers import LEAST, MOST, answers
 
 HERE = Path(__file__).parent
 ARROWS = ("#e69f00", "#cc79a7", "#009e73")      # as in player3d/source.js
 PLAYER_3D = HERE / "player3d.js"
 LESSONS = {"pbd": "PBD"}     # names that are no words
+BARS_MOST = 20_000.0         # largest ratio that the bars of a scene's page have room for [-]
 
 
 def pictures(results, stability):
@@ -32,7 +35,7 @@ def pictures(results, stability):
 
 
 def copied(results):
-    """Files that come with the pages as they are."""
+    """Return the files that come with the pages unchanged."""
     return ("style.css", "dark.css", "report.css", "report.js", "player.js",
             *(["player3d.js"] if any(r["picture"]["space"] for r in results) else []))
 
@@ -43,9 +46,6 @@ def files(results, stability):
     return {*always, *(["stability.html"] if stability else []), *copied(results), *tables.names(results, stability),
             *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
             *(name for _, name, _, _ in pictures(results, stability))}
-
-
-LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for [-]
 
 
 def place(ratio, least=LEAST, most=MOST):
@@ -64,12 +64,17 @@ def environment():
     """Return the templates, with what they call."""
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
                         trim_blocks=True, lstrip_blocks=True)
-    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,
-                         order=words.order, ratio=words.ratio, rounded=words.rounded, flowing=words.flowing,
-                         css_colour=plots.css_colour, place=place, subscripts=words.subscripts,
+    pages.filters.update(seconds=numbers.seconds, number=numbers.number, percent=numbers.percent,
+                         factor=numbers.factor, rounded=numbers.rounded, order=words.order, ratio=races.ratio,
+                         flowing=words.flowing, css_colour=plots.css_colour, place=place, subscripts=words.subscripts,
                          lesson=lambda name: LESSONS.get(name, name.replace("_", " ")))
-    pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
-    pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=words.known, percents=words.percents,
+    pages.tests["reaches"] = lambda row: any(t is not None for t in row["seconds"])
+    pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=numbers.known, percents=numbers.percents,
+                         levels=LEVELS, targets=TARGETS, race_error=HEADLINE, level_name=races.level_name,
+                         coarse=races.coarse, coarse_runs=races.coarse_runs, summary_ratio=races.summary_ratio,
+                         measured_limits=words.measured_limits, least=LEAST, most=MOST,
+                         bars_most=BARS_MOST, cheap=choice.CHEAP, race_header=tables.RACES,
+                         race_rows=lambda r: map(tables.race_row, races.of(r)),
                          legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,
                          arrow_colours=ARROWS, arrow_meanings=words.ARROWS, with_units=words.with_units,
                          csv=tables.address, ablation_rows=tables.ablations,
@@ -90,8 +95,8 @@ def texts(results, stability, about):
     coverage = about.get("coverage") or {}
     found = {f"{r['scene']}.html": page(
         "scene.html", r=r, headline=words.headline(r), findings=words.leading(r),
-        seen_in_times=words.seen_in_times(r), seen_in_steps=words.seen_in_steps(r),
-        races=[words.race(a, r) for a in r["times"]["advantage"]],
+        seen_in_steps=words.seen_in_steps(r),
+        races=races.rows(races.of(r)),
         warning=words.busy_warning([r], about.get("cores")), notebook=about.get("notebooks", {}).get(r["lesson"]),
         exercises=[(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],
         cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}

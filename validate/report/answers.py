@@ -1,25 +1,27 @@
 """The four questions of the front page, answered from the results."""
 
 from collections import Counter
-from statistics import quantiles
 
 from ..check import Verdict
+from ..measure.races import Outcome
 from ..scene import EXACT
-from . import words
+from . import choice, races, words
+
+LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for [-]
 
 
 def answers(results, stability, cores=None):
-    """Return {question's name: what the front page says}: right, faster, departures, stable."""
-    return {"right": right(results), "faster": faster(results, cores), "departures": departures(results),
-            "stable": stable(stability)}
+    """Return {question's name: what the front page says}: right, faster, departures, stable, which."""
+    return {"right": right(results, stability), "faster": faster(results, cores), "departures": departures(results),
+            "stable": stable(stability), "which": choice.by_lesson(results)}
 
 
 def curves_of(results, role):
-    """[(result, name of the case, curve)] of all scenes; role is ours or engines."""
+    """Return [(result, name of the case, curve)] of all scenes; role is ours or engines."""
     return [(r, name, c) for r in results for name, case in r["cases"].items() for c in case[role]]
 
 
-def right(results):
+def right(results, stability):
     """Counts of the verdicts on our methods, and how many orders are as high as theory says."""
     every = curves_of(results, "ours")
     count = Counter(Verdict(c["verdict"]) for _, _, c in every)
@@ -32,46 +34,76 @@ def right(results):
             predicted.add((r["scene"], c["label"]))
     return {
         "curves": len(curves), "curves_predicted": len(predicted),
-        "scenes": len(results), "runs": len(every), "agree": count[Verdict.AGREES],
-        "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
+        "scenes": len(results), "runs": len(every),
+        "judged": count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW] + count[Verdict.DEPARTS],
+        "agree": count[Verdict.AGREES], "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
+        "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
+        "truths": words.truths_by_engines(results),
         "orders": len(ordered), "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
         "exact": sum(c["expected"] == EXACT and Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in every),
     }
 
 
+def unfinished(every):
+    """[{label, case, scene, title}] of the curves of ours that do not come to their end."""
+    return [{"label": c["label"], "case": name, "scene": r["scene"], "title": r["title"]} for r, name, c in every
+            if Verdict(c["verdict"]) is Verdict.UNFINISHED]
+
+
 def faster(results, cores=None):
-    """All races of the report, each with its scene; those that we do not win are listed by name."""
-    every = [{**race, "scene": r["scene"], "title": r["title"], "lesson": r["lesson"]}
-             for r in results for race in words.races(r).values()]
-    decided = [race for race in every if race["ratio"]]
-    by = {outcome: [race for race in every if race["outcome"] == outcome]
-          for outcome in ("faster", "a tie", "slower", "open")}
-    low, middle, high = quantiles([race["ratio"] for race in decided], n=4) if len(decided) > 1 else (None,) * 3
-    return {"races": every, "decided": decided, "by": by, "low": low, "middle": middle, "high": high,
-            "warning": words.busy_warning(results, cores)}
+    """All races of the report, how many ended how at each error, and what the ratios at the headline are made of."""
+    every = races.every(results)
+    counts = races.counted(every)
+    headline = races.at(every)
+    by = {outcome.name.lower(): [race for race in headline if Outcome(race["outcome"]) is outcome]
+          for outcome in Outcome}
+    return {"races": every, "counts": counts, "headline": races.headline_of(counts), "by": by,
+            "factors": races.median_factors(every), "rows": races.rows(every),
+            "undecided": by_reason(by["undecided"]),
+            "beyond": [race for race in headline if race["ratio"] and not LEAST <= race["ratio"] <= MOST],
+            "calls": calls(results), "warning": words.busy_warning(results, cores)}
+
+
+def by_reason(undecided):
+    """{why: races} of the undecided races."""
+    found = {}
+    for race in undecided:
+        found.setdefault(race["why"], []).append(race)
+    return found
+
+
+def calls(results):
+    """Return what a call from Python costs each engine: one record each, from the first scene that was timed."""
+    found = {}
+    for result in results:
+        for one in result["times"].get("calls") or ():
+            found.setdefault(one["product"], one)
+    return list(found.values())
 
 
 def departures(results):
-    """One line for each engine and reason: {engine, kind, reason, low, high, places}, unpredicted ones first."""
+    """One line for each engine and reason: {engine, kind, reason, whose, low, high, places}, unpredicted ones first."""
     groups, undecided = {}, {}
     for r, name, c in curves_of(results, "engines"):
         verdict = Verdict(c["verdict"])
         if verdict in (Verdict.FOLLOWS_OWN_LAW, Verdict.DEPARTS):
-            reason = c["departure_reason"] if verdict is Verdict.FOLLOWS_OWN_LAW else f"not known: it {c['message']}"
+            known = verdict is Verdict.FOLLOWS_OWN_LAW
+            reason = c["departure_reason"] if known else f"not known: it {c['message']}"
+            whose = c["departure_whose"] if known else ""
             last = words.finest(c)
-            size = c["departure"] if verdict is Verdict.FOLLOWS_OWN_LAW else (last["error"] if last else None)
-            groups.setdefault((words.KINDS[verdict], c["label"], reason), []).append((r, name, size))
+            size = c["departure"] if known else (last["error"] if last else None)
+            groups.setdefault((words.KINDS[verdict], c["label"], reason, whose), []).append((r, name, size))
         elif verdict is Verdict.UNDECIDED:
             undecided.setdefault(r["scene"], r["title"])
     lines = []
-    for (kind, label, reason), found in groups.items():
+    for (kind, label, reason, whose), found in groups.items():
         sizes = [size for _, _, size in found if size is not None]
-        lines.append({"engine": label, "kind": kind, "reason": reason, "low": min(sizes, default=None),
+        lines.append({"engine": label, "kind": kind, "reason": reason, "whose": whose, "low": min(sizes, default=None),
                       "high": max(sizes, default=None), "places": {r["scene"]: r["title"] for r, _, _ in found},
                       "cases": len(found)})
     lines.sort(key=lambda line: (line["kind"] != "departs", -len(line["places"]), -(line["high"] or 0.0)))
-    compared = curves_of(results, "engines")
+    compared = [one for one in curves_of(results, "engines") if Verdict(one[2]["verdict"]) is not Verdict.REFERENCE]
     return {"lines": lines, "undecided": undecided, "runs": len(compared),
             "depart": sum(line["cases"] for line in lines),
             "open": sum(Verdict(c["verdict"]) is Verdict.UNDECIDED for _, _, c in compared),
@@ -84,4 +116,6 @@ def stable(stability):
     held = [f["holds"] for case in stability for f in case["findings"]]
     failing = {f"{case['lesson']}-{case['slug']}": case["title"] for case in stability
                if not all(f["holds"] for f in case["findings"])}
-    return {"findings": len(held), "hold": sum(held), "cases": len(stability), "failing": failing}
+    not_run = [one for case in stability for one in case["not_run"]]
+    return {"findings": len(held), "hold": sum(held), "cases": len(stability), "failing": failing,
+            "not_run": len(not_run), "why": list(dict.fromkeys(one["why"] for one in not_run))}

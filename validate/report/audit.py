@@ -1,8 +1,8 @@
-"""Check a report against its own raw rows: recompute every derived figure and verdict, and render every page again.
+"""Audit of a report by its own raw rows: every derived figure and verdict is recomputed, every page rendered again.
 
 Raw are, in report.json: the truth of each case; of each run what it observed at the end, its steps, the error that
 theory allows, or why it failed; of each time all its repeats; of each finding the predicted and the measured number and
-the tolerance.  Everything else is derived from these and is derived here once more, by other code where that is short.
+the tolerance.  Everything else is derived from these and is derived here again, by other code where that is short.
 The pages must be what the same data give when they are rendered again, and each picture names the data that it shows.
 """
 
@@ -13,12 +13,14 @@ import numpy as np
 from .. import report
 from ..check import Verdict, jsonable
 from ..measure.accuracy import ASYMPTOTIC, bound
-from ..measure.timing import EXACTLY, SAME, TARGETS
+from ..measure.races import EXACTLY, HEADLINE, NEARLY, TIE, Outcome
+from ..measure.timing import SAME, TARGETS
 from ..run.store import code_digest
 from ..scene import ROUND_OFF
 from ..subject import modules
 from . import plots
 
+NINE = 9                     # repeats from which the interval of a median leaves out the shortest and the longest [-]
 NEAR = 1e-9                  # allowed relative difference of a figure that was computed twice [-]
 
 
@@ -63,9 +65,11 @@ def of_curve(curve, case, result):
     """Yield what is wrong with the errors, the order and the verdict of one curve."""
     truth, rows, own = case["truth"], curve["rows"], curve.get("own_law")
     if not rows:
-        if Verdict(curve["verdict"]) is not Verdict.UNDECIDED:
+        if Verdict(curve["verdict"]) not in (Verdict.UNDECIDED, Verdict.UNFINISHED):
             yield f"the verdict {curve['verdict']!r} has no rows"
         return
+    if curve["reference"] != (Verdict(curve["verdict"]) is Verdict.REFERENCE):
+        yield "it is its own judge" if curve["reference"] else "it is called a reference, but the truth is no run of it"
     for row in rows:
         seen = row.get("observed")
         if (seen is None) == (row["failure"] is None) or (seen is not None and len(seen) != len(truth)):
@@ -86,13 +90,13 @@ def of_curve(curve, case, result):
     order = slope(judged, 10.0 * result["uncertainty"])
     if (order is None) != (curve["order"] is None) or (order is not None and abs(order - curve["order"]) > 1e-6):
         yield f"the order is {curve['order']}, but its rows show {order}"
-    verdict = verdict_of(judged, curve["expected"], order, own is not None)
+    verdict = None if curve["reference"] else verdict_of(judged, curve["expected"], order, own is not None)
     if verdict is not None and verdict is not Verdict(curve["verdict"]):
         yield f"the verdict is {curve['verdict']!r}, but its rows say {verdict.value!r}"
 
 
 def distance(observed, truth):
-    """|observed − truth| over |truth|, or over 1 where the truth is zero."""
+    """Return |observed − truth| over |truth|, or over 1 where the truth is zero."""
     size = sum(x * x for x in truth) ** 0.5
     return sum((x - y) ** 2 for x, y in zip(observed, truth, strict=True)) ** 0.5 / (size or 1.0)
 
@@ -146,10 +150,14 @@ def of_times(result, counts):
     counts["times"] += len(times["rows"])
     for row in times["rows"]:
         yield from of_time(row, errors.get((row["label"], row["steps"])))
-    for label, targets in times["time_to_error"].items():
-        yield from of_targets(label, targets, times["rows"])
-    for one in times["advantage"]:
-        yield from of_advantage(one, times["rows"])
+    for curve in times["time_to_error"]:
+        yield from of_targets(curve, times["rows"])
+    case = next(iter(result["cases"].values()), None)
+    for race in times["races"]:
+        for problem in of_race(race, times, case):
+            yield f"the race with {race['product']} to {race['error']}: {problem}"
+    yield from of_calls(times)
+    yield from of_compilation(times)
     yield from of_costs(times)
 
 
@@ -158,22 +166,27 @@ def of_time(row, error):
     place = f"the time of {row['label']}, {row['speed']}, {row['steps']} steps"
     if row["speed"] != "recorded" and not row.get("repeats"):
         yield f"{place} has no repeats"
-    elif row["speed"] != "recorded" and any(differs(row[key], of(row["repeats"])) for key, of in
-                                            (("seconds", median), ("low", min), ("high", max))):
-        yield f"{place} is not the median or the range of its repeats"
+    elif row["speed"] != "recorded":
+        ordered = sorted(row["repeats"])
+        ends = ordered[1:-1] if len(ordered) >= NINE else ordered
+        if any(differs(row[key], known) for key, known in
+               (("seconds", median(ordered)), ("low", ends[0]), ("high", ends[-1]))):
+            yield f"{place} is not the median or the interval of its repeats"
     if differs(row["error"], error):
         yield f"{place} stands beside an error that is not that of its run"
 
 
-def of_targets(label, targets, rows):
+def of_targets(curve, rows):
     """Yield what is wrong with the times that one curve takes to given errors."""
-    mine = [row for row in rows if f"{row['label']} ({row['speed']})" == label]
-    points = [(row["error"], row["seconds"]) for row in mine]
-    if len(targets) != len(TARGETS) or not points:
-        yield f"the times to an error of {label} have no rows"
-    for target, seconds in targets.items():
-        if differs(seconds, least_time(points, float(target))):
-            yield f"the time of {label} to an error of {target} does not follow from its rows"
+    name = f"{curve['label']}, {curve['speed']},"
+    points = [(row["error"], row["seconds"]) for row in rows
+              if (row["label"], row["speed"]) == (curve["label"], curve["speed"])]
+    if len(curve["seconds"]) != len(TARGETS) or not points:
+        yield f"the times to an error of {name} have no rows"
+        return
+    for target, seconds in zip(TARGETS, curve["seconds"], strict=True):
+        if differs(seconds, least_time(points, target)):
+            yield f"the time of {name} to an error of {target} does not follow from its rows"
 
 
 def of_costs(times):
@@ -199,7 +212,7 @@ def follows(row, key):
 
 
 def least_time(points, target):
-    """The least time for an error: that of the cheapest run that is good enough, or between it and the next coarser."""
+    """Return the shortest time for an error: that of the cheapest accurate run, or between it and a coarser one."""
     good = min(((seconds, error) for error, seconds in points if error <= target), default=None)
     if good is None:
         return None
@@ -210,23 +223,116 @@ def least_time(points, target):
     return float(good[0] * (coarser[1] / good[0]) ** share)
 
 
-def of_advantage(one, rows):
-    """Yield what is wrong with one ratio of an engine's time to ours."""
-    worth = [(r["error"], r["seconds"]) for r in rows
-             if r["label"] == one["engine"] and r["speed"] == "engine" and EXACTLY < r["error"] < ASYMPTOTIC]
-    best = min(worth, default=None)
-    if best is None or differs(best[0], one["error"]) or differs(best[1], one["seconds"]):
-        yield f"the race with {one['engine']} is not to its smallest error"
+def of_calls(times):
+    """Yield what is wrong with the cost of a call of an engine from Python."""
+    for one in times["calls"]:
+        alone = median(one["alone"]) if one["alone"] else 0.0
+        if not one["called"] or differs(one["seconds"], max(0.0, median(one["called"]) - alone)):
+            yield f"the cost of a call of {one['product']} does not follow from its repeats"
+
+
+def of_compilation(times):
+    """Yield what is wrong with the times of compilation: they belong to the method that runs the headline's race."""
+    one = times.get("compilation")
+    if not one:
         return
-    ours = {}
-    for r in rows:
-        if r["speed"] in ("plain", "compiled"):
-            ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
-    reached = [t for points in ours.values() if (t := least_time(points, best[0]))]
-    if differs(one["ours"], min(reached, default=None)):
-        yield f"our time in the race with {one['engine']} is not our shortest"
-    elif differs(one["ratio"], best[1] / one["ours"] if one["ours"] else None):
-        yield f"the ratio in the race with {one['engine']} is not that of its times"
+    quickest = {race["ours"]["label"] for race in times["races"] if race["level"] == HEADLINE and race["ours"]}
+    if one["label"] not in quickest:
+        yield f"the compilation is timed of {one['label']}, which runs no race"
+    if not 0.0 <= one["cached"] <= one["cold"]:
+        yield "to load a method from the cache takes longer than to compile it"
+
+
+def of_race(race, times, case):
+    """Yield what is wrong with one race: its error, the times of both sides, its ratio and its factors."""
+    rows = [row for row in times["rows"] if row["error"] is not None and row["speed"] != "recorded"]
+    theirs, ours = (by_curve(rows, agreeing(case[role], race["product"])) for role in ("engines", "ours"))
+    error = race["error"] if race["level"] is None else race["level"]
+    if race["level"] is None:
+        least = min((row["error"] for group in theirs.values() for row in group), default=ASYMPTOTIC)
+        if differs(error, max(EXACTLY, least) if least < ASYMPTOTIC else None):
+            yield "it is not to the engine's smallest error"
+            return
+    elif differs(race["error"], error):
+        yield "it is to another error than its level"
+        return
+    if error is None:
+        return
+    if race["level"] is not None and differs(time_of(race["engine"]), least_of(theirs, error)):
+        yield "the engine's time is not its shortest"
+    if race["level"] is None and differs(time_of(race["engine"]), cheapest_near(theirs, error)):
+        yield "the engine's time is not that of its cheapest run that is as accurate"
+    if differs(time_of(race["ours"]), least_of(ours, error)):
+        yield "our time is not our shortest"
+    if race["ratio"] is not None:
+        yield from of_ratio(race, times)
+    elif not may_have_no_ratio(race, rows):
+        yield f"it has no ratio, but its outcome is {race['outcome']!r}"
+
+
+def may_have_no_ratio(race, rows):
+    """Return whether the outcome of a race without a ratio is that of its sides.
+
+    With both sides it is undecided only where our quickest method was not timed compiled.
+    """
+    engine, ours, outcome = race["engine"], race["ours"], Outcome(race["outcome"])
+    if engine and ours:
+        compiled = any((row["label"], row["speed"]) == (ours["label"], "compiled") for row in rows)
+        return outcome is Outcome.UNDECIDED and not compiled
+    lost = Outcome.SLOWER if engine else Outcome.ENGINE_FAILS if ours else Outcome.NEITHER
+    return outcome in (Outcome.UNDECIDED, lost)
+
+
+def agreeing(curves, product):
+    """Return the labels of the curves that may race: those that agree, and of an engine only its own."""
+    return {c["label"] for c in curves if Verdict(c["verdict"]) is Verdict.AGREES
+            and ("product" not in c or c["product"] == product)}
+
+
+def by_curve(rows, labels):
+    """{(label, speed): its rows} of the curves with these labels."""
+    groups = {}
+    for row in rows:
+        if row["label"] in labels:
+            groups.setdefault((row["label"], row["speed"]), []).append(row)
+    return groups
+
+
+def least_of(groups, error):
+    """Return the least time to an error of some curves, or None."""
+    reached = [least_time([(row["error"], row["seconds"]) for row in group], error) for group in groups.values()]
+    return min((t for t in reached if t is not None), default=None)
+
+
+def cheapest_near(groups, error):
+    """Return the time of the cheapest run whose error is within a twentieth of the smallest."""
+    return min((row["seconds"] for group in groups.values() for row in group
+                if row["error"] <= NEARLY * error), default=None)
+
+
+def time_of(side):
+    """Return the time of one side of a race, or None."""
+    return side and side["seconds"]
+
+
+def of_ratio(race, times):
+    """Yield what is wrong with a ratio, with its range, or with what it is made of."""
+    engine, ours, same = race["engine"], race["ours"], race["same_order"]
+    wanted = {"ratio": engine["seconds"] / ours["seconds"], "low": engine["low"] / ours["high"],
+              "high": engine["high"] / ours["low"], "order": same and same["seconds"] / ours["seconds"],
+              "loop": same and engine["seconds"] / same["seconds"]}
+    cost = next((one["seconds"] for one in times["calls"] if one["product"] == race["product"]), None)
+    rest = None if cost is None else engine["alone"] - cost * (engine["steps"] // race["substeps"])
+    wanted["calls"] = engine["alone"] / rest if rest is not None and rest > 0.0 else None
+    for key, value in wanted.items():
+        if differs(race[key], value):
+            yield f"its {key} is not that of its times"
+    if not race["low"] <= race["ratio"] <= race["high"]:
+        yield "its ratio is outside of its range"
+    tie = 1.0 / TIE < race["ratio"] < TIE or race["low"] < 1.0 < race["high"]
+    outcome = Outcome.TIE if tie else Outcome.FASTER if race["ratio"] > 1.0 else Outcome.SLOWER
+    if Outcome(race["outcome"]) is not outcome:
+        yield f"its outcome is {race['outcome']!r}, but its ratio says {outcome.value!r}"
 
 
 # ---------------------------------------------------------------------------------------------- findings, limits, pages
@@ -244,7 +350,10 @@ def of_case(case, counts):
 
 
 def of_limits(data, counts):
-    """Limits that are not those of the scenes.  Other code than that of the report cannot tell: then it checks none."""
+    """Return limits that differ from those of the scenes.
+
+    None if the report comes from other code, which cannot tell.
+    """
     run = data["run"]
     if run.get("code") != code_of(run["of"]) or run.get("overrides"):
         return
@@ -253,12 +362,16 @@ def of_limits(data, counts):
         for name, case in result["cases"].items():
             for curve in case["ours"] + case["engines"]:
                 runner = next(r for r in scene.runners if r.label == curve["label"])
+                place = f"{result['scene']}: {curve['label']}, {name}"
+                if curve["measured"] != runner.measured:
+                    yield f"{place}: whether its limit was measured is not what the scene says"
+                if curve["reference"] != runner.is_reference(scene.cases[name]):
+                    yield f"{place}: whether the truth is its own run is not what the scene says"
                 law = np.array(curve.get("own_law") or case["truth"])
                 for row in curve["rows"]:
                     counts["limits"] += 1
                     theory = jsonable(bound(runner, scene.cases[name], scene.duration / row["steps"], law))
                     if any(differs(row[key], theory[key]) for key in ("limit", "band")) or apart(row, theory):
-                        place = f"{result['scene']}: {curve['label']}, {name}"
                         yield f"{place}: the limit at {row['steps']} steps is not theory's"
                         break
 
@@ -277,7 +390,7 @@ def code_of(subject):
 
 
 def of_pages(folder, data, counts):
-    """Pages and pictures that do not show these data."""
+    """Return pages and pictures that do not show these data."""
     for name, text in report.texts(data["scenes"], data["stability"], data["run"]).items():
         counts["pages"] += 1
         there = folder / name

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ..check import Verdict
 from ..products import product_named
 
-GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW}
+GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.REFERENCE}
 ORDER = 0.05                 # a smaller change of an order is noise of the fit [-]
 ERROR = 0.01                 # a smaller relative change of an error is not listed [-]
 ROUND_OFF = 1e-11            # relative errors below this are round-off, and differ from machine to machine [-]
@@ -35,7 +35,7 @@ def curves(report):
 
 
 def verdicts(old, new):
-    """Verdicts that differ, and curves that only one report has."""
+    """Yield verdicts that differ, and curves that only one report has."""
     before, after = curves(old), curves(new)
     for key in dict.fromkeys([*before, *after]):
         was, now = before.get(key), after.get(key)
@@ -59,7 +59,7 @@ def because(curve):
 
 def findings(old, new):
     """Findings of the stability cases that hold in one report only, and cases or findings that only one report has."""
-    before, after = by_case(old), by_case(new)
+    before, after, skipped = by_case(old), by_case(new), not_run(new)
     for place in dict.fromkeys([*before, *after]):
         was, now = before.get(place, {}), after.get(place, {})
         if not was:
@@ -67,7 +67,9 @@ def findings(old, new):
             yield Change("findings", place, f"is new: {len(now) - failing} of {len(now)} findings hold", failing > 0)
             continue
         for key in dict.fromkeys([*was, *now]):
-            if key not in now:
+            if key not in now and (place, key[0]) in skipped:
+                yield Change("findings", place, f"was not run: {was[key]['claim']}", False)
+            elif key not in now:
                 yield Change("findings", place, f"is gone: {was[key]['claim']}", True)
             elif key not in was:
                 words = f"is new and {'holds' if now[key]['holds'] else 'fails'}: {now[key]['claim']}"
@@ -76,6 +78,12 @@ def findings(old, new):
                 state = "holds" if now[key]["holds"] else "fails"
                 words = f"{state} now, measured {now[key]['measured']}: {now[key]['claim']}"
                 yield Change("findings", place, words, not now[key]["holds"])
+
+
+def not_run(report):
+    """{(lesson/slug, quantity)} of the findings that the machine of a report could not make."""
+    return {(f"{case['lesson']}/{case['slug']}", one["quantity"]) for case in report["stability"]
+            for one in case.get("not_run", ())}
 
 
 def by_case(report):
@@ -89,7 +97,7 @@ def by_case(report):
 
 
 def orders_and_errors(old, new):
-    """Orders that differ, and for each curve the largest change of an error at one number of steps."""
+    """Yield orders that differ, and for each curve the largest change of an error at one number of steps."""
     after = curves(new)
     for key, was in curves(old).items():
         now = after.get(key)
@@ -111,10 +119,11 @@ def is_good(curve):
 
 
 def times(old, new):
-    """Methods whose ranges of times lie apart, by more than SLOWER, at one pace of the machine.
+    """Yield methods whose ranges of times lie apart, by more than SLOWER, at one pace of the machine.
 
-    The pace is the ratio of the engines' times in the same scene, which were measured in turn with ours, with its
-    range; where no engine is timed, that of all scenes.  Only what becomes slower beside the engines is worse.
+    The pace is the ratio of the engines' times in the same scene, which were measured alternately with ours, with
+    its range.  If no engine is timed, it is that of all scenes.  Only a method that becomes slower relative to the
+    engines is worse.
     """
     before, after = timed(old), timed(new)
     both = [key for key in before if key in after]

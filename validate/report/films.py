@@ -9,7 +9,7 @@ from ..check import Role
 
 WIDTH, HEIGHT, MARGIN = 132.0, 84.0, 7.0         # of a still picture [px]
 STILL = 0.62                 # the moment of the film that a still picture shows, as a share of its frames
-FEW = 3                      # runs with up to so many points leave a trail
+FEW = 3                      # runs with at most this many points leave a trail
 
 
 def script(result):
@@ -24,7 +24,7 @@ def script(result):
 
 
 def packed(frames):
-    """Frames of points (x, y) as base64 of float32: a difference of two runs may be looked at magnified."""
+    """Return frames of points (x, y) as base64 of float32: a difference of two runs may be magnified."""
     return base64.b64encode(np.asarray(frames, dtype="<f4").tobytes()).decode()
 
 

@@ -1,4 +1,4 @@
-"""How sharp the limits of a report are: `validate limits [REPORT]`.
+"""Sharpness of the limits of a report: `validate limits [REPORT]`.
 
 A limit is the largest error that theory allows a run.  Limit over error says how much larger the error could have been
 without a change of the verdict.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left
@@ -15,7 +15,7 @@ from rich.table import Table
 from solutions.checks import BadInput
 
 from ..measure.accuracy import ASYMPTOTIC
-from ..run.store import stored_report
+from ..run.store import report_of_this_version
 from .audit import distance
 
 ROUND_OFF_ONLY = 1e-9        # limits below this leave room for round-off only, relative [-]
@@ -49,7 +49,7 @@ def rows_of(report):
 
 
 def share(ratios, percent):
-    """Return the value that so many percent of the ratios do not exceed."""
+    """Return the value that this percentage of the ratios does not exceed."""
     if len(ratios) == 1 or math.isinf(max(ratios)):                    # quantiles() cannot interpolate to infinity
         return sorted(ratios)[math.ceil(percent / 100.0 * len(ratios)) - 1]
     return quantiles(ratios, n=100, method="inclusive")[percent - 1]
@@ -83,7 +83,7 @@ def loosest(rows):
 
 def show(report):
     """Print how sharp the limits of a report are.  Raises BadInput for a report without limits."""
-    rows = list(rows_of(stored_report(report)))
+    rows = list(rows_of(report_of_this_version(report)))
     if not rows:
         raise BadInput(f"report {str(report)!r}", "without a limit above round-off", "name a report of more scenes")
     console = Console(width=120)

@@ -1,6 +1,6 @@
-"""The still pictures.
+"""The still pictures of a report.
 
-Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too.
+Colours: Okabe and Ito 2008, which colour-blind readers can distinguish; every curve has a marker too.
 """
 
 import json
@@ -54,7 +54,7 @@ def error_label(result):
 
 
 def floor(result):
-    """Error [-] below which nothing can be told: round-off, or what the truth is not known to."""
+    """Return the error [-] below which nothing can be decided: round-off, or the uncertainty of the truth."""
     return max(EXACT_RUN, 10.0 * result["uncertainty"])
 
 
@@ -69,7 +69,7 @@ def _ground(axes, bottom):
 
 
 def convergence(path, result):
-    """Error against step, with the runs that failed along the top."""
+    """Plot error against step, with the runs that failed along the top."""
     case, bottom, look_of = next(iter(result["cases"].values())), floor(result), looks(result)
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
@@ -96,9 +96,9 @@ def convergence(path, result):
 
 
 def work_precision(path, result):
-    """Error against run time: compiled solid, plain faint, engines dark.
+    """Plot error against run time: compiled solid, plain faint, engines dark.
 
-    Where more steps took less time the machine was not quiet; a line would run backwards, so there is none.
+    If more steps took less time, the machine was not quiet.  A line would run backwards, so none is drawn.
     """
     figure, axes = plt.subplots()
     bottom, look = floor(result), looks(result)
@@ -123,7 +123,7 @@ def work_precision(path, result):
 
 
 def stability(path, case):
-    """A stability case's own picture: curves, or maps with theory's curve over them."""
+    """Plot a stability case's own picture: curves, or maps with theory's curve over them."""
     picture = case["picture"]
     if not picture:
         return
@@ -146,7 +146,7 @@ def stability(path, case):
 
 
 def maps(path, picture):
-    """One small map for each method: how much a step amplifies, with theory's edge of stability over it."""
+    """Plot one small map for each method: the amplification of a step, with theory's edge of stability over it."""
     figure, every = plt.subplots(2, (len(picture["maps"]) + 1) // 2, sharex=True, sharey=True, squeeze=False)
     for axes, one in zip(every.flat, picture["maps"]):
         values, (low, high) = np.array(one["values"], dtype=float), picture["range"]
@@ -193,7 +193,7 @@ def series_colours(labels):
 
 
 def series_markers(labels):
-    """A marker each: a method has its own, and no two things of a picture have one as far as there are enough."""
+    """Return a marker for each series: a method has its own, and no two series share one as far as there are enough."""
     things = list(dict.fromkeys(map(thing_of, labels)))
     known = {method.label: method.marker for method in all_methods()}
     markers = {}
@@ -224,7 +224,7 @@ def show(plot, result):
 
 
 def digest(data):
-    """Fingerprint of the data that a picture shows: `validate audit` looks for it in the picture."""
+    """Return a fingerprint of the data that a picture shows: `validate audit` looks for it in the picture."""
     return sha256(json.dumps(jsonable(data), sort_keys=True).encode()).hexdigest()[:16]
 
 
@@ -251,7 +251,7 @@ def css_colour(colour):
 
 
 def for_both_schemes(svg):
-    """An SVG whose letters, lines and dark colours follow the reader's light or dark scheme."""
+    """Return an SVG whose letters, lines and dark colours follow the reader's light or dark scheme."""
     svg = COLOUR.sub(lambda found: f"{found[1]}: {css_colour(found[2])}", svg)
     style = f"<style>{DARK.read_text(encoding='utf-8')} text {{ fill: var(--c-000000, #000) }}</style>"
     return re.sub(r"(<svg[^>]*>)", lambda found: found[1] + style, svg, count=1)
@@ -261,15 +261,16 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _power(x, _):
-    """10⁻³, 2·10⁻³: as plain text, which is drawn in a third of the time of a formula."""
+    """Return 10⁻³ or 2·10⁻³ as plain text, which is drawn in a third of the time of a formula."""
     exponent = int(np.floor(np.log10(x) + 1e-9))
     lead = f"{x / 10.0**exponent:.2g}"
     return f"{'' if lead == '1' else f'{lead}·'}10{str(exponent).translate(RAISED)}"
 
 
 def tick(axis):
-    """On a logarithmic axis name powers of ten, and over fewer than two of them 2 and 5 as well;
-    more would run into each other.
+    """Label powers of ten on a logarithmic axis, and 2 and 5 as well if it has fewer than two of them.
+
+    More labels would overlap.
     """
     if axis.get_scale() == "log":
         few = np.ptp(np.log10(axis.get_view_interval())) < 2.0
@@ -309,7 +310,7 @@ LINE = 0.172                    # height of a line of the legend [in]
 
 
 def _legend_below(figure, axes, title):
-    """The legend below the axes, in as many columns as fit, so that the picture is as narrow as a phone."""
+    """Put the legend below the axes, in as many columns as fit, so that the picture is as narrow as a phone."""
     labels = axes.get_legend_handles_labels()[1]
     longest = max(map(len, labels))
     columns = min(3, max(1, int((WIDTH - 0.1) / (0.62 + 0.95 * LETTER * longest))), len(labels))
@@ -324,7 +325,7 @@ def _legend_below(figure, axes, title):
 
 
 def _margins(figure, axes, title):
-    """Room for labels and legend by their length in letters: finding it by drawing twice takes twice as long."""
+    """Leave room for labels and legend by their length in letters: finding it by drawing twice takes twice as long."""
     longest = max(map(len, [title or "", *axes.get_legend_handles_labels()[1]]))
     left, bottom, top, right = 0.85, 0.6, 0.35, 0.6 + LETTER * longest
     width, height = 6.0 + left + right, 4.0 + bottom + top

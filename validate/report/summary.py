@@ -6,13 +6,16 @@ from statistics import median
 from rich.table import Table
 
 from ..check import Verdict
+from ..measure.races import HEADLINE
 from ..scene import EXACT
-from . import words
+from . import races, words
+from .numbers import factor, percent, rounded
 
 SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"), Verdict.FOLLOWS_OWN_LAW: ("≈", "green"),
-         Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow")}
-LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided or not attempted\n"
-          "order: the highest of ours.   faster: the engine's time to its smallest error,\n"
+         Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow"),
+         Verdict.UNFINISHED: ("○", "yellow")}            # a reference counts nowhere
+LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided, unfinished, not attempted\n"
+          f"order: the highest of ours.   faster: the engine's time to an error of {percent(HEADLINE)},\n"
           "over our time to the same error; the smallest of the engines' ratios.")
 
 
@@ -34,8 +37,10 @@ def show(console, results, stability):
 
     found = [(case, f) for case in stability for f in case["findings"]]
     failed = [(case, f) for case, f in found if not f["holds"]]
+    not_run = sum(len(case["not_run"]) for case in stability)
     if found:
-        console.print(f"Stability: {len(found) - len(failed)} of {len(found)} findings hold.")
+        console.print(f"Stability: {len(found) - len(failed)} of {len(found)} findings hold"
+                      f"{f'; {not_run} not run on this machine' if not_run else ''}.")
     for case, f in failed:
         console.print(f"  [bold red]{case['lesson']}/{case['slug']}[/bold red] {f['claim']} "
                       f"Predicted {f['predicted']}, measured {f['measured']}.")
@@ -44,7 +49,7 @@ def show(console, results, stability):
 
 def signs(curves):
     """Return how many of these curves have each verdict, such as ✓ 8 ≈ 1."""
-    count = Counter(SIGNS[Verdict(c["verdict"])] for c in curves)
+    count = Counter(SIGNS[verdict] for c in curves if (verdict := Verdict(c["verdict"])) in SIGNS)
     return " ".join(f"[{style}]{sign} {count[sign, style]}[/{style}]" for sign, style in dict.fromkeys(SIGNS.values())
                     if count[sign, style]) or "–"
 
@@ -59,46 +64,101 @@ def best_order(result):
 
 def faster(result):
     """Return the smallest of our advantages over the engines."""
-    ratios = advantages(result)
-    return words.factor(min(ratios)) if ratios else "–"
+    race = hardest(result)
+    return factor(race["ratio"]) if race else "–"
+
+
+def hardest(result):
+    """Return the decided race of a scene, at the headline's error, with the smallest ratio; None without one."""
+    decided = [race for race in races.at(races.of(result)) if race["ratio"]]
+    return min(decided, key=lambda race: race["ratio"], default=None)
 
 
 def by_lesson(report):
     """Return the Markdown table of a stored report (the content of report.json): one line per lesson, dated.
 
-    The last column is the median of what `faster` says, and its range over the lesson's scenes.
+    The last but one column is the median of what `faster` says, with its interval, and its range over the scenes.
     """
-    run = report["run"]
+    run, level = report["run"], percent(HEADLINE)
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
              "✓ agrees with the truth · ≈ as predicted, by a law of its own · ✗ departs · ○ undecided.", "",
-             "| lesson | scenes | our methods | engines | stability | faster than the engines at equal error |",
-             "|---|---|---|---|---|---|"]
+             f"| lesson | scenes | our methods | engines | stability | engine's time over ours, to {level} error | "
+             "losses, ties, undecided |",
+             "|---|---|---|---|---|---|---|"]
     for lesson in dict.fromkeys(result["lesson"] for result in report["scenes"]):
         results = [result for result in report["scenes"] if result["lesson"] == lesson]
         findings = [f["holds"] for case in report["stability"] if case["lesson"] == lesson for f in case["findings"]]
-        ratios = [min(found) for result in results if (found := advantages(result))]
-        hold = f"{sum(findings)} of {len(findings)}" if findings else "–"
+        not_run = sum(len(case["not_run"]) for case in report["stability"] if case["lesson"] == lesson)
+        hold = f"{sum(findings)} of {len(findings)}{f', {not_run} not run' if not_run else ''}" if findings else "–"
         cells = (f"`{lesson}`", len(results), plain_signs(results, "ours"), plain_signs(results, "engines"), hold,
-                 spread(ratios))
+                 spread([race for result in results if (race := hardest(result))]), not_won(results))
         lines.append(f"| {' | '.join(map(str, cells))} |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, "", *said_of_all(report), *said_of_truths(report)]) + "\n"
 
 
-def advantages(result):
-    """Our advantages over each engine, as ratios of run times at equal error."""
-    return [a["ratio"] for a in words.races(result).values() if a["ratio"]]
+def said_of_truths(report):
+    """Yield a sentence about the truths that are an engine's own run, if there are any."""
+    if found := words.truths_by_engines(report["scenes"]):
+        where = "; ".join(f"`{one['scene']}`{' (' + one['cases'] + ')' if one['cases'] else ''}, {one['engine']}"
+                          for one in found)
+        yield f"The truth is an engine's own run, and that engine counts nowhere, in {where}."
+
+
+KEPT = ("date", "commit", "version", "engines", "compiler", "machine", "processor", "cores", "repeats")
+
+
+def in_short(report):
+    """Return what a quick report shows of a full run: when and on what machine, and how its races ended at each error.
+    """
+    return {**{key: report["run"].get(key) for key in KEPT}, "counts": races.counted(races.every(report["scenes"]))}
+
+
+def said_of_all(report):
+    """Yield sentences on all races of a report: every error by itself, and what the ratios are made of."""
+    every = races.every(report["scenes"])
+    counts = [count for count in races.counted(every) if count["races"]]
+    if not counts:
+        return
+    yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
+           "is what the intervals of both times allow. Medians of all races, with losses, ties and undecided ones:")
+    yield "; ".join(f"at {count['name']} {races.summary_ratio(count)}, {count['slower']}, {count['tie']}, "
+                    f"{count['undecided']} of {count['races']}" for count in counts) + "."
+    made = races.median_factors(every)
+    if made["order"] is not None:
+        yield (f"At {percent(HEADLINE)} a ratio is the product of the method's order (median "
+               f"{factor(made['order'])}) and the loop at the engine's own order ({factor(made['loop'])}); the calls "
+               f"from Python are {factor(made['calls'])} of the loop.{compiled(made)}")
+
+
+def compiled(made):
+    """Return the sentence on compilation; nothing where it was not measured."""
+    if made["cold"] is None:
+        return ""
+    return (f" Compilation is not in these times: it takes {rounded(made['cold'])} s, and {rounded(made['cached'])} s "
+            "from the cache.")
+
+
+def not_won(results):
+    """Return the numbers of losses, ties and undecided races of some scenes, at the headline's error."""
+    found = races.at(races.every(results))
+    if not found:
+        return "–"
+    count = races.outcomes(found)
+    return f"{count['slower']}, {count['tie']}, {count['undecided']} of {len(found)}"
 
 
 def plain_signs(results, kind):
     """Return how many curves of these results have each verdict, without colours: ✓ 8 ≈ 1."""
     verdicts = [Verdict(c["verdict"]) for result in results for case in result["cases"].values() for c in case[kind]]
-    count = Counter(SIGNS[v][0] for v in verdicts)
+    count = Counter(SIGNS[v][0] for v in verdicts if v in SIGNS)
     return " ".join(f"{sign} {count[sign]}" for sign, _ in dict.fromkeys(SIGNS.values()) if count[sign]) or "–"
 
 
-def spread(ratios):
-    """Median and range of ratios, such as 62× (2.1× to 440×)."""
-    if not ratios:
+def spread(decided):
+    """Return the median ratio of some races with its interval, and the range of the scenes: 62× (58 to 66); 2.1 to 440.
+    """
+    if not decided:
         return "–"
-    middle, low, high = (words.factor(r) for r in (median(ratios), min(ratios), max(ratios)))
-    return middle if len(ratios) == 1 else f"{middle} ({low} to {high})"
+    low, middle, high = (rounded(median(race[key] for race in decided)) for key in ("low", "ratio", "high"))
+    least, most = (rounded(of(race["ratio"] for race in decided)) for of in (min, max))
+    return f"{middle}× ({low} to {high})" + (f"; scenes {least} to {most}" if len(decided) > 1 else "")

@@ -4,18 +4,27 @@ import csv
 import io
 from urllib.parse import quote
 
-from . import words
-from .answers import departures, faster
+from . import choice, races, words
+from .answers import departures
 
 RUNS = ("case", "method or engine", "role", "steps", "dt [s]", "relative error [-]", "limit [-]",
         "error from its own law [-]", "order", "expected order", "verdict", "failure")
-TIMES = ("method or engine", "speed", "steps", "relative error [-]", "median time [s]", "shortest [s]", "longest [s]")
+TIMES = ("method or engine", "speed", "steps", "relative error [-]", "median time [s]", "lower end of its interval [s]",
+         "upper end [s]")
 SCENES = ("scene", "lesson", "side", "verdict", "comparisons")
-RACES = ("scene", "lesson", "engine", "relative error [-]", "engine's time [s]", "our method", "our time [s]",
-         "ratio [-]", "lowest ratio [-]", "highest ratio [-]", "outcome")
+RACES = ("scene", "lesson", "engine", "race to", "relative error [-]", "outcome", "why there is no ratio",
+         "engine's settings", "engine's time [s]", "our method", "our speed", "our time [s]",
+         "ratio [-]", "lowest ratio [-]", "highest ratio [-]", "engine's order",
+         "order: our method of that order over our quickest [-]", "loop: the engine over our method of its order [-]",
+         "calls: the engine over itself without calls from Python [-]", "compilation, cold [s]",
+         "compilation, from the cache [s]", "motion until compilation has paid [s]",
+         "engine's coarsest run", "our coarsest run")
+CHOICE = ("scene", "lesson", "speed", "cheapest at 1 %", "its time [s]", "cheapest at 0.01 %", "its time [s]",
+          "safest at large steps", "its least number of steps, times 1 + error there [-]")
 PARTS = ("scene", "engine", "part", "steps", "time with it over time without it [-]", "relative change without it [-]")
 DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "scenes")
-FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation")
+FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation",
+            "the tolerance was measured on")
 
 
 def text(header, rows):
@@ -35,8 +44,8 @@ def address(header, rows):
 def names(results, stability):
     """Return the files that `texts` gives."""
     drawn = [case for case in stability if case["picture"]]
-    front = {"scenes.csv": True, "races.csv": faster(results)["races"], "departures.csv": departures(results)["lines"],
-             "engine-parts.csv": words.engine_parts(results)}
+    front = {"scenes.csv": True, "races.csv": races.every(results), "choice.csv": choice.scenes(results),
+             "departures.csv": departures(results)["lines"], "engine-parts.csv": words.engine_parts(results)}
     return {*(name for name, rows in front.items() if rows), *(f"{r['scene']}-runs.csv" for r in results),
             *(f"{r['scene']}-times.csv" for r in results if r["refinement"]), *(["stability.csv"] if stability else []),
             *(f"stability-{case['lesson']}-{case['slug']}.csv" for case in drawn)}
@@ -46,19 +55,20 @@ def texts(results, stability):
     """Return {file: CSV} of all plots and of the long tables; none for a table that is empty."""
     products = words.products(results)
     rows = [(r, words.row(r, products)) for r in results]
-    races, lines = faster(results)["races"], departures(results)["lines"]
+    lines = departures(results)["lines"]
     found = {
         "scenes.csv": text(SCENES, [(r["scene"], r["lesson"], side, verdict, count) for r, row in rows
                                     for side, found in (("ours", row["ours"]), *row["engines"].items())
                                     for verdict, _, count in found]),
     }
-    if races:
-        found["races.csv"] = text(RACES, [
-            (a["scene"], a["lesson"], a["engine"], a["error"], a["seconds"], a["method"], a["ours"], a["ratio"],
-             *(a["range"] or (None, None)), a["outcome"]) for a in races])
+    if races.every(results):
+        found["races.csv"] = text(RACES, map(race_row, races.every(results)))
+    if choice.scenes(results):
+        found["choice.csv"] = text(CHOICE, choice.scenes(results))
     if lines:
         found["departures.csv"] = text(DEPARTURES, [
-            (d["engine"], d["kind"], d["low"], d["high"], d["reason"], " ".join(d["places"])) for d in lines])
+            (d["engine"], d["kind"], d["low"], d["high"], d["reason"], d["whose"], " ".join(d["places"]))
+            for d in lines])
     if words.engine_parts(results):
         found["engine-parts.csv"] = text(PARTS, [
             (r["scene"], row["engine"], row["part"], row["steps"], row["cost"], row["change"])
@@ -72,11 +82,28 @@ def texts(results, stability):
     if stability:
         found["stability.csv"] = text(FINDINGS, [
             (c["lesson"], c["slug"], f["claim"], f["quantity"], f["predicted"], f["measured"], f["tolerance"],
-             "yes" if f["holds"] else "no", f["observation"]) for c in stability for f in c["findings"]])
+             yes(f["holds"]), f["observation"], f["tolerance_from"]) for c in stability for f in c["findings"]]
+            + [(c["lesson"], c["slug"], one["claim"], one["quantity"], None, None, None, "not run", one["why"], None)
+               for c in stability for one in c["not_run"]])
     for case in stability:
         if case["picture"]:
             found[f"stability-{case['lesson']}-{case['slug']}.csv"] = of_picture(case["picture"])
     return found
+
+
+def race_row(race):
+    """Return one race as a line of RACES."""
+    engine, ours = (race[side] or {} for side in ("engine", "ours"))
+    return (race["scene"], race["lesson"], race["product"], races.level_name(race["level"]), race["error"],
+            race["outcome"], race["why"], engine.get("label"), engine.get("seconds"), ours.get("label"),
+            ours.get("speed"), ours.get("seconds"), race["ratio"], race["low"], race["high"], race["order_of_engine"],
+            race["order"], race["loop"], race["calls"], race["cold"], race["cached"], race["paid"],
+            yes(engine.get("coarsest")), yes(ours.get("coarsest")))
+
+
+def yes(answer):
+    """Return yes or no; nothing where there is no answer."""
+    return None if answer is None else "yes" if answer else "no"
 
 
 def runs(result):

@@ -1,9 +1,8 @@
-"""What the numbers say, in words."""
+"""Sentences about the numbers of a report."""
 
 import re
 from collections import Counter
 from itertools import groupby
-from math import floor, log10
 
 import numpy as np
 from markupsafe import Markup, escape
@@ -13,97 +12,29 @@ from ..measure.accuracy import relative
 from ..measure.timing import SAME
 from ..products import PRODUCTS
 from ..scene import EXACT
+from . import races
+from .numbers import engine_name, number, percent, percents, rounded
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
-         Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open"}             # classes of the style sheet
+         Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open", Verdict.UNFINISHED: "open",
+         Verdict.REFERENCE: "reference"}                                       # classes of the style sheet
 SIGNS = {"agrees": "✓", "predicted": "≈", "departs": "✗", "open": "○"}         # as the style sheet draws them
 LEGEND = {                   # every verdict has one name and one sign
-    Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured.",
+    Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured, "
+                    "except where the page calls it measured.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
     Verdict.UNDECIDED: "No theory says how far it may be off, or every step was too coarse, or the engine is missing "
                        "here. The error is shown and not judged.",
     Verdict.NOT_ATTEMPTED: "The exercise behind this method has no answer yet.",
+    Verdict.UNFINISHED: "The method does not come to its end in this case, as the scene says and a test confirms.",
+    Verdict.REFERENCE: "The truth of this case is a run of the engine itself. It is not judged and counts nowhere.",
 }
 ARROWS = {"ω": "angular velocity ω", "L": "angular momentum L", "v": "velocity v of the centre", "τ": "torque τ",
           "Rω": "speed Rω of the rim"}                                        # what the arrows of a film in 3D mean
-TIE = 2.0                    # a ratio of times below this, and above its inverse, is a tie [-]
-NEARLY = 1.05                # times an engine's smallest error: a setting that comes as near may run for it [-]
 BUSY = 0.25                  # cores that other programs use, from which times are doubtful [-]
 BUSY_LOAD = 1.5              # the same where only the load of the machine is known: the run itself counts as 1 [-]
-
-
-# ---------------------------------------------------------------------------------------------- numbers
-
-def rounded(x, digits=2):
-    """Return a number with so many digits that count, written out: 270, 3.8, 0.042."""
-    x = float(f"{x:.{digits}g}")
-    decimals = max(0, digits - 1 - floor(log10(abs(x)))) if x else 0
-    return f"{x:,.{decimals}f}"
-
-
-def number(x, digits=3):
-    """1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
-    if x is None:
-        return "–"
-    if x < 0:
-        return f"−{number(-x, digits)}"
-    if x == 0 or 1e-2 <= x < 1e4:
-        return f"{x:.{digits}g}"
-    mantissa, exponent = f"{x:.{digits - 1}e}".split("e")
-    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{mantissa} · 10{raised}" if float(mantissa) != 1.0 else f"10{raised}"
-
-
-def known(x, tolerance):
-    """Return a number with as many decimals as its tolerance leaves: 2.82843 where the tolerance is 0.00003."""
-    if x is not None and not tolerance and x == round(x) and abs(x) < 1e9:
-        return f"{x:,.0f}"                                           # a count
-    if x is None or not tolerance or x == 0:
-        return number(x, 7)
-    decimals = max(0, -floor(log10(tolerance)))
-    return f"{x:.{decimals}f}" if abs(x) < 1e5 and decimals <= 15 and abs(x) > tolerance else number(x, 2)
-
-
-def seconds(t):
-    """Return a duration with its unit, to two digits: a machine repeats no time more exactly."""
-    if t is None:
-        return "–"
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if float(f"{t:.2g}") >= size:
-            return f"{rounded(t / size)} {unit}"
-    return f"{rounded(t / 1e-9)} ns"
-
-
-def percent(x):
-    if x is None:
-        return "–"
-    if x >= 0.995:
-        return f"{100 * x:.0f} %"
-    return f"{100 * x:.2g} %" if x >= 1e-6 or x == 0.0 else f"{number(100 * x, 2)} %"
-
-
-def percents(low, high):
-    """Return a range of relative errors."""
-    return percent(high) if percent(low) == percent(high) else f"{percent(low).removesuffix(' %')} to {percent(high)}"
-
-
-def factor(x):
-    """Return a ratio of times."""
-    return "–" if x is None else f"{rounded(x)}×"
-
-
-def ratio(race):
-    """Return a ratio of times with its range, or why there is none.
-
-    It has two digits where the range is narrow or the ratio near 1, else one.
-    """
-    if not race["ratio"]:
-        return race["why"]
-    low, high = race["range"]
-    digits = 2 if high < 1.5 * low or race["ratio"] < TIE else 1
-    return f"{rounded(race['ratio'], digits)}× ({rounded(low)} to {rounded(high)})"
 
 
 def order(curve):
@@ -131,10 +62,11 @@ def judge(curve):
 
 
 def verdicts(curves):
-    """[(text, kind, count)] of several curves at once."""
+    """Return [(text, kind, count)] of several curves at once."""
     count = Counter(Verdict(c["verdict"]) for c in curves)
     return [(one.value, KINDS[one], count[one]) for one in
-            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED)
+            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED,
+             Verdict.UNFINISHED, Verdict.REFERENCE)
             if count[one]]
 
 
@@ -145,18 +77,39 @@ def verdict(curves):
 
 def named(curve):
     """Return a curve's name inside a sentence: pybullet (default)."""
-    product, _, variant = curve["label"].partition(", ") if "product" in curve else (curve["label"], "", "")
-    return f"{product} ({variant})" if variant else product
+    return engine_name(curve["product"], curve["variant"]) if "product" in curve else curve["label"]
+
+
+def measured_limits(results, stability):
+    """[(place, what it was measured on)] of all limits and tolerances that no theory gives, each once."""
+    limits = [(f"{r['scene']}: {c['label']}", c["measured"]) for r in results for one in r["cases"].values()
+              for c in one["ours"] + one["engines"] if c["measured"]]
+    tolerances = [(f"{case['lesson']}/{case['slug']}: {f['quantity']}", f["tolerance_from"]) for case in stability
+                  for f in case["findings"] if f["tolerance_from"]]
+    return list(dict.fromkeys([*limits, *tolerances]))
+
+
+def truths_by_engines(results):
+    """[{scene, title, engine, cases}] of the scenes in which the truth is an engine's own run; cases: "" for all."""
+    found = []
+    for r in results:
+        by = {}
+        for name, one in r["cases"].items():
+            for engine in dict.fromkeys(c["product"] for c in one["engines"] if c["reference"]):
+                by.setdefault(engine, []).append(name)
+        found += [{"scene": r["scene"], "title": r["title"], "engine": engine,
+                   "cases": "" if len(cases) == len(r["cases"]) else ", ".join(cases)} for engine, cases in by.items()]
+    return found
 
 
 def own_errors(curve):
-    """[(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
+    """Return [(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
     own = curve.get("own_law")
     return [(row, relative_to(row["observed"], own)) for row in curve["rows"] if own and row["observed"]]
 
 
 def relative_to(observed, law):
-    """|observed − law| / |law| of two lists."""
+    """Return |observed − law| / |law| of two lists."""
     return relative(np.array(observed), np.array(law))
 
 
@@ -165,83 +118,7 @@ def finest(curve):
     return curve["rows"][-1] if curve["rows"] else None
 
 
-# ---------------------------------------------------------------------------------------------- races
-
-def races(result):
-    """Return {product: the race to its smallest error} of a scene.  To be as wrong as another law is no race.
-
-    Of an engine's settings that reach that error, or nearly, the fastest one runs.
-    """
-    first = next(iter(result["cases"].values()))
-    own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
-    entered = [a for a in result["times"]["advantage"] if a["engine"] not in own_laws]
-    entered.sort(key=lambda a: -a["error"])
-    best = {}
-    for product in dict.fromkeys(a["product"] for a in entered):
-        settings = [a for a in entered if a["product"] == product]
-        near = [a for a in settings if a["error"] <= NEARLY * settings[-1]["error"]]
-        best[product] = race(min(near, key=lambda a: a["seconds"]), result)
-    return best
-
-
-def race(advantage, result):
-    """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
-
-    To have no run that is as accurate as the engine's is a loss.
-    """
-    a = advantage
-    if why := why_open(a, result):
-        return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
-    if not a["ratio"]:
-        return {**a, "range": None, "outcome": "slower", "why": "none of our runs is that accurate"}
-    outcome = "a tie" if tied(a, result) else "faster" if a["ratio"] > 1.0 else "slower"
-    return {**a, "range": range_of(a, result), "outcome": outcome, "why": ""}
-
-
-def why_open(a, result):
-    """Why a race is not decided; nothing where it is.
-
-    Of runs that scatter, because no theory bounds their errors, the most accurate one was lucky.  The sweeps of a quick
-    validation end early, and it leaves most compiling to a full one.
-    """
-    theirs = next(c for c in next(iter(result["cases"].values()))["engines"] if c["label"] == a["engine"])
-    if Verdict(theirs["verdict"]) is Verdict.UNDECIDED:
-        return "no theory bounds its errors, and the smallest may be luck"
-    if not a["ratio"]:
-        reach = accurate_enough(a, result)
-        return (f"{reach[0]} reaches it, in a run that is too long to be timed here" if reach else
-                "none of the runs of a quick validation is that accurate" if result["quick"] else "")
-    compiled = any(r["label"] == a["method"] and r["speed"] == "compiled" for r in result["times"]["rows"])
-    if not compiled and (tied(a, result) or a["ratio"] < 1.0):
-        return f"“{a['method']}” reaches it in {seconds(a['ours'])}, but was timed in plain Python only"
-    return ""
-
-
-def range_of(a, result):
-    """Return the lowest and the highest ratio that the repeats allow.
-
-    Our time to that error was interpolated between runs: its spread is that of the run beside it.
-    """
-    rows = result["times"]["rows"]
-    theirs = next(r for r in rows if r["label"] == a["engine"] and r["error"] == a["error"] and r["speed"] == "engine")
-    ours = [r for r in rows if (r["label"], r["speed"]) == (a["method"], a["speed"])]
-    beside = min(ours, key=lambda r: abs(r["seconds"] - a["ours"]))
-    return (theirs["low"] / (a["ours"] * beside["high"] / beside["seconds"]),
-            theirs["high"] / (a["ours"] * beside["low"] / beside["seconds"]))
-
-
-def tied(a, result):
-    """Return whether a ratio is within a factor of two, or within the spread of its times."""
-    low, high = range_of(a, result)
-    return 1.0 / TIE < a["ratio"] < TIE or low < 1.0 < high
-
-
-def accurate_enough(advantage, result):
-    """Our methods with a run, timed or not, whose error is not larger than the engine's."""
-    ours = next(iter(result["cases"].values()))["ours"]
-    return [c["label"] for c in ours if any(r["error"] is not None and r["error"] <= advantage["error"]
-                                            for r in c["rows"])]
-
+# ---------------------------------------------------------------------------------------------- a busy machine
 
 def busy(results):
     """Return (cores that other programs used, at most, while times were taken; True where that is only a load)."""
@@ -253,7 +130,7 @@ def busy(results):
 
 
 def busy_warning(results, cores):
-    """One sentence where times are doubtful, else nothing."""
+    """Return one sentence if times are doubtful, else nothing."""
     used, is_load = busy(results)
     if is_load and used >= BUSY_LOAD:
         return (f"The machine was busy while times were taken: its load was up to {used:.1f}, and this run needs 1. "
@@ -273,7 +150,7 @@ def products(results):
 
 
 def row(result, products):
-    """One scene on the front page, with these engines."""
+    """Return one scene on the front page, with these engines."""
     first = next(iter(result["cases"].values()))
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
@@ -284,14 +161,17 @@ def row(result, products):
         "engines": {name: verdicts(curves) for name, curves in engines.items()},
         "recorded": [name for name, curves in engines.items() if curves and not curves[0]["source"].startswith("live")],
         "best": best_order(first["ours"]),
-        "races": races(result),
+        "races": result["times"]["races"],
         "kinds": sorted({kind for _, kind, _ in verdicts([*ours, *(c for one in engines.values() for c in one)])}),
         "products": [name for name, curves in engines.items() if curves],
     }
 
 
 def left_out(results):
-    """Scenes of the lessons before the simulator, and what the whole loop costs there: [{scene, title, lesson, …}]."""
+    """Return scenes of the lessons before the simulator, and the cost of the whole loop there.
+
+    Each is {scene, title, lesson, …}.
+    """
     return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
              **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
             for r in results if r["lesson"] not in ("simulator", "kinematics")]
@@ -346,18 +226,8 @@ def best_order(curves):
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 
-def seen_in_times(result):
-    """One sentence: what the plot of errors against run times shows."""
-    decided = [one for one in races(result).values() if one["ratio"]]
-    if not decided:
-        return ""
-    one = decided[-1]
-    return (f"At an error of {percent(one['error'])}, which {one['engine'].replace(', ', ' with ')} reaches in "
-            f"{seconds(one['seconds'])}, our “{one['method']}” needs {seconds(one['ours'])}.")
-
-
 def seen_in_steps(result):
-    """One sentence: what the plot of errors against steps shows."""
+    """Return one sentence: the result of the plot of errors against steps."""
     best = best_order(next(iter(result["cases"].values()))["ours"])
     if best is None:
         return ""
@@ -379,7 +249,7 @@ SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,4})_([A-Za-zα-ω]{1,4})\b")
 
 
 def flowing(text):
-    """[(kind, content)] of a docstring, without the line breaks of its source.
+    """Return [(kind, content)] of a docstring, without the line breaks of its source.
 
     text: a paragraph;    formula: indented lines, as they are;    terms: [(term, text)] of a list of definitions.
     """
@@ -399,7 +269,7 @@ def flowing(text):
 
 
 def paragraphs(lines):
-    """Text and formulas: indented lines are a formula at the start or after a colon, else they go on with the text."""
+    """Return text and formulas: indented lines are a formula at the start or after a colon, else they are text."""
     found = []
     for deep, piece in runs_of(lines):
         if deep and (not found or found[-1][1].endswith(":")):
@@ -416,12 +286,12 @@ def defines(line):
 
 
 def runs_of(lines):
-    """[(indented, lines)] of neighbours that are all indented or all not."""
+    """Return [(indented, lines)] of neighbours that are all indented or all not."""
     return [(formula, list(piece)) for formula, piece in groupby(lines, key=indented)]
 
 
 def definitions(lines):
-    """[(term, text)]: an indented line goes on with the text before."""
+    """Return [(term, text)]: an indented line goes on with the text before."""
     found = []
     for line in lines:
         if defines(line):
@@ -443,14 +313,14 @@ def plain_words(text):
 
 
 def subscripts(text):
-    """v_n with a lowered n."""
+    """Return v_n with a lowered n."""
     return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 # ---------------------------------------------------------------------------------------------- findings
 
 def headline(result):
-    """One sentence: what became of this scene."""
+    """Return one sentence: the result of this scene."""
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
     engines = [c for one in cases for c in one["engines"]]
@@ -461,6 +331,8 @@ def headline(result):
     if count[Verdict.NOT_ATTEMPTED]:
         return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
     said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
+    if count[Verdict.UNFINISHED]:
+        said += f"; {count[Verdict.UNFINISHED]} of {len(ours)} do not arrive"
     predicted = {named(c): None for c in ours + engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
     if predicted:
         rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
@@ -476,7 +348,7 @@ def findings(result):
 
 def leading(result):
     """The findings without what was left out: departures first, then orders, times and what an omission saves."""
-    return [*_departures(result), *_ours(result), *_engines_of(result), *_times(result), *_ablations(result),
+    return [*_departures(result), *_ours(result), *_engines_of(result), *races.sentences(result), *_ablations(result),
             *_parity(result)]
 
 
@@ -490,13 +362,13 @@ def _departures(result):
     for n, c in every:
         if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
             label = named(c) if "product" in c else named(c)[:1].upper() + named(c)[1:]
-            groups.setdefault((label, c["departure_reason"]), []).append((n, c))
-    for (label, reason), found in groups.items():
+            groups.setdefault((label, c["departure_reason"], c["departure_whose"]), []).append((n, c))
+    for (label, reason, whose), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
         orders = [c["order"] for _, c in found if c["order"]]
         shown = f"converges to that law, with order {orders[0]:.2f}" if orders else "agrees with that law"
-        yield (f"{label} departs from the truth by {size}{several}, because {reason}. "
+        yield (f"{label} departs from the truth by {size}{several}, because {reason} ({whose}). "
                f"The scene predicts this; the run {shown}.")
 
 
@@ -537,23 +409,6 @@ def _engines(case):
             known = c["order"] is not None and c["expected"]
             shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if known else ""
             yield f"{named(c)} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
-
-
-def _times(result):
-    """Yield the races; to be as wrong as another law is none."""
-    first = next(iter(result["cases"].values()))
-    own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
-    for a in result["times"]["advantage"]:
-        if a["engine"] in own_laws:
-            continue
-        one = race(a, result)
-        engine = named({"label": a["engine"], "product": a["product"]})
-        reached = f"{engine} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}."
-        if not one["ratio"]:
-            yield f"{reached} No time of ours can be set beside it: {one['why']}."
-        else:
-            ours = f"Our “{a['method']}”, {a['speed']}, reaches it in {seconds(a['ours'])}"
-            yield f"{reached} {ours}: {one['outcome']}, {ratio(one)}."
 
 
 def _ablations(result):

@@ -45,7 +45,7 @@ class Cluster(Affinity):
         return f"{len(self.processors)} workers of a Dask cluster ({', '.join(sorted(set(self.processors)))})"
 
     def parcel(self, call=None):
-        """Pickle all that a worker needs.  Without a call, it says its processor if it may measure."""
+        """Pickle everything that a worker needs.  Without a call, it reports its processor if it may measure."""
         return pickle.dumps((self.makeup, self.of, call))
 
     def fit(self):
@@ -124,7 +124,7 @@ class Cluster(Affinity):
 
 @contextmanager
 def cluster(address, of):
-    """A Cluster for the length of the block.  Its measuring processes are killed when it ends."""
+    """Yield a Cluster for the duration of the block.  Its measuring processes are killed when it ends."""
     client = connected(address)
     try:
         found = Cluster(client, address, of)
@@ -140,7 +140,7 @@ def cluster(address, of):
 
 
 def taken_back(busy, there):
-    """Cancel the calls of workers that are gone, for which Dask would wait; return them as [(key, call)]."""
+    """Cancel the calls of lost workers, for which Dask would wait; return them as [(key, call)]."""
     lost = [future for future, (worker, _, _) in busy.items() if there and worker not in there]
     calls = [busy.pop(future)[1:] for future in lost]
     for future in lost:

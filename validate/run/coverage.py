@@ -1,4 +1,4 @@
-"""Which exercise is run by which scene or stability case, read from their source.
+"""Coverage of the exercises by scenes and stability cases, read from their source.
 
 A scene runs its methods and what it names of a lesson; a case runs what it names of the lesson that it is given.
 Both run all functions that these call in turn.  The table says where a wrong answer can show, and that no exercise is
@@ -28,12 +28,12 @@ def trees():
 
 @cache
 def parts(piece):
-    """All names, attributes and constants in a piece of source."""
+    """Return all names, attributes and constants in a piece of source."""
     return [node for node in ast.walk(piece) if isinstance(node, (ast.Name, ast.Attribute, ast.Constant))]
 
 
 def imported(tree, home=""):
-    """{name: (module below solutions, its name there, or None for a module)} of what a file imports from solutions."""
+    """Return {name: (module below solutions, its name there, or None for a module)} of the imports of a file."""
     found = {}
     for node in ast.walk(tree):
         if not isinstance(node, ast.ImportFrom):
@@ -86,7 +86,7 @@ def imports_of(module):
 
 
 def reached(roots):
-    """All functions that these call, directly or not, themselves included."""
+    """Return all functions that these call, directly or indirectly, including themselves."""
     found, waiting = set(), [place for root in roots if (place := defined(root))]
     while waiting:
         place = waiting.pop()
@@ -97,7 +97,7 @@ def reached(roots):
 
 
 def named(nodes, there, lesson):
-    """What pieces of source name: imported names, attributes of a lesson, and names of its functions in quotes."""
+    """Return the names in pieces of source: imported names, attributes of a lesson, and its functions in quotes."""
     for node in nodes:
         for one in parts(node):
             if isinstance(one, ast.Name) and one.id in there and there[one.id][1]:
@@ -153,7 +153,7 @@ def methods_in(nodes):
 
 
 def exercises(lesson):
-    """[(number, function)] of the exercises that wait in lessons/, in the order of the text."""
+    """Return [(number, function)] of the exercises that wait in lessons/, in the order of the text."""
     text = (modules.ROOT / "lessons" / f"{lesson}.py").read_text(encoding="utf-8")
     return re.findall(r'raise NotImplementedError\("Exercise ([\d.]+): (\w+)"\)', text)
 
@@ -173,7 +173,10 @@ def places():
 
 @cache
 def table():
-    """{exercise: {"lesson", "function", "places"}} in the order of the course; places: scenes and stability cases."""
+    """Return {exercise: {"lesson", "function", "places"}} in the order of the course.
+
+    places: scenes and stability cases.
+    """
     where = places()
     return {number: {"lesson": lesson, "function": function, "places": where.get((lesson, function), [])}
             for lesson in modules.lesson_names() for number, function in exercises(lesson)}

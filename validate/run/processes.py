@@ -115,7 +115,7 @@ class Affinity:
         self.seen = {}                                               # {process: the kinds of calls that it has had}
 
     def costs(self, process, kind):
-        """Whether a process would compile much for this kind of call, and whether another one has done so already."""
+        """Return whether a process would compile much for this kind of call, and whether another one has done so."""
         return kind not in self.seen.get(process, ()), any(kind in seen for seen in self.seen.values())
 
 
@@ -154,7 +154,7 @@ class Workers(Affinity):
 
 @contextmanager
 def workers(count):
-    """Workers for the length of the block.  They are killed when an error or a signal ends the block."""
+    """Yield workers for the duration of the block.  They are killed when an error or a signal ends the block."""
     context = get_context("spawn")
     processes, pipes = [], []
     try:

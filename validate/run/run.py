@@ -1,4 +1,4 @@
-"""A run: measure what is not measured yet, write the report, and say how it went."""
+"""A run: it measures what is not measured yet, writes the report, and prints a summary."""
 
 import os
 import platform
@@ -15,7 +15,7 @@ from ..products import PRODUCTS
 from ..stability.examine import stability_cases
 from ..subject import modules
 from . import coverage
-from .store import code_digest, lessons_of, store_for
+from .store import FORMAT, code_digest, full_run, lessons_of, store_for
 
 
 def run(names, plan, pool, out, console, measuring=None):
@@ -42,7 +42,7 @@ def run(names, plan, pool, out, console, measuring=None):
 
 
 def measure_errors(store, names, plan, pool, bars):
-    """Errors of every scene and the stability cases, several at a time: compiling is most of it.
+    """Compute the errors of every scene and the stability cases, several at a time: most of it is compilation.
 
     A process stays with a lesson as long as it can.  Two processes at the same lesson would compile the same twice.
     """
@@ -90,6 +90,7 @@ def about(plan, out=None, measuring=None):
             f"{engine} {'left out' if engine.optional else 'recorded'}" for engine in PRODUCTS]
     compiler = f"numba {modules.numba_version()}" if modules.can_compile() else "numba not installed: plain speed only"
     return {
+        "format": FORMAT, "full_run": full_run(),
         "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,
         "speeds": list(plan.speeds), "repeats": plan.repeats(), "date": date.today().isoformat(),
         "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",

@@ -11,6 +11,8 @@ from solutions.checks import BadInput
 from ..products import PRODUCTS
 from ..subject import modules
 
+FORMAT = 2                   # of stored results: raise it when a report of before cannot be read any more
+FULL_RUN = modules.ROOT / "validate" / "report" / "full_run.json"        # by `validate summary --keep`
 SUBSET = "subset"            # folder, inside the report's, for scenes that cannot join that report
 
 
@@ -51,7 +53,7 @@ def read_whole(path, kind, remedy):
 
 
 def code_digest(of):
-    """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
+    """Return a fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
     return modules.fingerprint(sources(of), f"{sys.version} {installed_versions()}")
 
 
@@ -159,12 +161,25 @@ class Store:
 
 
 def stored_report(folder):
-    """Return the content of a report's report.json.  Raises BadInput for a folder that is none."""
+    """Return the content of a report's report.json, of any version.  Raises BadInput for a folder that is none."""
     try:
         report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
         return {part: report[part] for part in ("run", "scenes", "stability")}
     except (OSError, ValueError, KeyError, TypeError):
         raise BadInput(f"folder {str(folder)!r}", "not a report", "name the folder that `validate` wrote") from None
+
+
+def report_of_this_version(folder):
+    """Return the same.  Raises BadInput for a report whose results are stored in another form than today's."""
+    report = stored_report(folder)
+    if not isinstance(report["run"], dict) or report["run"].get("format") != FORMAT:
+        raise BadInput(f"report {str(folder)!r}", "of another version of the workbook", "make it again")
+    return report
+
+
+def full_run():
+    """Return what is kept of the last full run, which a quick report shows beside its own; None where nothing is."""
+    return read_whole(FULL_RUN, dict, "remove it, or give: validate summary --keep") if FULL_RUN.is_file() else None
 
 
 def writable(out):

@@ -1,1 +1,1 @@
-"""One file a scene: parameters, truth, our run, the engines' runs, the tolerance, and what it leaves out."""
+"""Scenes, one file for each: parameters, reference solution, runners with their limits, and what the scene omits."""

@@ -16,11 +16,11 @@ def check_positives(p, *names):
 
 
 def measured(*parts):
-    """Return what a scene leaves out and the whole loop of lesson 10 puts in: the field `ablations`."""
+    """Return the field `ablations`: each part that a scene omits and the whole loop of lesson 10 includes."""
     return dict.fromkeys(parts, "the whole loop of lesson 10 has it, and is measured")
 
 
-# ---------------------------------------------------------------------------------------------- what is observed
+# ---------------------------------------------------------------------------------------------- observed quantities
 
 def coordinates(d):
     """Return observe(state, p) of a point: the first d coordinates of its position."""
@@ -28,7 +28,7 @@ def coordinates(d):
 
 
 def sole_array(state, p):
-    """Return the array that is all of a state."""
+    """Return the array that is the whole state."""
     return state[0]
 
 
@@ -41,17 +41,17 @@ ONE_LINK = constantly([(0, 1)])          # of a picture of two points
 
 
 def one_reading(read, close=lambda: None):
-    """Return the EngineRun of what takes no steps: one long reading."""
+    """Return the EngineRun of a computation without steps: one long reading."""
     return EngineRun(lambda: None, read, close)
 
 
 # ---------------------------------------------------------------------------------------------- limits
 
 def floor_of(limits, more=0.0):
-    """Return (p, dt) → the limit by order of a run with nothing but round-off, and this uncertainty of the truth."""
+    """Return (p, dt) → the limit by order of a run that has only round-off and this uncertainty of the truth."""
     return lambda p, dt: limits(p, dt)[EXACT] + more
 
 
 def round_off(T):
-    """Return (p, dt) → the relative error of a run of the time T with nothing but round-off."""
+    """Return (p, dt) → the relative error of a run over the time T that has only round-off."""
     return lambda p, dt: by_order(0.0, T, dt)[EXACT]

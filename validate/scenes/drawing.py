@@ -6,7 +6,7 @@ from ..reference.orientation import quaternion
 
 
 def box(half):
-    """A box of these half sizes [m] along its own axes."""
+    """Make a box of these half sizes [m] along its own axes."""
     return {"kind": "box", "size": [float(a) for a in half]}
 
 
@@ -15,22 +15,22 @@ def sphere(r):
 
 
 def cylinder(r, length):
-    """A cylinder along its own z."""
+    """Make a cylinder along its own z."""
     return {"kind": "cylinder", "r": float(r), "length": float(length)}
 
 
 def capsule(r, length):
-    """A capsule along its own z; length between the centres of its two half spheres."""
+    """Make a capsule along its own z; length: distance between the centres of its two half spheres."""
     return {"kind": "capsule", "r": float(r), "length": float(length)}
 
 
 def cone(r, length):
-    """A cone along its own z, its tip in the origin: a top on its point."""
+    """Make a cone along its own z with its tip in the origin: a top on its point."""
     return {"kind": "cone", "r": float(r), "length": float(length)}
 
 
 def mesh(vertices, triangles):
-    """A mesh of vertices (n, 3) [m] and triangles (m, 3) of their numbers."""
+    """Make a mesh of vertices (n, 3) [m] and triangles (m, 3) of their numbers."""
     return {
         "kind": "mesh",
         "vertices": np.round(np.asarray(vertices, dtype=float), 6).tolist(),
@@ -39,7 +39,7 @@ def mesh(vertices, triangles):
 
 
 def seen(tips):
-    """Return drawing coordinates (n, 2) of points in space: y to the right, z up, and x oblique towards the reader."""
+    """Return drawing coordinates (n, 2) of points in space: y right, z up, and x obliquely towards the reader."""
     return np.asarray(tips) @ np.array([[-0.4, -0.3], [1.0, 0.0], [0.0, 1.0]])
 
 
@@ -54,7 +54,7 @@ def axes_links(p):
 
 
 def outlines(corners, count=1, first=0):
-    """Return the links of so many closed lines of so many corners each; first: number of the first point."""
+    """Return the links of this many closed lines with this many corners each; first: number of the first point."""
     starts = range(first, first + count * corners, corners)
     return [(start + k, start + (k + 1) % corners) for start in starts for k in range(corners)]
 
@@ -84,15 +84,15 @@ def pose(x, R):
 
 
 def turned_in_place(R, p):
-    """Return the poses of one body with the rotation R whose centre stays in the origin."""
+    """Return the poses of one body that has the rotation R and keeps its centre in the origin."""
     return [pose(np.zeros(3), np.reshape(R, (3, 3)))]
 
 
 def omega_and_L(R, p, reach):
     """Return the arrows of a free body with p.moments() and p.omega() that started at R = 1.
 
-    L = I ω(0) is constant and drawn reach [m] long.  ω has the scale at which its tip stays in the plane normal to
-    L at L's tip: ω · L = 2E is kept, too.
+    L = I ω(0) is constant and drawn reach [m] long.  ω is scaled so that its tip stays in the plane normal to L at
+    L's tip, because ω · L = 2E is conserved, too.
     """
     R, I = np.reshape(R, (3, 3)), p.moments()
     L, still = I * p.omega(), np.zeros(3)

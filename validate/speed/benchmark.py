@@ -21,7 +21,7 @@ REPEATS = 9
 
 
 def net(n_springs, seed=1):
-    """Return a square net, slightly disturbed, with about so many structural springs: x, v, mesh."""
+    """Return a square net, slightly disturbed, with about this many structural springs: x, v, mesh."""
     side = int(np.sqrt(n_springs / 2)) + 1
     grid = np.stack(np.meshgrid(np.arange(side), -np.arange(side), indexing="ij"), axis=-1).reshape(-1, 2) * 0.1
     x = grid + 1e-3 * np.random.default_rng(seed).normal(size=grid.shape)
@@ -76,7 +76,7 @@ def step_times(contenders):
 
 
 def compiled_run(n_springs, steps):
-    """Return a function that takes so many compiled symplectic Euler steps of a net, already compiled."""
+    """Return a function that takes this many compiled symplectic Euler steps of a net, already compiled."""
     world = modules.module_set(compiled=True)
     step = world.lesson("integrators").symplectic_euler_step
     acceleration = world.lesson("springs").spring_network_acceleration

@@ -1,4 +1,4 @@
-"""Piles of lesson 9 against engines, as ratios measured in one run: `validate piles [KIND …]`.
+"""Piles of lesson 9 compared with engines, as ratios measured in one run: `validate piles [KIND …]`.
 
 Kinds: discs, boxes (in the plane, against pymunk), spheres, bricks (in space, against pybullet).  Both run the same
 bodies from the same settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping.  Times are CPU times of
@@ -66,14 +66,14 @@ def overlaps(lesson, kind, pile, x, q):
 
 
 def cpu_time(work):
-    """Milliseconds per step of one block."""
+    """Return milliseconds per step of one block."""
     began = time.thread_time()
     work.run(BLOCK)
     return 1e3 * (time.thread_time() - began) / BLOCK
 
 
 def compare(lesson, name, n, rounds):
-    """Rows (label, ratio, low, high, goal, ms, ms, overlaps) of one kind of pile, one for each engine."""
+    """Return rows (label, ratio, low, high, goal, ms, ms, overlaps) of one kind of pile, one for each engine."""
     kind = KINDS[name]
     state, pile = fallen(kind, n)
     ours = Ours(lesson, kind, state, pile)

@@ -1,4 +1,4 @@
-"""Inverse kinematics of lesson 11 against pybullet, as ratios measured in one run: `validate targets [ARM …]`.
+"""Inverse kinematics of lesson 11 compared with pybullet, as ratios of one run: `validate targets [ARM …]`.
 
 Arms: planar (three joints, in the plane), spatial (six joints, a place in space).  Both solve the same targets, drawn
 from angles and so within reach, all from the same start, in turn.  Times are CPU times of one thread; of pybullet only
@@ -39,13 +39,13 @@ ENGINES = {                  # {label: (whether it gets our damping, goal: least
 
 
 def residuals(thetas, targets, axes, offsets):
-    """Distances [m] from the ends to their targets."""
+    """Return distances [m] from the ends to their targets."""
     ends = np.array([spatial_end(theta, axes, offsets)[0] for theta in thetas])
     return np.linalg.norm(ends - targets, axis=1)
 
 
 def drawn(name, n):
-    """n targets (n, 3) that this arm reaches, near enough to its start to need no luck."""
+    """Return n targets (n, 3) that this arm reaches, so near its start that every method finds them."""
     axes, offsets, start, _ = ARMS[name]
     rng = np.random.default_rng(1)
     return np.array([spatial_end(start + rng.uniform(-1.0, 1.0, len(start)), axes, offsets)[0] for _ in range(n)])
@@ -81,7 +81,7 @@ def cpu_time(work):
 
 
 def compare(lesson, name, n, rounds):
-    """Rows (label, ratio, low, high, goal, µs, µs, residuals of both) of one arm, one for each setting of pybullet.
+    """Return rows (label, ratio, low, high, goal, µs, µs, both residuals) of one arm, one per setting of pybullet.
 
     Ours stops at the median of the residuals that pybullet has reached: no target counts as solved by less.
     """

@@ -1,4 +1,4 @@
-"""The records of a stability case, the decorator that registers it, and the tools that several lessons' cases share.
+"""Records of stability cases, the decorator that registers a case, and tools that several lessons' cases share.
 
 A case states the bound that theory gives, finds the bound by experiment and compares the two.
 """
@@ -16,27 +16,46 @@ EDGE = 1e-6                  # relative width at which bisection stops [-]
 LINE, DOTS = "line", "dots"
 
 
-class Checks(list):
-    """The findings of one case, as it makes them."""
+class NotRun(NamedTuple):
+    """A statement of theory that this machine cannot try."""
+    claim: str               # as in Finding
+    quantity: str
+    why: str                 # the end of a sentence that begins with "because"
 
-    def __call__(self, claim, quantity, *, law, found, within, saw):
+
+class Checks(list):
+    """The findings of one case, as it makes them, and those that this machine cannot make."""
+
+    def __init__(self):
+        super().__init__()
+        self.not_run = []                # of NotRun
+
+    def __call__(self, claim, quantity, *, law, found, within, saw, within_from=""):
         """Add a Finding: theory says `law`, the experiment found `found`, and they may differ by `within`.
 
         claim, quantity   as in Finding
         saw               the result of the experiment, in one sentence
+        within_from       the measurement that `within` was taken from, where it was not derived
         """
-        self.append(Finding(claim, quantity, float(law), float(found), float(within), saw))
+        self.append(Finding(claim, quantity, float(law), float(found), float(within), saw, within_from))
+
+    def by(self, product, claim, quantity, experiment):
+        """Add what `experiment` says of an engine, {law, found, within, saw}; where it is not installed, a NotRun."""
+        if product.installed():
+            self(claim, quantity, **experiment())
+        else:
+            self.not_run.append(NotRun(claim, quantity, f"{product} is not installed here"))
 
     def agree(self, claim, quantity, error, within):
-        """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
+        """Add a Finding that a function errs by no more than `within`; error is the largest in many random cases."""
         self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
 
     def count(self, claim, quantity, done, of, saw):
-        """Add a Finding that so many did something, of so many that should; `saw` continues "3 of 3 …"."""
+        """Add a Finding that `done` of `of` trials had the right outcome; `saw` continues "3 of 3 …"."""
         self(claim, f"{quantity} [of {of}]", law=of, found=done, within=0.0, saw=f"{done} of {of} {saw}")
 
     def laws(self, lesson, laws, *, seed, times):
-        """Add a Finding for each Law: it holds in so many random cases, which it draws from a seed of its own."""
+        """Add a Finding for each Law, tried in `times` random cases with its own seed."""
         for number, law in enumerate(laws, 100 * seed):
             rng, worst = np.random.default_rng(number), Worst()
             for _ in range(times):
@@ -45,7 +64,7 @@ class Checks(list):
 
 
 class Law(NamedTuple):
-    """A statement about one random case after another: the function that follows @random_law."""
+    """A statement about a random case, made by the decorator @random_law."""
     claim: str               # as in Finding
     quantity: str
     within: float
@@ -65,12 +84,12 @@ class Picture(NamedTuple):
     series: list
     sentence: str
     maps: tuple = ()         # of dicts: label, xs, ys, values (a row for each y), curve: (xs, ys) of theory over it
-    range: tuple = ()        # the lowest and the highest value that the maps tell apart
+    range: tuple = ()        # the lowest and the highest value of the colour scale of the maps
 
 
 class Case(NamedTuple):
     """A case before its run."""
-    slug: str                # its part of the address
+    slug: str                # its name in addresses
     title: str
     lesson: str
     examine: Callable        # (lesson, check: Checks) → Picture or None
@@ -84,6 +103,7 @@ class Examined(NamedTuple):
     lesson: str
     findings: list
     picture: Picture | None
+    not_run: list            # of NotRun
 
 
 CASES: dict[str, dict[str, Case]] = {}                   # {lesson: {slug: Case}} of the files imported so far
@@ -92,7 +112,7 @@ CASES: dict[str, dict[str, Case]] = {}                   # {lesson: {slug: Case}
 def case(slug, title, compiled=True):
     """Register a function as a case of the lesson that its file is named after.
 
-    It is (lesson, check) → Picture or None, where check is the Checks that it fills.
+    The function is (lesson, check) → Picture or None, where check is the Checks that it fills.
     """
     def register(examine):
         lesson = examine.__module__.rpartition(".")[2]
@@ -114,7 +134,10 @@ def log_series(label, xs, ys, style):
 # ---------------------------------------------------------------------------------------------- experiments
 
 def bisect(too_long, low, high):
-    """Return where too_long turns from False to True: 0 if it is True at low, infinite if it is still False at high."""
+    """Return the number at which too_long turns from False to True.
+
+    It is 0 if too_long is True at low, and infinite if it is still False at high.
+    """
     if too_long(low):
         return 0.0
     if not too_long(high):
@@ -132,7 +155,10 @@ def jitted(law):
 
 
 def log_slope(sizes, errors):
-    """Return the slope of log error over log size, by least squares; subjects write this function themselves (1.10)."""
+    """Return the slope of log error over log size, by least squares.
+
+    Exercise 1.10 is the same function of a subject.
+    """
     return np.polyfit(np.log(sizes), np.log(errors), 1)[0]
 
 
@@ -159,7 +185,7 @@ def refuse(methods, run):
 class Worst(dict):
     """{law: its largest error in many random cases}.
 
-    NaN is larger than any number, and a law that no case tried has NaN: their findings do not hold.
+    NaN is larger than any number, and a law that no case tried has NaN, so their findings do not hold.
     """
 
     def __missing__(self, law):
@@ -170,7 +196,7 @@ class Worst(dict):
         self[law] = np.max([self.get(law, 0.0), *errors])
 
     def note(self, law, got, truth):
-        """Keep the largest difference of numbers from their truth; both may be tuples of arrays.  Here ∞ equals ∞."""
+        """Note the largest difference of numbers from their truth; both may be tuples of arrays.  Here ∞ equals ∞."""
         got, truth = flat(got), flat(truth)
         with np.errstate(invalid="ignore"):                # ∞ − ∞, which is not used
             self.keep(law, np.max(np.abs(np.where(got == truth, 0.0, got - truth))))

@@ -1,4 +1,4 @@
-"""Limits of collision detection: lesson 6 at high speed, far away, at a grazing angle, deep inside, and flat.
+"""Limits of collision detection: lesson 6 at high speed, far away, at grazing angles, for deep overlap and flat bodies.
 
 The experiments throw thousands of balls, or place bodies where floats are coarse.  None of them
 compares a formula with itself.
@@ -36,7 +36,7 @@ ROUND_OFF = 1e-12            # of numbers below 10 after a few hundred roundings
 # ---------------------------------------------------------------------------------------------- tunnelling
 
 def passed_discretely(lesson, speed, phases):
-    """Return the share of balls that pass the wall |z| < WALL/2: missed at every step, or ejected on the far side."""
+    """Return the fraction of balls that pass the wall |z| < WALL/2: missed at every step, or ejected behind it."""
     wall, passed = lesson.Box(np.zeros(3), np.eye(3), np.array([10.0, 10.0, 0.5 * WALL])), 0
     reach, move = RADIUS + 0.5 * WALL, speed * STEP
     for phase in phases:
@@ -53,7 +53,7 @@ def passed_discretely(lesson, speed, phases):
 
 
 def passed_continuously(lesson, speed, phases):
-    """Return the same share with the time of impact on the wall's near side."""
+    """Return the same fraction with the time of impact on the near side of the wall."""
     front, passed = lesson.Plane(np.array([0.0, 0.0, 1.0]), -0.5 * WALL), 0
     reach, move = RADIUS + 0.5 * WALL, np.array([0.0, 0.0, speed * STEP])
     for phase in phases:
@@ -65,7 +65,7 @@ def passed_continuously(lesson, speed, phases):
 
 
 def passed_bullet(speed, phases):
-    """Return the same share in pybullet without continuous detection."""
+    """Return the same fraction in pybullet without continuous detection."""
     bullet = Bullet(STEP)
     pb = bullet.pb
     pb.setPhysicsEngineParameter(contactERP=0, contactSlop=0, restitutionVelocityThreshold=0)
@@ -87,7 +87,7 @@ def passed_bullet(speed, phases):
 
 
 def share_missed(speed):
-    """Return the share that gets past: a ball is stopped only within R + w/2 of the middle, on the near side."""
+    """Return the fraction that passes: a ball is stopped only within R + w/2 of the middle, on the near side."""
     return np.maximum(0.0, 1.0 - (RADIUS + 0.5 * WALL) / (speed * STEP))
 
 
@@ -98,11 +98,13 @@ def phases(n):
 
 @case("tunnelling", "Tunnelling through a thin wall", compiled=False)
 def tunnelling(lesson, check):
-    """A ball of radius R moves by v h per step towards a wall of thickness w; the step's end is uniform over v h.
+    """Compare the fraction of balls of radius R that pass a wall of thickness w at v h per step with theory.
 
-    The ball is stopped if the step ends in front of the middle of the wall, within R + w/2 of it.  Behind the
-    middle the nearest way out is the far side, and beyond the wall no overlap is found:  missed = 1 − (R + w/2)/(v
-    h).  Phases on an even grid of N give that share to 1/N.  The continuous test misses none.
+    The end of the step is uniformly distributed over v h.  The ball is stopped if the step ends in front of the
+    middle of the wall, within R + w/2 of it.  Behind the middle the nearest way out is the far side, and beyond the
+    wall there is no
+    overlap:  missed = 1 − (R + w/2)/(v h).  Phases on an even grid of N give that fraction to 1/N.  The continuous test
+    misses none.
     """
     for speed in (15.0, 50.0, 1000.0):
         law, missed = share_missed(speed), passed_discretely(lesson, speed, phases(THROWN))
@@ -116,17 +118,20 @@ def tunnelling(lesson, check):
         check("The continuous test misses no ball at any speed.",
               f"share of 10⁴ balls of {speed:g} m/s that get past, continuous [-]", law=0.0, found=missed, within=0.0,
               saw=f"At {speed:g} m/s {round(THROWN * missed)} of 10⁴ get past the continuous test.")
-    if PYBULLET.installed():
-        missed = passed_bullet(50.0, phases(FEW))
-        check("pybullet without continuous detection misses the same share.",
-              "pybullet: share of 60 balls of 50 m/s that get past [-]",
-              law=share_missed(50.0), found=missed, within=1.0 / FEW + 1e-9,
-              saw=f"In pybullet {100.0 * missed:.1f} % of 60 balls of 50 m/s get past.")
+    check.by(PYBULLET, "pybullet without continuous detection misses the same share.",
+             "pybullet: share of 60 balls of 50 m/s that get past [-]", missed_by_pybullet)
     return shares_by_speed(lesson)
 
 
+def missed_by_pybullet():
+    """Return what share of balls gets past a wall in pybullet, for Checks.by."""
+    missed = passed_bullet(50.0, phases(FEW))
+    return {"law": share_missed(50.0), "found": missed, "within": 1.0 / FEW + 1e-9,
+            "saw": f"In pybullet {100.0 * missed:.1f} % of 60 balls of 50 m/s get past."}
+
+
 def shares_by_speed(lesson):
-    """Draw the share of balls that get past over their speed."""
+    """Draw the fraction of balls that pass as a function of their speed."""
     speeds, fine = np.array([14.0, 20.0, 30.0, 45.0, 70.0, 100.0]), np.linspace(10.0, 105.0, 100)
     some = phases(THROWN)[::50]
     drawn = [series("1 − (R + w/2)/(v h), theory", fine, share_missed(fine), LINE),
@@ -141,15 +146,15 @@ def shares_by_speed(lesson):
         "continuous test lets none pass.")
 
 
-# ---------------------------------------------------------------------------------------------- where digits get lost
+# ---------------------------------------------------------------------------------------------- loss of digits
 
 @case("far-from-origin", "Collisions far from the origin", compiled=False)
 def far_from_origin(lesson, check):
-    """Two bodies at a distance D from the origin: their corners are rounded to the floats there, by at most ½ D 2⁻⁵².
+    """Compare the error of GJK far from the origin with the rounding of the corners.
 
-    GJK works with differences of corners, which are exact, so no other error grows: the error of the distance
-    is ∝ D.  D is a power of 2, so the spacing grows with it.  The mean square over 64 places is known to 9 %, and
-    the slope over 20 doublings to 0.02.
+    At a distance D corners are rounded by at most ½ D 2⁻⁵².  GJK works with differences of corners, which are
+    exact, so no other error grows: the error of the distance is ∝ D.  D is a power of 2, so the spacing grows with
+    it.  The mean square over 64 places is known to 9 %, and the slope over 20 doublings to 0.02.
     """
     rng, beside = np.random.default_rng(61), np.array([2.0, 1.0, 0.5])
     bodies = [(rng.uniform(-0.5, 0.5, (8, 3)), rng.uniform(-0.5, 0.5, (8, 3)) + beside) for _ in range(64)]
@@ -181,7 +186,9 @@ def by_school(y, w, rho):
 
 
 def grazing_error(root, delta, far):
-    """Return the largest error [ρ] of the place of impact of balls from 16 directions; root(y, w) → share of the way.
+    """Return the largest error [ρ] of the place of impact of balls from 16 directions.
+
+    root(y, w) → fraction of the path.
     """
     errors = []
     for phi in np.linspace(0.1, 6.2, 16):
@@ -193,11 +200,12 @@ def grazing_error(root, delta, far):
 
 @case("grazing-impact", "A grazing shot", compiled=False)
 def grazing_impact(lesson, check):
-    """A ball from L = 1000ρ passes the axis at (1 − δ)ρ and touches √(2δ − δ²)ρ before the nearest point.
+    """Compare the error of a grazing impact with the rounding of the coordinates.
 
-    Coordinates of size L are rounded by L 2⁻⁵³, so the offset b is known to twice that, and the root to
-    b/√(ρ² − b²) times as much: 2·10³·1.1e-16·ρ/√(2δ).  The textbook formula squares L first and knows ρ² − b² only
-    to 10⁶·1.1e-16; at δ = 1e-10 no digit is left.
+    A ball from L = 1000ρ passes the axis at (1 − δ)ρ and touches √(2δ − δ²)ρ before the nearest point.  Coordinates of
+    size L are rounded by L 2⁻⁵³, so the offset b is known to twice that, and the root to b/√(ρ² − b²) times as much:
+    2·10³·1.1e-16·ρ/√(2δ).  The textbook formula squares L first and knows ρ² − b² only to 10⁶·1.1e-16; at δ = 1e-10 no
+    digit is left.
     """
     far = 1e3
     time = lambda y, w: lesson.cylinder_impact_time(0.0, 1.0, np.append(0.0, y), np.append(0.0, y + w), 0.25, 0.75)
@@ -205,11 +213,11 @@ def grazing_impact(lesson, check):
     school = lambda delta: grazing_error(lambda y, w: by_school(y, w, 1.0), delta, far)
     limit = lambda delta: 4.0 * far * SPACING * (1.0 + 1.0 / np.sqrt(2.0 * delta))
     for delta in (1e-2, 1e-6, 1e-10):
-        check("The place of a grazing impact is known as well as the coordinates permit.",
+        check("The place of a grazing impact is as accurate as the coordinates permit.",
               f"error of the place of impact, passing at (1 − {delta:g})ρ [ρ]",
               law=0.0, found=ours(delta), within=limit(delta),
               saw=f"At (1 − {delta:g})ρ the place of impact is wrong by {ours(delta):.1e}ρ; the rounding of the "
-                  f"coordinates permits {limit(delta):.1e}ρ.")
+                  f"coordinates allows {limit(delta):.1e}ρ.")
     got = school(1e-10)
     check("The textbook formula loses every digit: its error is √(2δ)ρ within a factor of ten, as large as the "
           "result.", "log₁₀ of its error at δ = 1e-10 over √(2δ)ρ [-]",
@@ -221,7 +229,7 @@ def grazing_impact(lesson, check):
         [log_series("rounding of the coordinates", deltas, limit(deltas), LINE),
          log_series("C/(√D − B), measured", deltas, [max(ours(d), 1e-17) for d in deltas], DOTS),
          log_series("textbook formula, measured", deltas, [max(school(d), 1e-17) for d in deltas], DOTS)],
-        "The same equation written in two ways: one keeps the digits of the coordinates, the other squares a "
+        "The same equation in two forms: one keeps the digits of the coordinates, the other squares a "
         "distance of a thousand radii and loses three more.")
 
 
@@ -232,20 +240,21 @@ HALF = np.array([0.6, 0.4, 0.5])             # edges of a box, halved [m]
 
 @case("deep-overlap", "Deep overlap", compiled=False)
 def deep_overlap(lesson, check):
-    """Deep inside a box the way out is at most the least half edge, and there is always one normal of length 1.
+    """Check that the depth inside a box is at most its smallest half edge, and that there is always a unit normal.
 
-    The depth at y is min_i (half_i − |y_i|), at most the least half edge (in the middle).
+    The depth at y is min_i (half_i − |y_i|), at most the smallest half edge (in the middle).
     """
     box = lesson.Box(np.array([0.3, -0.2, 0.5]), np.eye(3), HALF)
     axes = [np.linspace(-0.99, 0.99, 11) * h for h in HALF]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     contacts = [lesson.ball_box(box.x + y, 0.1, box) for y in grid]
     deepest = max(-c.gap - 0.1 for c in contacts)
-    check("The way out of a box is at most its least half edge.", "greatest depth of a centre in a box, on a grid [m]",
+    check("The depth inside a box is at most its smallest half edge.",
+          "greatest depth of a centre in a box, on a grid [m]",
           law=HALF.min(), found=deepest, within=ROUND_OFF,
           saw=f"The deepest of {len(grid)} centres is {deepest:.3f} m from a face.")
     out = max(abs(np.max(np.abs(c.p_b - box.x) - HALF)) for c in contacts)
-    check("The way out ends on the surface.", "greatest distance of p_b from the surface of the box [m]",
+    check("The exit point is on the surface.", "greatest distance of p_b from the surface of the box [m]",
           law=0.0, found=out, within=ROUND_OFF, saw=f"All points p_b lie on the box, to {out:.0e} m.")
     for name, n in undefined_normals(lesson).items():
         check("Where all directions are equally good, one is chosen.", f"length of n for {name} [-]",
@@ -296,16 +305,16 @@ def without_volume():
 
 @case("degenerate-shapes", "Bodies without volume", compiled=False)
 def degenerate_shapes(lesson, check):
-    """GJK on bodies without volume, at known distances: points, lines, flat bodies, doubled corners, needles of 10⁻⁶.
+    """Compare GJK on bodies without volume with known distances.
 
-    GJK stops when the distance is known to 1e-14 of the size of the bodies, here below 10 m, and rounds a few dozen
-    times.
+    The bodies are points, lines, flat bodies, bodies with doubled corners, and needles of 10⁻⁶.  GJK stops when the
+    distance is known to 1e-14 of the size of the bodies, here below 10 m, and makes a few dozen rounding errors.
     """
     rng = np.random.default_rng(64)
     for name, (a, b, distance) in without_volume().items():
         R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         got = lesson.gjk(np.ascontiguousarray(a @ R.T), np.ascontiguousarray(b @ R.T)).gap
-        check("GJK does not need bodies with volume.", f"distance of {name} [m]",
+        check("GJK works for bodies without volume.", f"distance of {name} [m]",
               law=distance, found=got, within=ROUND_OFF, saw=f"GJK finds {got:.12g} m between {name}.")
     gaps, x, z = 10.0 ** -np.arange(0.0, 13.0, 2.0), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     got = np.array([lesson.gjk(SQUARE, SQUARE + g * z + 0.3 * x).gap for g in gaps])
@@ -323,7 +332,7 @@ def degenerate_shapes(lesson, check):
 # ---------------------------------------------------------------------------------------------- avoidance
 
 def nearest_approach(lesson, closing, k, reach, steps=10_000):
-    """Return the least gap [m] of two bodies that approach head-on at that speed [m/s], and that of theory.
+    """Return the smallest gap [m] of two bodies that approach head-on at that speed [m/s], and that of theory.
 
     The run uses Verlet's method.
     """
@@ -346,9 +355,9 @@ def nearest_approach(lesson, closing, k, reach, steps=10_000):
 
 
 def steered_past(lesson, distance, offset, anew, steps=4000):
-    """Return the least distance from the centre of a disc of radius 1 m, and the last speed, of a body of 1 m/s.
+    """Return the smallest distance from the centre of a disc of radius 1 m, and the last speed, of a body of 1 m/s.
 
-    It begins at that distance before the centre and passes it at that offset, both in m, if it does not steer.  It
+    It begins at `distance` before the centre and would pass it at `offset`, both in m, if it did not steer.  It
     steers once and holds that acceleration until it is abreast of the centre, or steers anew in each step until it
     moves away from the centre.  Then the speed is that after the last step that turned it by less than 0.1 rad.
     """
@@ -372,10 +381,11 @@ STEERED = (4.0, 0.0), (4.0, 0.5), (1.5, 0.0), (1.5, 0.5)     # (distance, offset
 def steering_past_a_disc(lesson, check):
     """Compare a body that holds the acceleration of exercise 6.17, and one that computes it anew, with theory.
 
-    Places on a path are dt = 1/4000 of the distance apart, so they miss the least one by dt²/2 at most; the midpoint
-    method is of second order as well.  With A before the centre, A² < 2 (1 − B) dt, it turns by more than 1 rad per
-    step and is wrong.  From there on the distance B changes by A²/2 = (1 − B) dt.  A step that turns it by θ < 0.1 rad
-    multiplies its speed by 1 + θ⁴/8; θ grows like 1/A², so all of them together do as much as A/7dt < 13 of the last.
+    Points on a path are dt = 1/4000 of the distance apart, so they miss the smallest distance by at most dt²/2; the
+    midpoint method is of second order as well.  With A before the centre, A² < 2 (1 − B) dt, it turns by more than
+    1 rad per step and is wrong.  From there on the distance B changes by A²/2 = (1 − B) dt.  A step that turns it
+    by θ < 0.1 rad multiplies its speed by 1 + θ⁴/8; θ grows like 1/A², so all of them together have the effect of
+    A/7dt < 13 of the last.
     """
     for distance, offset in STEERED:
         where, dt = f"from {distance:g} radii, offset {offset:g}", distance / 4000
@@ -383,17 +393,17 @@ def steering_past_a_disc(lesson, check):
         got, speed = steered_past(lesson, distance, offset, False)
         check("A body that holds the acceleration of its steering cuts into the disc before it is abreast.",
               f"closest approach over the radius, {where} [-]", law=nearest, found=got, within=dt**2,
-              saw=f"It comes as near as {got:.4f} radii.")
-        check("It ends faster: its acceleration is across its first velocity, not across the present one.",
+              saw=f"Its closest approach is {got:.4f} radii.")
+        check("It ends faster, because its acceleration is normal to its first velocity and not to the present one.",
               f"last speed over the first, {where} [-]", law=faster, found=speed, within=1e-12,
               saw=f"It ends at {speed:.4f} times its speed.")
         nearest = anew_steering(distance, offset)
         got, speed = steered_past(lesson, distance, offset, True)
-        check("A body that computes its steering anew all the time comes too near as well, but less.",
+        check("A body that computes its steering anew at every step comes too close as well, but less so.",
               f"closest approach over the radius, computed anew, {where} [-]",
               law=nearest, found=got, within=10.0 * dt**2 + (1.0 - nearest) * distance / 4000,
-              saw=f"It comes as near as {got:.6f} radii.")
-        check("It keeps its speed, because its acceleration is always across its velocity.",
+              saw=f"Its closest approach is {got:.6f} radii.")
+        check("It keeps its speed, because its acceleration is always normal to its velocity.",
               f"speed over the first while steps resolve the turn, computed anew, {where} [-]",
               law=1.0, found=speed, within=2e-4,
               saw=f"As long as a step turns it by less than 0.1 rad, it has {speed:.6f} times its speed.")
@@ -401,13 +411,13 @@ def steering_past_a_disc(lesson, check):
 
 @case("head-on-avoidance", "Avoidance head-on", compiled=False)
 def head_on_avoidance(lesson, check):
-    """Two members of a flock that close head-on with u turn back at a gap g with  ¼ u² = ½ k (1/g − 1/reach)².
+    """Compare the gap at which two members of a flock turn back with  ¼ u² = ½ k (1/g − 1/reach)².
 
-    Each has the kinetic energy ½ (u/2)².  g = 1/(1/reach + u/√(2k)) is above zero at any speed.  Verlet's energy
-    error is (dt/τ)² = 4e-6 times a constant for the steepness of the potential, at most the fourth power: 4·5/2.
-    The gap follows the energy with a power below one.
+    They approach head-on with the closing speed u; each has the kinetic energy ½ (u/2)².  g = 1/(1/reach + u/√(2k)) is
+    positive at any speed.  Verlet's energy error is (dt/τ)² = 4e-6 times a constant for the steepness of the potential,
+    at most the fourth power: 4·5/2.  The gap follows the energy with a power below one.
 
-    Steering has no potential, and does not keep clear of its disc: see steering_past_a_disc.
+    Steering has no potential, and does not stay outside its disc: see steering_past_a_disc.
     """
     steering_past_a_disc(lesson, check)
     k, reach = 1.0, 1.0
@@ -423,7 +433,7 @@ def head_on_avoidance(lesson, check):
         "Closest approach", "log₁₀ of the closing speed [m/s]", "log₁₀ of the least gap [m]",
         [log_series("1/(1/reach + u/√(2k)), theory", fine, 1.0 / (1.0 / reach + fine / np.sqrt(2.0 * k)), LINE),
          log_series("Verlet, measured", speeds, gaps, DOTS)],
-        "The two never touch, but at high speed they come so near that the step must shrink with the gap. Avoidance "
+        "The two never touch, but at high speed they come so close that the step must shrink with the gap. Avoidance "
         "does not replace detection.")
 
 
@@ -454,7 +464,7 @@ def undefined(lesson):
 
 @case("undefined-distance", "Input without a defined distance", compiled=False)
 def undefined_distance(lesson, check):
-    """Input without a defined distance is refused by name: no area, no length, inverted, not a number, or empty."""
+    """Check that input without a defined distance is refused: no area, no length, inverted, not a number, or empty."""
     for name, call in undefined(lesson).items():
         refused = refuses(*call)
         check("Bad input raises a typed error.", f"whether {name} is refused [-]", law=1.0, found=refused, within=0.0,
@@ -472,7 +482,7 @@ def undefined_distance(lesson, check):
 # ---------------------------------------------------------------------------------------------- ways out
 
 def inside(box, points):
-    """Return how far the farthest of these points is outside a box [m]; below zero if all are inside."""
+    """Return the distance [m] from a box to the farthest of these points; negative if all are inside."""
     return np.max([np.max(np.abs(box.R.T @ (x - box.x)) - box.half) for x in points])
 
 
@@ -500,7 +510,7 @@ def overlapping(rng, n):
 
 
 def ways_out(lesson, pairs):
-    """Return (depths found [m], true ones, the worst errors) of pairs of boxes that overlap."""
+    """Return (measured depths [m], true depths, the largest errors) of pairs of boxes that overlap."""
     worst = Worst()
     depths, true = [], []
     for a, b in pairs:
@@ -522,7 +532,7 @@ def ways_out(lesson, pairs):
 
 
 def boxes_leave_by_the_shortest_way(check, worst):
-    """Judge the worst errors of 100 pairs of boxes."""
+    """Judge the largest errors of 100 pairs of boxes."""
     room = 2.0 * worked.EDGE_PREFERENCE
     check("The least overlap of 15 axes is the shortest way out.",
           "greatest error of the depth of 100 pairs of boxes [m]", law=0.0, found=worst["depth"], within=room,
@@ -539,7 +549,7 @@ def boxes_leave_by_the_shortest_way(check, worst):
           "greatest difference between the deepest contact and the axis [m]",
           law=0.0, found=worst["deepest"], within=1e-11,
           saw=f"The deepest point of contact of 100 pairs is as deep as the axis gives, to {worst['deepest']:.0e} m.")
-    check("The points of a contact are apart by its gap, along n.",
+    check("The two points of a contact are its gap apart, along n.",
           "greatest length of p_a − p_b − gap n, of 100 pairs [m]", law=0.0, found=worst["apart"], within=1e-11,
           saw=f"For 100 pairs p_a − p_b is gap n to {worst['apart']:.0e} m.")
 
@@ -552,7 +562,7 @@ def capsules_are_as_far_apart_as_their_segments(lesson, check, rng):
         p, q = hull_nearest(x[:2], x[2:])
         gap = lesson.capsule_capsule(x[0], x[1], 0.1, x[2], x[3], 0.2).gap
         errors.append(abs(gap - (np.linalg.norm(p - q) - 0.3)))
-    check("Two capsules are as far apart as their segments, less the radii.",
+    check("The gap of two capsules is the distance of their segments minus the radii.",
           "greatest error of the gap of 100 pairs of capsules [m]", law=0.0, found=max(errors), within=ROUND_OFF,
           saw=f"The gap of 100 pairs of capsules is right to {max(errors):.0e} m.")
 
@@ -580,12 +590,14 @@ def polygons_are_as_deep_as_their_differences(lesson, check, rng):
 
 @case("minimum-translation", "The way out of an overlap", compiled=False)
 def minimum_translation(lesson, check):
-    """Random boxes and polygons that overlap: the way out is the shortest one, and contacts lie on both bodies.
+    """Compare the way out of random overlapping boxes and polygons with the shortest one.
+
+    Check that contacts are on both.
 
     The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
-    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
+    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest point is as deep as
     the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
-    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
+    non-negative least squares, minus the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
     a face.
     """
     rng = np.random.default_rng(67)
@@ -598,13 +610,13 @@ def minimum_translation(lesson, check):
         "The way out of 100 pairs of boxes", "shortest way out, by the hull of differences [m]", "depth found [m]",
         [series("equal", true[order], true[order], LINE),
          series("separating axes, measured", true[order], depths[order], DOTS)],
-        "Fifteen axes are enough: no other direction is a shorter way out of two boxes.")
+        "Fifteen axes are enough: no other direction separates two boxes by a shorter distance.")
 
 
 # ---------------------------------------------------------------------------------------------- cloths, and steering
 
 def triangles_at_the_axis(rng):
-    """Return three triangles (3, 3): any, one with an edge along the x axis, and one with an edge at one height."""
+    """Return three triangles (3, 3): any, one with an edge along the x axis, and one with a level edge."""
     a, b, c = rng.normal(size=(3, 3))
     along = rng.permutation((a, a + np.array([1.0, 0.0, 0.0]), b))
     level = np.stack((a, b, c))
@@ -614,7 +626,7 @@ def triangles_at_the_axis(rng):
 
 
 def gaps_of_triangles(lesson, check):
-    """Compare the gap of triangles and a cylinder with the distance of their shadows along its axis from 0."""
+    """Compare the gap of triangles and a cylinder with the distance of their projections along its axis from 0."""
     rng, worst, surround = np.random.default_rng(6700), Worst(), 0
     for _ in range(200):
         r, R = rng.uniform((0.01, 0.1), (0.1, 0.5))
@@ -638,7 +650,7 @@ def swept_boxes(lesson, rng):
 def past_a_disc(rng, share, aside):
     """Return (x, v, centre, radius, ahead, τ) of a body and a disc: after τ the body is abreast of the centre.
 
-    τ is that share of `ahead`, and the body passes the centre aside by so many radii.
+    τ is the fraction `share` of `ahead`, and the body passes the centre at `aside` radii.
     """
     x, v = rng.normal(size=(2, 2))
     ahead, radius = rng.uniform((1.0, 0.5), (5.0, 2.0))
@@ -656,7 +668,8 @@ def steering_aside(lesson, rng):
     return (distance / radius, along / radius), (1.0, 0.0)
 
 
-@random_law("It steers only for what is ahead, in time and in its way.", "acceleration for all else [m/s²]", 0.0)
+@random_law("It steers only for obstacles that are ahead, near in time, and on its path.",
+            "acceleration for all else [m/s²]", 0.0)
 def going_straight(lesson, rng):
     passed, later, beside = ((-rng.uniform(), 0.5), (1.0 + rng.uniform(), 0.5), (0.5, rng.choice((-1.5, 1.5))))
     *disc, _ = past_a_disc(rng, *(passed, later, beside)[rng.integers(3)])
@@ -665,11 +678,11 @@ def going_straight(lesson, rng):
 
 @case("cloth-swept-steered", "Triangles of a cloth, swept boxes, steering", compiled=False)
 def cloth_swept_steered(lesson, check):
-    """A cloth's gap by the shadow of its triangle along the axis of the cylinder, whose distance is by least squares.
+    """Compare a cloth's gap with the distance of its triangle's projection along the cylinder, by least squares.
 
-    A swept box is the box around all corners at the beginning and the end.  A body that steers with a for the time τ
-    is then abreast of the centre at exactly the radius: x + v τ + ½ a τ².  How near it was before is the subject of
-    `head-on-avoidance`.
+    A swept box is the box around all corners at the beginning and the end.  A body that steers with a for the time
+    τ is then abreast of the centre at exactly the radius: x + v τ + ½ a τ².  The case `head-on-avoidance` examines
+    how close it came before.
     """
     gaps_of_triangles(lesson, check)
     check.laws(lesson, (swept_boxes, steering_aside, going_straight), seed=66, times=200)
@@ -678,7 +691,7 @@ def cloth_swept_steered(lesson, check):
 # ---------------------------------------------------------------------------------------------- nearest features
 
 def nearest_on_triangles(lesson, check):
-    """Find q nearest to p: a mean of the corners with weights ≥ 0, and no corner is farther along p − q than q is."""
+    """Check q nearest to p: a mean of the corners with weights ≥ 0, and no corner is farther along p − q than q is."""
     rng, worst, regions = np.random.default_rng(6800), Worst(), set()
     for _ in range(300):
         corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
@@ -691,7 +704,7 @@ def nearest_on_triangles(lesson, check):
 
 
 def place_at_a_box(lesson, rng, most):
-    """Return a random box, and y (3,): coordinates along its axes, up to so many of its half edges."""
+    """Return a random box, and y (3,): coordinates along its axes, up to `most` half edges."""
     half = rng.uniform(0.5, 2.0, 3)
     box = lesson.make_box(rng.normal(size=3), np.linalg.qr(rng.normal(size=(3, 3)))[0], half)
     return box, rng.uniform(-most, most, 3) * half
@@ -722,7 +735,7 @@ def area(y):
     return 0.5 * np.sum(y[:, 0] * following[:, 1] - y[:, 1] * following[:, 0])
 
 
-@random_law("A line cuts a polygon in two parts, which have its area together.",
+@random_law("A line cuts a polygon into two parts, whose areas add up to that of the polygon.",
             "largest error of the area of both parts [m²]", 1e-9)
 def cut_polygons(lesson, rng):
     turns, d = np.sort(rng.uniform(0.0, 2.0 * np.pi, 6)), rng.uniform(-0.5, 0.5)
@@ -740,7 +753,7 @@ def cut_squares(lesson, rng):
     return tuple(len(lesson.clip(square, sign * np.array([1.0, -1.0]), 0.0)) for sign in (1.0, -1.0)), (3, 3)
 
 
-@random_law("A ball that meets nothing flies on.", "largest error of the state after a step [m, m/s]", 1e-9)
+@random_law("A ball that meets no obstacle flies on.", "largest error of the state after a step [m, m/s]", 1e-9)
 def free_flights(lesson, rng):
     x, v, dt = rng.normal((0.0, 0.0, 9.0)), rng.normal(size=3), rng.uniform(0.1, 1.0)
     target = lesson.Target(0.1, 0.1, lesson.make_plane((0.0, 0.0, 1.0, 0.0)))
@@ -750,7 +763,10 @@ def free_flights(lesson, rng):
 
 
 def random_flock(lesson, rng):
-    """Return (flock, x, v, distances) of five members; their distances from themselves are large."""
+    """Return (flock, x, v, distances) of five members.
+
+    The distance of a member from itself is set to a large number.
+    """
     x, v = 0.5 * rng.normal(size=(5, 2)) + 3.0 * np.arange(5)[:, None] * [0.4, 0.2], rng.normal(size=(5, 2))
     apart = np.linalg.norm(x[:, None] - x, axis=2) + 10.0 * np.eye(5)
     least = apart.min()
@@ -777,7 +793,8 @@ def flocks_at_rest(lesson, rng):
                     (lesson.flock_energy(x, v, p), 0.5 * np.sum(v * v) + potential(x + 0j, p).real))
 
 
-@random_law("Its members adapt to the velocities of those in reach.", "largest error of the alignment [m/s²]", 1e-9)
+@random_law("Its members align with the velocities of those within reach.", "largest error of the alignment [m/s²]",
+            1e-9)
 def aligned_flocks(lesson, rng):
     p, x, v, apart = random_flock(lesson, rng)
     in_reach = apart < 2.0 * p.radius + p.reach
@@ -788,9 +805,10 @@ def aligned_flocks(lesson, rng):
 
 @case("nearest-features", "Nearest sides, edges and corners", compiled=False)
 def nearest_features(lesson, check):
-    """Random points around triangles and boxes; polygons cut in two; a flock whose forces are derivatives of energies.
+    """Compare nearest features and flocks with their definitions.
 
-    The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
+    There are random points around triangles and boxes, polygons cut in two, and a flock whose forces are derivatives of
+    energies.  The two parts of a cut polygon have its area together, and a line through two corners cuts off one side.
     """
     nearest_on_triangles(lesson, check)
     check.laws(lesson, (outside_a_box, inside_a_box, cut_polygons, cut_squares, free_flights, flocks_at_rest,
@@ -826,7 +844,7 @@ def touching_boxes(lesson):
 
 
 def exact_touches(lesson):
-    """Return whether each of these is as defined: numbers without round-off, in which bodies just touch."""
+    """Return whether bodies that just touch are treated as defined, on numbers without round-off."""
     floor, box = lesson.make_plane((0.0, 0.0, 2.0, -2.0)), lesson.make_box(np.zeros(3), np.eye(3), (1.0, 2.0, 4.0))
     above = lambda z: np.array([3.0, -1.0, z])
     beside = lesson.ball_box(np.array([1.0, 0.5, -0.5]), 0.25, box)
@@ -846,11 +864,11 @@ def exact_touches(lesson):
 
 
 def unit(n):
-    """Return n over its length."""
+    """Return n divided by its length."""
     return n / np.linalg.norm(n)
 
 
-@random_law("Points of contact are the nearest points, moved out by the radii.",
+@random_law("Points of contact are the nearest points, moved outwards by the radii.",
             "largest error of the points [m]", 1e-9)
 def points_of_contact(lesson, rng):
     (x, y, normal), (one, two) = rng.normal(size=(3, 3)), rng.normal(size=(2, 2, 3))
@@ -865,7 +883,8 @@ def points_of_contact(lesson, rng):
     return (np.ravel(got), c.p_a, c.p_b, c.gap), (np.ravel(truth), x - r_a * n, x - height * n, height - r_a)
 
 
-@random_law("Two hulls are nearest where least squares says.", "largest error of the nearest points [m]", 1e-6)
+@random_law("The nearest points of two hulls are those of least squares.", "largest error of the nearest points [m]",
+            1e-6)
 def nearest_of_hulls(lesson, rng):
     a, b = rng.normal(size=(5, 3)), rng.normal((8.0, 0.0, 0.0), 1.0, (6, 3))
     c = lesson.gjk(a, b)
@@ -873,13 +892,16 @@ def nearest_of_hulls(lesson, rng):
 
 
 def thrown_at(rng, hit, n, share):
-    """Return the ends (x_0, x_1) of a step towards a surface with the normal n, which is at `hit` after that share."""
+    """Return the ends (x_0, x_1) of a step towards a surface with the normal n.
+
+    The step reaches `hit` at that fraction.
+    """
     w = rng.normal(size=3)
     way = w - (w @ n + 1.0) * n
     return hit - share * way, hit + (1.0 - share) * way
 
 
-@random_law("An impact is at its share of the step, whenever the step begins.",
+@random_law("An impact is at its fraction of the step, for any start time of the step.",
             "largest error of the times [s] and places [m]", 1e-9)
 def impact_times(lesson, rng):
     x, normal = rng.normal(size=(2, 3))
@@ -920,10 +942,10 @@ def trees_agree(lesson, rng):
 
 @case("points-and-times", "Points and times of contact", compiled=False)
 def points_and_times(lesson, check):
-    """Points of contact lie on both bodies, at the nearest places; an impact is at its share of any step.
+    """Check that points of contact lie on both bodies, at the nearest places, and that an impact has the right time.
 
     The nearest points of segments and hulls are those of non-negative least squares.  A ball is thrown so that it
-    touches after a known share of the step.
+    touches after a known fraction of the step.
     """
     check.laws(lesson, (points_of_contact, nearest_of_hulls, impact_times, cut_segments), seed=69, times=50)
     rng = np.random.default_rng(69)
@@ -931,6 +953,6 @@ def points_and_times(lesson, check):
                 sum(not trees_agree(lesson, rng) for _ in range(50)), 0.0)
     exact = exact_touches(lesson)
     others = ", ".join(what for what, right in exact.items() if not right) or "none"
-    check("What just touches is in contact, and ties are resolved as they are defined.",
+    check("Bodies that just touch are in contact, and ties are resolved as defined.",
           f"touches and ties as defined [of {len(exact)}]",
           law=len(exact), found=sum(map(bool, exact.values())), within=0.0, saw=f"Otherwise: {others}.")

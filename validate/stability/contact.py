@@ -19,28 +19,32 @@ from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, log
 from ..products import PYBULLET
 
 G = 9.81                     # [m/s²]
-THREE_DIGITS = 1e-3          # of what a sweep leaves undone, 1 − ρ [-]
+THREE_DIGITS = 1e-3          # of the part that a sweep removes, 1 − ρ [-]
 ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
 DT = 1.0 / 240.0             # of piles [s]
 
 
 def standing(masses):
-    """Return (rows (n, n), inverse masses) of bodies on each other: velocities to relative velocities at contacts."""
+    """Return (rows (n, n), inverse masses) of stacked bodies.
+
+    Rows map velocities to relative velocities at contacts.
+    """
     return np.eye(len(masses)) - np.eye(len(masses), k=-1), 1.0 / np.array(masses, float)
 
 
 def column(masses):
-    """Return (A, b, forces) of bodies on each other, the first on the ground, one contact under each, no friction.
+    """Return (A, b, forces) of stacked bodies without friction, the first on the ground, with one contact under each.
 
-    Contact k sees the inverse masses of both its bodies, and its neighbours through the body that they share:
-    A_kk = 1/m_k + 1/m_(k−1),  A_k,k+1 = −1/m_k.  Gravity makes only the lowest approach, and k carries all above.
+    Contact k has the inverse masses of both its bodies, and is coupled to its neighbours through the body that they
+    share: A_kk = 1/m_k + 1/m_(k−1),  A_k,k+1 = −1/m_k.  Gravity makes only the lowest contact approach, and k
+    carries all above.
     """
     rows, w = standing(masses)
     return (rows * w) @ rows.T, -G * np.eye(w.size)[0], G * np.cumsum(1.0 / w[::-1])[::-1]
 
 
 def errors_of(lesson, masses, omega, sweeps):
-    """Return the error of the forces before the first sweep and after each, over their size, from zero."""
+    """Return the relative error of the forces before the first sweep and after each, starting from zero."""
     A, b, forces = column(masses)
     lam, errors = np.zeros(len(b)), [1.0]
     for _ in range(sweeps):
@@ -50,7 +54,7 @@ def errors_of(lesson, masses, omega, sweeps):
 
 
 def sweeps_until(errors, small):
-    """Return the number of sweeps after which an error is at most so small."""
+    """Return the number of sweeps after which the error is at most `small`."""
     return int(np.argmax(errors <= small)) if errors[-1] <= small else np.inf
 
 
@@ -63,10 +67,10 @@ def largest(matrix):
 
 @case("contraction-of-a-stack", "Contraction of a sweep over a stack", compiled=False)
 def contraction_of_a_stack(lesson, check):
-    """On n equal bodies, one on the other, a sweep leaves cos²(π/2n) of the error: sin²(π/2n) is done.
+    """Check that on n equal stacked bodies a sweep leaves cos²(π/2n) of the error, and so removes sin²(π/2n).
 
-    The eigenvalues of a sweep are cos²((2j − 1)π/2n).  The second one dies out by (cos²(3π/2n)/cos²(π/2n))ᵏ, of which
-    1e-4 is left in the end; what it does to 1 − ρ is 8 times its share of the first error, which is below a ninth.
+    The eigenvalues of a sweep are cos²((2j − 1)π/2n).  The second one decays by (cos²(3π/2n)/cos²(π/2n))ᵏ, of which
+    1e-4 is left in the end.  Its effect on 1 − ρ is 8 times its share of the first error, which is below a ninth.
     """
     sizes, done = (2, 3, 5, 10, 20, 50, 100), []
     for n in sizes:
@@ -81,22 +85,22 @@ def contraction_of_a_stack(lesson, check):
               saw=f"With n = {n} a sweep leaves {1.0 - done[-1]:.5f} of the error.")
     enough = sweeps_until(errors_of(lesson, np.ones(10), 1.0, 320), 1e-3)
     theory = np.log(1e-3) / np.log(np.cos(np.pi / 20.0) ** 2)
-    check("Ten boxes need ln 10⁻³/ln ρ sweeps to a thousandth; the slow part is nearly all of the first error.",
+    check("Ten boxes need ln 10⁻³/ln ρ sweeps to a thousandth; the slow mode is nearly all of the first error.",
           "sweeps until the forces are right to 10⁻³, ten boxes [-]", law=theory, found=enough, within=0.05 * theory,
           saw=f"Ten boxes need {enough:.0f} sweeps: with 25 of them they do not stand.")
     fine = np.logspace(np.log10(2.0), 2.0, 60)
     return Picture("What a sweep does", "log₁₀ of the number of bodies", "log₁₀ of the part removed", [
         series("theory, sin²(π/2n)", np.log10(fine), 2.0 * np.log10(np.sin(0.5 * np.pi / fine)), LINE),
         log_series("measured", sizes, done, DOTS)],
-        "Twice as many boxes need four times as many sweeps: each sweep passes a force on to neighbours.")
+        "Twice as many boxes need four times as many sweeps: each sweep passes a force only to neighbours.")
 
 
 @case("contraction-of-a-mass-ratio", "Contraction of a sweep under a heavy body", compiled=False)
 def contraction_of_a_mass_ratio(lesson, check):
-    """A body r times as heavy as the one under it: a sweep leaves r/(1 + r) of the error.
+    """Check that under a body r times as heavy as the one below it a sweep leaves r/(1 + r) of the error.
 
-    For two contacts the error after the first sweep lies along one direction, so that the ratio is exact from then on.
-    What is removed, 1/(1 + r), is a small difference of errors, each rounded by 1.1e-16.
+    For two contacts the error after the first sweep lies along one direction, so the ratio is exact from then on.
+    The removed part, 1/(1 + r), is a small difference of errors, each rounded by 1.1e-16.
     """
     ratios, done = (0.1, 1.0, 10.0, 100.0, 1000.0, 1e4), []
     for r in ratios:
@@ -110,7 +114,7 @@ def contraction_of_a_mass_ratio(lesson, check):
     return Picture("Heavy on light", "log₁₀ of the mass ratio", "log₁₀ of the part of the error removed", [
         series("theory, 1/(1 + r)", fine, -np.log10(1.0 + 10.0**fine), LINE),
         log_series("measured", ratios, done, DOTS)],
-        "A thousand times the mass needs a thousand times the sweeps; light on heavy is no trouble.")
+        "A thousand times the mass needs a thousand times the sweeps; a light body on a heavy one converges fast.")
 
 
 # ---------------------------------------------------------------------------------------------- sweeps that stop early
@@ -130,7 +134,7 @@ def cornered(width, height):
 
 
 def left_by_sweeps(rows, w, m):
-    """Return T: velocities before m sweeps from zero → velocities after, as long as every contact pushes and sticks.
+    """Return T, which maps velocities before m sweeps from zero to those after, if every contact pushes and sticks.
 
     A sweep solves with the lower triangle L of A = rows W rowsᵀ and keeps the rest: H = 1 − L⁻¹A.  After m of them the
     impulses are −(1 + H + … + H^(m − 1)) L⁻¹ u.
@@ -143,13 +147,13 @@ def left_by_sweeps(rows, w, m):
 
 
 def end_speeds(rows, w, m, pull):
-    """Return the velocities that do not change any more: v = T (v + pull)."""
+    """Return the velocities at which the motion becomes steady: v = T (v + pull)."""
     T = left_by_sweeps(rows, w, m)
     return np.linalg.solve(np.eye(len(w)) - T, T @ pull)
 
 
 def swept_speeds(sweep, rows, w, m, pull, remember=False):
-    """Return the velocities after 400 steps; in each of them m calls of sweep(A, b, impulses)."""
+    """Return the velocities after 400 steps, each with m calls of sweep(A, b, impulses)."""
     A, v, J = (rows * w) @ rows.T, np.zeros(len(w)), np.zeros(len(rows))
     for _ in range(400):
         v, J = v + pull, J if remember else 0.0 * J
@@ -162,9 +166,10 @@ def swept_speeds(sweep, rows, w, m, pull, remember=False):
 
 @case("speed-of-sinking", "The speed at which a heavy body sinks", compiled=False)
 def speed_of_sinking(lesson, check):
-    """Each step adds g dt, and m sweeps from zero leave the share ρ^m of all approach: the speed g dt ρ^m/(1 − ρ^m).
+    """Compare the speed at which a heavy body sinks with g dt ρ^m/(1 − ρ^m).
 
-    That is exact for the upper one of two bodies.  Of a stack each body has its own speed, (1 − T)⁻¹ T g dt.
+    Each step adds g dt, and m sweeps from zero leave the fraction ρ^m of the approach.  The speed is exact for the
+    upper one of two bodies.  In a stack each body has its own speed, (1 − T)⁻¹ T g dt.
     """
     sweep, dots = lambda A, b, J: lesson.gauss_seidel_sweep(A, b, J, 1.0), []
     for r, m in ((10.0, 5), (10.0, 20), (100.0, 20)):
@@ -172,21 +177,22 @@ def speed_of_sinking(lesson, check):
         law = G * FRAME * rho**m / (1.0 - rho**m)
         speed = -swept_speeds(sweep, *standing([1.0, r]), m, -np.full(2, G * FRAME))[1]
         dots.append((m, np.log10(speed)))
-        check("A body that is r times as heavy as what carries it sinks with g dt ρ^m/(1 − ρ^m), ρ = r/(1 + r).",
+        check("A body that is r times as heavy as its support sinks at g dt ρ^m/(1 − ρ^m), ρ = r/(1 + r).",
               f"speed of the heavy one, r = {r:g}, {m} sweeps per step [m/s]",
               law=law, found=speed, within=SAME * law,
-              saw=f"{r:g} kg on 1 kg sink with {speed:.3g} m/s, because {m} sweeps are too few.")
+              saw=f"{r:g} kg on 1 kg sink at {speed:.3g} m/s, because {m} sweeps are too few.")
     ten, pull = standing(np.ones(10)), -np.full(10, G * FRAME)
     theory, speeds = -end_speeds(*ten, 25, pull), -swept_speeds(sweep, *ten, 25, pull)
     for k, name in ((9, "top"), (0, "lowest")):
-        check("Of a stack of ten each box sinks with its own speed, (1 − T)⁻¹ T g dt.",
+        check("In a stack of ten each box sinks at its own speed, (1 − T)⁻¹ T g dt.",
               f"speed of the {name} of ten boxes, 25 sweeps per step [m/s]",
               law=theory[k], found=speeds[k], within=SAME * theory[k],
-              saw=f"The {name} of ten boxes sinks with {speeds[k]:.3f} m/s.")
+              saw=f"The {name} of ten boxes sinks at {speeds[k]:.3f} m/s.")
     remembered = -swept_speeds(sweep, *ten, 25, pull, remember=True)[9]
-    check("With memory the forces add up from step to step, and nothing sinks in the end.",
+    check("With memory the forces accumulate over the steps, and finally nothing sinks.",
           "speed of the top of ten boxes, 25 sweeps per step and memory [m/s]",
-          law=0.0, found=remembered, within=ROUND_OFF, saw=f"With memory {abs(remembered):.1e} m/s are left.")
+          law=0.0, found=remembered, within=ROUND_OFF,
+          saw=f"With memory the top box sinks at {abs(remembered):.1e} m/s.")
     fine = np.arange(3.0, 41.0)
     return Picture("How fast the heavy one sinks", "sweeps per step", "log₁₀ of the speed [m/s]", [
         *(series(f"theory, ratio {r:g}", fine, np.log10(G * FRAME / ((1.0 + 1.0 / r) ** fine - 1.0)), LINE)
@@ -207,7 +213,7 @@ def trembling_step(sweep, m, state):
 
 
 def trembling_matrix(m):
-    """Return the matrix of such a step as theory has it, as long as all boxes push."""
+    """Return the matrix of such a step by theory, as long as all boxes push."""
     D, _ = standing(np.ones(10))
     A, one, zero = D @ D.T, np.eye(10), np.zeros((10, 10))
     kept = np.linalg.matrix_power(one - np.linalg.inv(np.tril(A)) @ A, m)
@@ -225,30 +231,34 @@ def differences(step, rest, size=1.0):
 
 @case("trembling", "A stack that trembles", compiled=False)
 def trembling(lesson, check):
-    """Memory keeps a push after its overlap has gone.  One step multiplies displacements, velocities and impulses by
-    one matrix, and where its largest eigenvalue is above 1 the stack trembles.
+    """Compare the growth of disturbances of a stack with memory with the largest eigenvalue of a matrix.
 
-    Theory writes the matrix down with H = 1 − L⁻¹A of a sweep: λ → H^m λ + (H^m − 1) A⁻¹ (u + PUSH gap/dt).  The
-    measured one comes from the lesson's sweeps, column by column, far from where they cut off.
+    Memory keeps a push after its overlap has gone.  One step multiplies displacements, velocities and impulses by
+    one matrix, and if its largest eigenvalue is above 1 the stack trembles.
+
+    Theory gives the matrix with H = 1 − L⁻¹A of a sweep: λ → H^m λ + (H^m − 1) A⁻¹ (u + PUSH gap/dt).  The
+    measured one comes from the lesson's sweeps, column by column, far from where they clamp impulses.
     """
     few, rest = np.array([4, 7, 8, 12, 20]), np.repeat((0.0, 0.0, 1e3), 10)
     theory = {m: largest(trembling_matrix(m)) for m in few}
     measured = {m: largest(differences(lambda state, m=m: trembling_step(lesson.gauss_seidel_sweep, m, state), rest))
                 for m in few}
     for m, verb in ((7, "trembles"), (8, "comes to rest")):
-        check("Memory that keeps pushes makes ten boxes tremble with seven sweeps per step, and not with eight.",
+        check("If the memory keeps pushes, ten boxes tremble with seven sweeps per step, but not with eight.",
               f"growth per step, {m} sweeps [-]", law=theory[m], found=measured[m], within=SAME,
               saw=f"With {m} sweeps a disturbance is multiplied by {measured[m]:.4f} per step: the stack {verb}.")
     return Picture("Ten boxes with memory and a push", "sweeps per step", "growth per step [-]", [
         series("theory, largest eigenvalue", few, theory.values(), LINE),
         series("measured", few, measured.values(), DOTS)],
-        "Above 1 the stack trembles.  A sweep at rest after the motion takes the pushes out of the memory.")
+        "Above 1 the stack trembles.  A sweep at rest after the motion removes the pushes from the memory.")
 
 
 @case("creeping", "A box that creeps on a still platform", compiled=False)
 def creeping(lesson, check):
-    """A sweep visits the left corner first, which takes more than its share.  So the box turns, and friction comes too
-    late: what is left of each step adds up to (1 − T)⁻¹ T g dt, along the floor as well.
+    """Compare the creep of a box on a platform at rest with (1 − T)⁻¹ T g dt.
+
+    A sweep visits the left corner first, so that corner takes more than its share.  The box rotates, and friction
+    acts too late.  The errors of all steps add up to (1 − T)⁻¹ T g dt, along the floor as well.
     """
     box, few, theory, speeds = cornered(0.5, 1.0), (1, 2, 4, 8), {}, {}
     sweep = lambda A, b, J: lesson.cone_sweep(A, b, J, np.array([0.6, 0.6]))
@@ -258,32 +268,33 @@ def creeping(lesson, check):
         speeds[degrees] = {m: swept_speeds(sweep, *box, m, pull)[0] for m in few}
         for m in (1, 4):
             law, speed = theory[degrees][m], speeds[degrees][m]
-            check("A box with enough friction creeps with (1 − T)⁻¹ T g dt, on a level floor, too.",
+            check("A box with enough friction creeps at (1 − T)⁻¹ T g dt, on a level floor, too.",
                   f"speed of a box with μ = 0.6 on {degrees:g}°, sweeps per step: {m} [m/s]",
                   law=law, found=speed, within=SAME * law,
-                  saw=f"On {degrees:g}° it creeps with {1e3 * speed:.3g} mm/s; sweeps per step: {m}.")
+                  saw=f"On {degrees:g}° it creeps at {1e3 * speed:.3g} mm/s; sweeps per step: {m}.")
         still = swept_speeds(sweep, *box, 1, pull, remember=True)[0]
-        check("With memory it stands, even with one sweep per step.",
+        check("With memory the box stands, even with one sweep per step.",
               f"speed of a box with μ = 0.6 on {degrees:g}°, one sweep per step and memory [m/s]",
-              law=0.0, found=still, within=ROUND_OFF, saw=f"On {degrees:g}° {abs(still):.1e} m/s are left.")
+              law=0.0, found=still, within=ROUND_OFF, saw=f"On {degrees:g}° it moves at {abs(still):.1e} m/s.")
     return Picture("A box that should stand", "sweeps per step", "log₁₀ of its speed [m/s]", [
         series(f"{name}, {degrees:g}°", few, np.log10(list(found[degrees].values())), look)
         for found, name, look in ((theory, "theory", LINE), (speeds, "measured", DOTS)) for degrees in (0.0, 15.0)],
-        "The platform does not move: the solver stops before normal and friction of both corners agree.")
+        "The platform does not move: the solver stops before the impulses of both corners agree.")
 
 
 def sweep_radius(lesson, n, omega):
-    """Return the largest size of an eigenvalue of a sweep over n equal bodies, far from where the projection acts."""
+    """Return the spectral radius of a sweep over n equal bodies, far from where impulses are clamped."""
     A, b, forces = column(np.ones(n))
     return largest(differences(lambda lam: lesson.gauss_seidel_sweep(A, b, lam, omega), 10.0 * forces))
 
 
 @case("over-relaxation", "The best relaxation", compiled=False)
 def over_relaxation(lesson, check):
-    """At ω = 2/(1 + sin(π/2n)) a sweep leaves ω − 1 of the error, and no other ω does better; at ω = 2 none converges.
+    """Check that at ω = 2/(1 + sin(π/2n)) a sweep leaves ω − 1 of the error, the optimum, and that ω = 2 diverges.
 
-    All eigenvalues have the size ω − 1 from the best ω on.  There two of them are equal, so that a rounding of 1e-12
-    (of forces ten times too large, up to 2,000 N) moves them by its root, 1e-6, and a few times that with 20 bodies.
+    All eigenvalues have the size ω − 1 from the best ω on.  There two of them are equal, so a rounding error of
+    1e-12 (of forces ten times too large, up to 2,000 N) moves them by its square root, 1e-6, and a few times that
+    with 20 bodies.
     """
     for n in (5, 10, 20):
         omega = 2.0 / (1.0 + np.sin(0.5 * np.pi / n))
@@ -295,11 +306,11 @@ def over_relaxation(lesson, check):
                                options={"xatol": 1e-7}).x
         check("No relaxation does better than ω = 2/(1 + sin(π/2n)).",
               f"relaxation that converges soonest, n = {n} [-]", law=omega, found=best, within=1e-5,
-              saw=f"Of all relaxations {best:.5f} converges soonest for n = {n}.")
+              saw=f"Of all relaxations {best:.5f} converges fastest for n = {n}.")
     edge = bisect(lambda w: sweep_radius(lesson, 10, w) > 1.0, 1.0, 3.0)
-    check("From ω = 2 on nothing converges: the product of all eigenvalues is (1 − ω)ⁿ.",
+    check("From ω = 2 on no sweep converges: the product of all eigenvalues is (1 − ω)ⁿ.",
           "relaxation from which a sweep does not contract, n = 10 [-]", law=2.0, found=edge, within=4.0 * EDGE,
-          saw=f"Ten bodies lose their forces from ω = {edge:.6f} on.")
+          saw=f"For ten bodies the sweeps diverge from ω = {edge:.6f} on.")
     omega, sweeps = 2.0 / (1.0 + np.sin(0.05 * np.pi)), np.arange(0.0, 101.0)
     plain, relaxed = errors_of(lesson, np.ones(10), 1.0, 100), errors_of(lesson, np.ones(10), omega, 60)
     fewer, more = sweeps_until(relaxed, 1e-3), round(np.log(1e-3) / np.log(np.cos(0.05 * np.pi) ** 2))
@@ -307,7 +318,7 @@ def over_relaxation(lesson, check):
         series("theory, ω = 1", sweeps, 2.0 * sweeps * np.log10(np.cos(0.05 * np.pi)), LINE),
         series("ω = 1", sweeps[::5], np.log10(plain[::5]), DOTS),
         series(f"ω = {omega:.3f}", sweeps[:61:3], np.log10(np.maximum(relaxed[::3], 1e-16)), DOTS)],
-        f"One number turns {more} sweeps into {fewer}, at no cost.")
+        f"Relaxation reduces {more} sweeps to {fewer}, at no cost.")
 
 
 # ---------------------------------------------------------------------------------------------- piles
@@ -345,7 +356,7 @@ def pile_of(lesson, shape, x, half, masses, q=None, planes=None, **more):
 
 
 def after(lesson, shape, state, pile, seconds, dt=DT):
-    """Return the PileState so many seconds later."""
+    """Return the PileState after this time [s]."""
     advance, bounds, contacts = (getattr(lesson, name) for name in shape[1:])
     return advance(bounds, contacts, state, dt, round(seconds / dt), pile)
 
@@ -363,31 +374,32 @@ def sag(lesson, shape, hertz, dt, substeps):
 
 @case("sag-of-a-soft-contact", "The depth of a soft contact", compiled=False)
 def sag_of_a_soft_contact(lesson, check):
-    """A soft contact under a force F comes to rest at a depth of k_n F/(2π hertz)², whatever the step.
+    """Check that a soft contact under a force F comes to rest at a depth of k_n F/(2π hertz)² for any step.
 
-    A disc has k_n = 1/m and F = m g; a box on both corners k_n = 1/m + (w/2)²/I = 2.5/m at each, and F = m g/2.  What
-    is left of the way to it shrinks at a rate of s²/(h (1 + 2ζs + s²)), s = 2π hertz h, h the substep: 40/s and more,
-    which leaves 1e-17 after a second.  The place is rounded: 1.1e-16 of half a metre, over a depth of 40 µm, and some.
+    A disc has k_n = 1/m and F = m g; a box on both corners k_n = 1/m + (w/2)²/I = 2.5/m at each, and F = m g/2.
+    The remaining distance shrinks at a rate of s²/(h (1 + 2ζs + s²)), s = 2π hertz h, h the substep: 40/s and more,
+    which leaves 1e-17 after a second.  The position is rounded: 1.1e-16 of half a metre, over a depth of 40 µm, and
+    some.
     """
     curves, hertzes, fine = [], np.array([30.0, 40.0, 50.0, 65.0, 80.0]), np.linspace(30.0, 80.0, 51)
     for name, shape, times in (("a disc", DISC, 1.0), ("a box", BOX, 1.25)):
         for dt, substeps in ((1.0 / 60.0, 4), (1.0 / 240.0, 1), (1.0 / 240.0, 4), (1.0 / 1000.0, 1)):
             worst = max(abs(sag(lesson, shape, hertz, dt, substeps) / (times * G / (2.0 * np.pi * hertz) ** 2) - 1.0)
                         for hertz in (40.0, 80.0))
-            check("A soft contact sinks by k_n F/(2π hertz)², whatever the step.",
+            check("A soft contact sinks by k_n F/(2π hertz)² for any step.",
                   f"relative error of the depth of {name}, 1/{1.0 / dt:.0f} s in {substeps} [-]",
                   law=0.0, found=worst, within=2e-11,
-                  saw=f"1/{1.0 / dt:.0f} s in {substeps} substeps: {name} sinks as it should, to {worst:.0e}.")
+                  saw=f"1/{1.0 / dt:.0f} s in {substeps} substeps: {name} sinks as predicted, to {worst:.0e}.")
         curves.append((series(f"theory, {name}", fine, 1e3 * times * G / (2.0 * np.pi * fine) ** 2, LINE),
                        series(name, hertzes, [1e3 * sag(lesson, shape, hertz, DT, 1) for hertz in hertzes], DOTS)))
     return Picture("How deep a soft contact sinks", "hertz [1/s]", "depth [mm]",
                    [curve for both in zip(*curves, strict=True) for curve in both],
-                   "Twice the hertz, a quarter of the depth; smaller steps alone change nothing, but they allow more "
-                   "hertz.")
+                   "Twice the hertz gives a quarter of the depth. Smaller steps alone change nothing, but they allow "
+                   "more hertz.")
 
 
 def rest_of_a_stack(lesson, n, seconds):
-    """Return (depths by theory (n,) [m], largest error of the depths [m], largest way sideways [m] or angle [rad])."""
+    """Return (depths by theory (n,) [m], largest error of the depths [m], largest shift [m] or angle [rad])."""
     hertz, substeps, joints = 60.0, 2, np.arange(n)
     weights = (n - joints) * G
     law = np.where(joints == 0, 2.5, 5.0) * 0.5 * weights / (2.0 * np.pi * hertz) ** 2
@@ -403,22 +415,22 @@ def rest_of_a_stack(lesson, n, seconds):
 
 @case("stack-at-rest", "Stacks of ten and of a hundred at rest", compiled=False)
 def stack_at_rest(lesson, check):
-    """n boxes of width w rest where theory says, with the impulses of theory, and are left alone.
+    """Check that n boxes of width w, started at rest with the depths and impulses of theory, do not move.
 
-    Joint k, counted from 0 at the floor, carries (n − k) m g, half of it at each corner, and a corner sinks by
-    k_n F/(2π hertz)².  Between two boxes k_n = 2/m + 2 (w/2)²/I = 5/m, at the floor half of that, because I = m w²/6.
-    If that is the rest of the pile, nothing moves but by round-off.  A depth is the difference of two places of up to
-    n m, each rounded, here and in the pile.  Sideways nothing leads back: in each step four lever arms of
-    half a metre are rounded to 1.1e-16 m.  A pile that is put down without an overlap sways first.
+    Joint k, counted from 0 at the floor, carries (n − k) m g, half of it at each corner, and a corner sinks by k_n
+    F/(2π hertz)².  Between two boxes k_n = 2/m + 2 (w/2)²/I = 5/m, at the floor half of that, because I = m w²/6.
+    If that is the rest state of the pile, it moves by round-off only.  A depth is the difference of two positions
+    of up to n m, each rounded, here and in the pile.  Sideways there is no restoring force: in each step four lever
+    arms of half a metre are rounded to 1.1e-16 m.  A pile that is put down without an overlap sways first.
     """
     drawn = []
     for n, seconds in ((10, 2.0), (100, 0.2)):
         law, depths, moved = rest_of_a_stack(lesson, n, seconds)
         error, joints = np.max(np.abs(depths - law)), np.arange(1.0, n + 1.0)
-        check("A joint of a stack is k_n F/(2π hertz)² deep, F the weight above it on two corners.",
+        check("A joint of a stack is k_n F/(2π hertz)² deep, with half of the weight above it as F.",
               f"largest error of the depths of {n} joints after {seconds:g} s [m]",
               law=0.0, found=error, within=4.0 * np.spacing(float(n)),
-              saw=f"The joints are {1e3 * law.min():.2f} to {1e3 * law.max():.2f} mm deep, and that to {error:.0e} m.")
+              saw=f"The joints are {1e3 * law.min():.2f} to {1e3 * law.max():.2f} mm deep, to {error:.0e} m.")
         check("A stack at rest does not drift, neither sideways nor by turning.",
               f"largest way sideways or angle of {n} boxes in {seconds:g} s [m, rad]",
               law=0.0, found=moved, within=4.0 * seconds / DT * np.spacing(0.5),
@@ -426,8 +438,8 @@ def stack_at_rest(lesson, check):
         drawn += [series(f"{n} boxes, theory", joints, 1e3 * law, LINE),
                   series(f"{n} boxes, measured", joints, 1e3 * depths, DOTS)]
     return Picture("How deep two stacks rest", "joint, from the floor", "depth [mm]", drawn,
-                   "Each joint carries one box less than the one below it. The floor does not give way, so the lowest "
-                   "joint is half as deep as its load says.")
+                   "Each joint carries one box less than the one below it. The floor does not move, so the lowest "
+                   "joint is half as deep as its load suggests.")
 
 
 # ---------------------------------------------------------------------------------------------- a mass ratio
@@ -437,10 +449,10 @@ MILLION = 1e6
 
 @case("mass-ratio-of-a-million", "A mass ratio of a million", compiled=False)
 def mass_ratio_of_a_million(lesson, check):
-    """A million on one: sweeps say that they have not got there, and Murty's method solves it in two pivots.
+    """Check that at a mass ratio of a million sweeps report failure and Murty's method needs two pivots.
 
     With ρ = r/(1 + r) the lower contact lacks r g ρ^(k−1) after k sweeps and the upper one ρ times that, which leaves
-    the residual g ρᵏ: 0.95 g after 50,000.  The condition of A is 4 · 10⁶, so that solving loses seven of sixteen
+    the residual g ρᵏ: 0.95 g after 50,000.  The condition of A is 4 · 10⁶, so solving loses seven of sixteen
     digits: 1e-9.  The pile sweeps, too: it sinks, and is refused.
     """
     A, b, forces = column((1.0, MILLION))
@@ -454,30 +466,31 @@ def mass_ratio_of_a_million(lesson, check):
         series("theory", sweeps, rho**sweeps, LINE),
         series("sweeps", sweeps[::20], errors_of(lesson, (1.0, MILLION), 1.0, 200)[::20], DOTS),
         series("Murty, at once", [0.0, 200.0], [error, error], LINE)],
-        "Two hundred sweeps change nothing that one could see; two pivots do.")
+        "After two hundred sweeps the error has not visibly changed; two pivots remove it.")
 
 
 def sweeps_that_give_up(lesson, check):
-    """Give sweeps and piles a mass ratio for which they need too long."""
+    """Give sweeps and piles a mass ratio for which they need too many iterations."""
     A, b, _ = column((1.0, MILLION))
     with_tangents = np.kron(A, np.diag([1.0, 0.0])) + np.kron(np.diag(np.diag(A)), np.diag([0.0, 1.0]))
     words = refusal(lambda: lesson.solve_contacts(with_tangents, np.kron(b, [1.0, 0.0]), np.full(2, 0.5)))
     left = float(words.split(" = ")[1].split(":")[0]) if "residual" in words else 0.0
     law = G * (MILLION / (1.0 + MILLION)) ** 50_000
-    check("Sweeps that have not converged say so, with their residual.", "residual in the refusal of the sweeps [m/s]",
+    check("Sweeps that have not converged end in an error that names their residual.",
+          "residual in the refusal of the sweeps [m/s]",
           law=law, found=left, within=THREE_DIGITS * law,
-          saw=f"After 50,000 sweeps the refusal names a residual of {left:.4f} m/s.")
+          saw=f"After 50,000 sweeps the error names a residual of {left:.4f} m/s.")
     refused, tried = 0, ((1e6, 2, 120.0), (1e6, 16, 480.0), (1e4, 2, 120.0))
     for r, substeps, hertz in tried:
         pile = pile_of(lesson, BOX, [(0.0, 0.5), (0.0, 1.5)], 0.5, (1.0, r), substeps=substeps, hertz=hertz)
         refused += "sink into each other; the residual" in refusal(lambda pile=pile: after(lesson, BOX, *pile, 5.0))
-    check.count("A pile whose light box cannot carry the heavy one ends in Diverged, and not in a picture.",
+    check.count("A pile whose light box cannot carry the heavy one ends in Diverged instead of a picture.",
                 "piles that are refused", refused, len(tried),
                 "piles end in Diverged with the residual of their contacts.")
 
 
 def refusal(run):
-    """Return the words of Diverged or BadInput, in which a run must end; none if it ends without."""
+    """Return the message of Diverged or BadInput, in which a run must end; none if it ends without an error."""
     try:
         run()
     except (Diverged, BadInput) as e:
@@ -544,12 +557,12 @@ def measured_matrix(lesson, masses, c, zeta):
 
 @case("highest-hertz", "The highest stable hertz", compiled=False)
 def highest_hertz(lesson, check):
-    """A column at rest is stable where a substep shrinks all small errors: all eigenvalues of its matrix are below 1.
+    """Compare the highest stable hertz of a column at rest with theory: all eigenvalues of a substep are below 1.
 
-    Theory writes the substep down as a matrix; the experiment perturbs gaps, impulses and velocities of a real pile.
-    With errors of a thousandth of the sag, which is 1/100 of a disc, differences are rounded to 1e-16/1e-5: 1e-9 is
-    allowed to eigenvalues that may be double.  Where two of them cross 1, hertz are refined by bisection: its width is
-    1e-6, and 1 − ρ changes by some 0.02 per unit there, so that 1e-9 makes 1e-7 more.
+    Theory gives the matrix of a substep; the experiment perturbs gaps, impulses and velocities of a real pile.
+    With errors of a thousandth of the sag, which is 1/100 of a disc, differences are rounded to 1e-16/1e-5.  An
+    error of 1e-9 is allowed for eigenvalues that may be double.  Where two of them cross 1, hertz are refined by
+    bisection: its width is 1e-6, and 1 − ρ changes by some 0.02 per unit there, so 1e-9 adds 1e-7.
     """
     most = 1.0 / 3.0
     left = lambda masses, c, zeta=10.0: largest(substep_matrix(masses, c, zeta))
@@ -558,13 +571,13 @@ def highest_hertz(lesson, check):
              ("twenty equal discs, ζ = 1", np.ones(20), 1.0), ("100 on 1", (1.0, 100.0), 10.0))
     for name, masses, zeta in piles:
         rho = seen(masses, most, zeta)
-        check("With hertz of a third of the substeps, the most that a pile accepts, up to twenty are stable.",
+        check("At a third of the substep rate, the highest hertz that a pile accepts, up to twenty are stable.",
               f"part of an error that a substep leaves, {name} [-]",
               law=left(masses, most, zeta), found=rho, within=1e-7,
-              saw=f"A third of the substeps, {name}: a substep leaves {rho:.5f} of an error.")
+              saw=f"A third of the substep rate, {name}: a substep leaves {rho:.5f} of an error.")
     for r in (1e3, 1e4):
         edge = bisect(lambda c, r=r: seen((1.0, r), c) > 1.0, 0.25, most)
-        check("A heavy body on a light one lowers the hertz at which they stand.",
+        check("A heavy body on a light one lowers the highest stable hertz.",
               f"highest hertz times a substep, {r:g} on 1 [-]",
               law=bisect(lambda c, r=r: left((1.0, r), c) > 1.0, 0.25, 0.4), found=edge, within=4.0 * EDGE,
               saw=f"{r:g} on 1 stand up to {edge:.5f} hertz per substep rate; above it they tremble.")
@@ -573,7 +586,7 @@ def highest_hertz(lesson, check):
     return Picture("What a substep leaves of an error", "hertz times a substep", "part that is left", [
         *(series(f"theory, {name}", fine, [left(masses, c) for c in fine], LINE) for name, masses in curves),
         *(series(name, few, [seen(masses, c) for c in few], DOTS) for name, masses in curves)],
-        "Above 1 a pile trembles.  Stiffer contacts settle sooner, but only up to about a third of the substeps.")
+        "Above 1 a pile trembles.  Stiffer contacts settle faster, but only up to about a third of the substep rate.")
 
 
 # ---------------------------------------------------------------------------------------------- extremes
@@ -598,9 +611,9 @@ def slope(degrees, d):
 
 
 def parted(lesson, shape, x, looks, pause):
-    """Return (greatest height of a centre [m], overlap left [m]) of bodies that begin inside each other.
+    """Return (largest height of a centre [m], remaining overlap [m]) of bodies that begin inside each other.
 
-    They are looked at so many times, after a pause [s] each.
+    They are observed this number of times, after a pause [s] each.
     """
     state, pile = pile_of(lesson, shape, x, 0.5, 1.0)
     highest = -np.inf
@@ -619,8 +632,11 @@ def sliding(lesson, shape, degrees, mu, seconds):
     return np.linalg.norm(end.v[0]), end.q[0] - q
 
 
-def wedges(lesson, check, shape, name, angles, seconds, within):
-    """Put a disc or a ball between two walls without friction; return the mean forces over the weight."""
+def wedges(lesson, check, shape, name, angles, seconds, within, within_from):
+    """Put a disc or a ball between two walls without friction; return the mean forces over the weight.
+
+    within, within_from: as in Checks
+    """
     d, means = 2 if shape is DISC else 3, []
     for degrees in angles:
         law = 0.5 / np.cos(np.radians(degrees))
@@ -630,13 +646,14 @@ def wedges(lesson, check, shape, name, angles, seconds, within):
         means.append(np.mean(forces))
         check("In a wedge of slope θ each wall carries 1/(2 cos θ) weights.",
               f"force over the weight of a {name} at {degrees:g}° [-]", law=law,
-              found=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan, within=within * law,
+              found=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan,
+              within=within * law, within_from=within_from,
               saw=f"At {degrees:g}° the walls carry {' and '.join(f'{f:.4f}' for f in forces)} weights.")
     return means
 
 
 def small_beside_large(lesson, shape, small, mass, seconds):
-    """Return the largest way [m] of bodies of 1 cm and 1 kg beside one of 1 m and this mass, on a floor."""
+    """Return the largest displacement [m] of bodies of 1 cm and 1 kg beside one of 1 m and this mass, on a floor."""
     n, d = len(small) + 1, len(small[0])
     sizes = np.append(1.0, np.full(n - 1, 0.01))
     state, pile = pile_of(lesson, shape, [np.eye(d)[-1], *small], np.repeat(sizes[:, None], d, axis=1),
@@ -645,7 +662,7 @@ def small_beside_large(lesson, shape, small, mass, seconds):
 
 
 def wedge_picture(title, steepest, angles, means, sentence):
-    """Draw the force that a wall carries over its slope."""
+    """Draw the force on a wall as a function of its slope."""
     fine = np.linspace(0.0, steepest, round(steepest) + 1)
     return Picture(title, "slope of the walls [°]", "force over the weight [-]", [
         series("theory, 1/(2 cos θ)", fine, 0.5 / np.cos(np.radians(fine)), LINE),
@@ -665,33 +682,34 @@ def carried(lesson, n, dt, **more):
 
 @case("extremes", "Deep overlaps, slopes, wedges and other extremes", compiled=False)
 def extremes(lesson, check):
-    """Deep overlaps part gently, friction 0 and ∞ keeps its law, a wedge of 89° carries 28 weights, 1 : 100 stands.
+    """Check deep overlaps, friction 0 and ∞, a wedge of 89° that carries 28 weights, sizes of 1 : 100, and long steps.
 
-    Bodies of 1 m part with 2.7 m/s at most.  Thrown up with that, one would rise by 0.37 m.  The second sweep,
-    at rest, takes the speed back within a substep: a tenth of it is allowed to bodies that come apart while pushed.
+    Bodies of 1 m separate at 2.7 m/s at most.  Thrown up at that speed, one would rise by 0.37 m.  The second sweep,
+    at rest, removes the speed within a substep: a tenth of it is allowed to bodies that separate while pushed.
     On a slope the contacts of a box are there from the first step: its speed is g sin θ t, or 0 with μ = ∞.
     In a wedge sweeps contract by cos² 2θ, slowest at 89°: there 6e-9 of the force was left after 3 s; 1e-7 is allowed.
     A small disc beside a large one sags by g/(2π hertz)² = 4.3 µm, and nothing else happens to it.
-    A stack of five sways a little in steps of 1/30 s: 3e-4 weights were measured, and ten times that is allowed.
+    A stack of five sways slightly in steps of 1/30 s: 3e-4 weights were measured, and ten times that is allowed.
     """
     left = 0.0
     for shape, x, name in INSIDE:
         highest, overlap = parted(lesson, shape, x, 120, 1.0 / 60.0)
         left = np.maximum(left, overlap)
-        check("What begins inside something else comes out, and is not thrown out.",
+        check("A body that begins inside another comes out, and is not ejected.",
               f"height of {name} above the place on top, at most [m]",
               law=0.0, found=max(0.0, highest - len(x) + 0.5), within=0.037,
-              saw=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm overlap at last.")
+              saw=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm of overlap remain.")
     check("After two seconds they overlap by no more than contacts sag.", "largest overlap that is left [m]",
           law=0.0, found=left, within=1e-4, saw=f"After two seconds {1e3 * left:.3f} mm of overlap are left.")
     for degrees, mu in ((5.0, 0.0), (40.0, 0.0), (80.0, 0.0), (5.0, np.inf), (40.0, np.inf)):
         speed, turned = sliding(lesson, BOX, degrees, mu, 1.0)
-        check("Without friction a box slides with g sin θ t; with infinite friction it stays where it is.",
+        check("Without friction a box slides at g sin θ t; with infinite friction it does not move.",
               f"speed after 1 s on a slope of {degrees:g}°, μ = {mu:g} [m/s]",
               law=0.0 if mu else G * np.sin(np.radians(degrees)), found=speed, within=1e-10,
               saw=f"On {degrees:g}° with μ = {mu:g} its speed is {speed:.4g} m/s; it turns by {turned:.0e} rad.")
     angles = (45.0, 80.0, 89.0)
-    means = wedges(lesson, check, DISC, "disc", angles, 3.0, 1e-7)
+    means = wedges(lesson, check, DISC, "disc", angles, 3.0, 1e-7,
+                    within_from="sixteen times the rest of the force that the sweeps left at 89°, 6e-9")
     moved = small_beside_large(lesson, DISC, [(1.5 + 0.05 * k, 0.01) for k in range(5)], 1e4, 1.0)
     check("Discs of 1 cm beside one of 1 m, 10,000 times as heavy, sag like any other.",
           "largest way of a disc in 1 s, sizes 1 : 100 [m]", law=G / (480.0 * np.pi) ** 2, found=moved, within=1e-12,
@@ -699,15 +717,16 @@ def extremes(lesson, check):
     error = np.max(np.abs(carried(lesson, 5, 1.0 / 30.0, substeps=8, hertz=80.0) - np.arange(5.0, 0.0, -1.0)))
     check("Steps of 1/30 s hold a stack, if they have substeps.",
           "largest error of the forces in a stack of five, over a weight [-]", law=0.0, found=error, within=3e-3,
+          within_from="ten times the sway of this stack, 3e-4 weights",
           saw=f"With 1/30 s in 8 substeps the forces of five boxes are right to {error:.0e} of a weight.")
     refusals(lesson, check)
     return wedge_picture("A disc between two walls", 89.0, angles, means,
                          "Walls that are nearly upright carry many weights: a contact solver must find forces that no "
-                         "load has.")
+                         "single load has.")
 
 
 def refusals(lesson, check):
-    """Ask for contacts and piles that are none."""
+    """Make calls with invalid contacts and piles."""
     at, half, still = [(0.0, 0.5)], [(0.5, 0.5)], np.zeros(2)
     pile = lambda **more: pile_of(lesson, DISC, **{"x": at, "half": half, "masses": 1.0, **more})
     move = lambda dt, **more: after(lesson, DISC, *pile(**more), 1.0, dt)
@@ -721,7 +740,7 @@ def refusals(lesson, check):
         (lambda: touch((0.0, 1.0), still), "0.0"), (lambda: touch((0.0, 2.0), np.ones(2)), "2.0"),
         (lambda: touch((0.0, 0.0), np.ones(2)), "0.0"), (lambda: lesson.solve_lcp(np.ones((2, 2)), -np.ones(2)), "0.0"),
     )
-    check.count("Sizes and masses of zero, planes without a normal, hertz that no substep carries and contacts of two "
+    check.count("Sizes and masses of zero, planes without a normal, hertz too high for a substep and contacts of two "
                 "immovable bodies are refused, with their value.", "calls that name the value in their error",
                 sum(refuses(call, (), value) for call, value in asked), len(asked),
                 "such calls end in a sentence that names the value.")
@@ -729,32 +748,34 @@ def refusals(lesson, check):
 
 @case("extremes-in-space", "Extremes in space", compiled=False)
 def extremes_in_space(lesson, check):
-    """What holds in the plane holds in space: deep overlaps, friction 0 and ∞ on a slope, a wedge, sizes of 1 : 100.
+    """Check the same in space: deep overlaps, friction 0 and ∞ on a slope, a wedge, sizes of 1 : 100.
 
-    The bounds are those of the plane.  What parts with 2.7 m/s would rise by 0.37 m; a tenth of that is allowed.
-    A ball in a wedge of 80° is held by 1/(2 cos θ) weights on each side; sweeps contract by cos² 2θ = 0.88 there, and
-    7e-8 was left after a second: 1e-6 is allowed.  A ball of 1 cm beside one of 1 m sags by g/(2π hertz)².
+    The bounds are those of the plane.  A body that separates at 2.7 m/s would rise by 0.37 m; a tenth of that is
+    allowed.  A ball in a wedge of 80° is held by 1/(2 cos θ) weights on each side; sweeps contract by cos² 2θ =
+    0.88 there, and 7e-8 was left after a second: 1e-6 is allowed.  A ball of 1 cm beside one of 1 m sags by g/(2π
+    hertz)².
     """
     for shape, x, name in INSIDE_IN_SPACE:
         highest, overlap = parted(lesson, shape, x, 10, 0.1)
-        check("What begins inside something else comes out, and is not thrown out.",
+        check("A body that begins inside another comes out, and is not ejected.",
               f"height of {name} above the place on top, at most, and overlap in the end [m]",
               law=0.0, found=max(0.0, highest - len(x) + 0.5) + overlap, within=0.037,
-              saw=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm overlap at last.")
+              saw=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm of overlap remain.")
     for mu in (0.0, np.inf):
         speed, _ = sliding(lesson, CUBE, 40.0, mu, 0.25)
-        check("Without friction a cube slides with g sin θ t; with infinite friction it stays where it is.",
+        check("Without friction a cube slides at g sin θ t; with infinite friction it does not move.",
               f"speed after ¼ s on a slope of 40°, μ = {mu:g} [m/s]",
               law=0.0 if mu else 0.25 * G * np.sin(np.radians(40.0)), found=speed, within=1e-9,
               saw=f"On 40° with μ = {mu:g} its speed is {speed:.4g} m/s after ¼ s.")
     angles = (30.0, 60.0, 80.0)
-    means = wedges(lesson, check, BALL, "ball", angles, 1.0, 1e-6)
+    means = wedges(lesson, check, BALL, "ball", angles, 1.0, 1e-6,
+                    within_from="fourteen times the rest of the force that the sweeps left at 80°, 7e-8")
     moved = small_beside_large(lesson, BALL, [(1.5, 0.0, 0.01), (0.0, 1.5, 0.01)], 1e6, 0.5)
     check("Balls of 1 cm beside one of 1 m, a million times as heavy, sag like any other.",
           "largest way of a ball in ½ s, sizes 1 : 100 [m]", law=G / (480.0 * np.pi) ** 2, found=moved, within=1e-11,
           saw=f"They move by {1e6 * moved:.3f} µm.")
     return wedge_picture("A ball between two walls", 85.0, angles, means,
-                         "In space the same forces hold a ball as hold a disc in the plane.")
+                         "In space a ball is held by the same forces as a disc in the plane.")
 
 
 # ---------------------------------------------------------------------------------------------- the judge
@@ -796,15 +817,15 @@ def pymunk_pile_at_rest(lesson):
 
 
 def converged_impulses(lesson, check, record, residual):
-    """Judge a record of rest by the lesson, by velocities alone, and with a tenth of the friction."""
+    """Judge a record of rest by the lesson's residual, by velocities alone, and with a tenth of the friction."""
     by_reference = natural_residual(*record, MU, ENGINE_DT) / (G * ENGINE_DT)
     strict = judged_by_lesson(lesson, record, 0.1 * MU)[0] / (G * ENGINE_DT)
-    check("Impulses of an engine that has converged have no residual.",
+    check("The impulses of a converged engine have no residual.",
           "residual of pymunk's impulses in 30 discs at rest, over g dt [-]", law=0.0, found=residual, within=1e-7,
           saw=f"pymunk's impulses have a residual of {residual:.0e} g dt after 3 s.")
-    check("The judge without matrices says the same.", "residual by velocities alone, over g dt [-]",
+    check("The residual without matrices is the same.", "residual by velocities alone, over g dt [-]",
           law=0.0, found=by_reference, within=1e-7, saw=f"Without matrices it is {by_reference:.0e} g dt.")
-    check("Friction that is too large for the cone is found.",
+    check("Friction outside the cone is detected.",
           "judgements with a tenth of μ that find more than g dt/100 [of 1]", law=1, found=strict > 0.01, within=0.0,
           saw=f"Judged with μ = {0.1 * MU:g} the same impulses have a residual of {strict:.2f} g dt.")
 
@@ -815,7 +836,7 @@ def impulse_left_out(lesson, check, record):
     k = np.argmax(np.sum(record.J * record.contacts[2], axis=1))
     J = record.J * (np.arange(len(record.J)) != k)[:, None]
     left, _ = judged_by_lesson(lesson, record._replace(bodies=without_impulse(record, k), J=J), MU)
-    check("A contact whose impulse is left out has the residual k_n J_n: no residual of the pile is less.",
+    check("Without the impulse of a contact the residual of the pile is at least that contact's k_n J_n.",
           "residual without the largest impulse, over k_n J_n, or 1 if that is less [-]",
           law=1.0, found=min(1.0, left / own_push(record, k)), within=1e-6,
           saw=f"Without it the residual is {left / (G * ENGINE_DT):.2f} g dt; "
@@ -826,44 +847,42 @@ def disc_of_friction(lesson, check):
     """Let 12 spheres come to rest by the lesson's pile."""
     end = after(lesson, BALL, *fallen(KINDS["spheres"]._replace(across=2), 12), 1.0)
     J_n, J_t = normal_and_tangential(end.J, end.contacts.n)
-    check("The pile in space keeps the disc of the cone.",
+    check("The pile in space keeps friction within the cone.",
           "largest |J_t| − μ J_n of 12 spheres, over the largest J_n [-]",
           law=0.0, found=max(0.0, np.max(J_t - MU * J_n)) / np.max(J_n), within=1e-12,
           saw="No contact of our 12 spheres has more friction than the cone allows.")
 
 
-def pyramid_of_pybullet(check):
-    """Let 27 spheres roll in pybullet."""
+def pyramid_of_pybullet():
+    """Let 27 spheres roll in pybullet; return what it says of friction, for Checks.by."""
     kind, slopes = KINDS["spheres"]._replace(across=3), []
     world = BulletPile(kind, *fallen(kind, 27), 50)
     for _ in range(12):
         world.run(60)
         slopes.append(steepest(world.judged()))
     world.close()
-    check("pybullet's friction is a pyramid: it reaches √2 μ along the diagonal.",
-          "largest |J_t|/(μ J_n) of 27 spheres in pybullet [-]",
-          law=np.sqrt(2.0), found=max(slopes) / MU, within=0.01,
-          saw=f"pybullet's friction goes up to {max(slopes) / MU:.4f} μ times the normal force.")
+    return {"law": np.sqrt(2.0), "found": max(slopes) / MU, "within": 0.01,
+            "saw": f"pybullet's friction goes up to {max(slopes) / MU:.4f} μ times the normal force."}
 
 
 @case("judge", "A judge for any solver, an engine's included", compiled=False)
 def judge(lesson, check):
-    """The residual needs impulses and velocities, and does not mind who found them.
+    """Check that the residual judges impulses and velocities of any solver.
 
-    pymunk's impulses in a pile of discs at rest keep the laws to what its iterations leave, 1e-8 g dt after 3 s with
-    200 of them.  Judged with a tenth of the friction, a contact is over the cone: then the residual is no round-off any
-    more.
+    pymunk's impulses in a pile of discs at rest satisfy the laws to what its iterations leave, 1e-8 g dt after 3 s
+    with 200 of them.  Judged with a tenth of the friction, a contact is outside the cone, and the residual exceeds
+    round-off.
 
-    An impulse that is left out leaves its k_n J_n at its own contact.  The residual is the largest of all, so it is at
-    least that; a neighbour can have a little more, depending on the pile.  pybullet's friction goes along two
+    Without its impulse a contact has the residual k_n J_n.  The residual is the largest of all, so it is at least
+    that; a neighbour can have a slightly larger one, depending on the pile.  pybullet's friction acts along two
     directions, each up to μ J_n: √2 μ J_n along the diagonal.
     """
     times, seen, record = pymunk_pile_at_rest(lesson)
     converged_impulses(lesson, check, record, seen[-1])
     impulse_left_out(lesson, check, record)
     disc_of_friction(lesson, check)
-    if PYBULLET.installed():
-        pyramid_of_pybullet(check)
+    check.by(PYBULLET, "pybullet's friction is a pyramid: it reaches √2 μ along the diagonal.",
+             "largest |J_t|/(μ J_n) of 27 spheres in pybullet [-]", pyramid_of_pybullet)
     return Picture("pymunk's impulses, judged", "time [s]", "log₁₀ of the residual over g dt", [
         series("30 discs, 200 iterations", times, np.log10(np.maximum(seen, 1e-16)), DOTS)],
         "While discs fall and roll, the impulses are not those of rest; then the residual falls to round-off.")
@@ -884,7 +903,7 @@ def own_push(record, k):
 
 
 def without_impulse(record, k):
-    """Return the bodies with the velocities that they would have, had contact k not pushed."""
+    """Return the bodies with the velocities that they would have without the impulse of contact k."""
     x, v, omega, inv_mass, inv_inertia = record.bodies
     v, omega = 1.0 * v, 1.0 * omega
     for i, sign, r in levers(record, k):
@@ -903,9 +922,10 @@ def relaxed_radius(A, omega):
 
 @case("closed-forms", "Contraction factors, the best relaxation, the disc of friction", compiled=False)
 def closed_forms(lesson, check):
-    """Spectral radii from the matrices of the sweep, the best ω by a search over ω, the disc by its variational law.
+    """Compare spectral radii, the best ω and the disc of friction with independent computations.
 
-    At the best ω two eigenvalues meet, so the radius there is known to the root of round-off only, 1e-8.
+    The radii come from the matrices of the sweep, the best ω from a search over ω, the disc from its variational law.
+    At the best ω two eigenvalues meet, so the radius there is known to the square root of round-off only, 1e-8.
     P is the point of the disc nearest to J if no q of the disc has (J − P) · (q − P) > 0.
     """
     stacks = {n: column(np.ones(n))[0] for n in (2, 3, 5, 10, 20)}
@@ -924,7 +944,8 @@ def closed_forms(lesson, check):
         off.append(abs(radius - rho))
     check.agree("No relaxation does better than 2/(1 + √(1 − ρ)).", "radius beyond the best of a search [-]",
                 max(beyond), 1e-7)
-    check.agree("With it a sweep leaves ω − 1.", "radius at the best relaxation: largest error [-]", np.max(off), 1e-7)
+    check.agree("At the best relaxation a sweep leaves ω − 1 of the error.",
+                "radius at the best relaxation: largest error [-]", np.max(off), 1e-7)
     nearest_of_the_disc(lesson, check)
 
 
@@ -980,7 +1001,7 @@ def contact_problem(rng):
     return factor @ factor.T + 0.5 * np.eye(8), rng.normal(size=8)
 
 
-@random_law("A sweep uses new impulses before, old ones behind, and none pulls.",
+@random_law("A sweep uses new impulses of earlier contacts, old ones of later contacts, and none pulls.",
             "largest error of the impulses of a sweep [N s]", 1e-9)
 def sweep_of_normals(lesson, rng):
     A, b = contact_problem(rng)
@@ -998,7 +1019,7 @@ def direct_solver(lesson, rng):
     return lesson.solve_lcp(A, size * b) / size, enumerated(A, b)
 
 
-@random_law("The residual finds contacts that pull, approach, or push while they part.",
+@random_law("The residual detects contacts that pull, approach, or push while they separate.",
             "largest error of the residual [m/s]", 1e-9)
 def residual_of_normals(lesson, rng):
     A, b = contact_problem(rng)
@@ -1008,7 +1029,7 @@ def residual_of_normals(lesson, rng):
 
 
 def pushes(J, u, k, mu):
-    """Return (J_n, J_t) that contacts alone would have: of J (2m,), u (2m,) and the diagonal k (2m,) of A."""
+    """Return (J_n, J_t) that each contact alone would have: of J (2m,), u (2m,) and the diagonal k (2m,) of A."""
     n, t = slice(0, None, 2), slice(1, None, 2)
     limit = mu * np.maximum(0.0, J[n])
     return np.maximum(0.0, J[n] - u[n] / k[n]), np.clip(J[t] - u[t] / k[t], -limit, limit)
@@ -1027,7 +1048,7 @@ def sweep_with_friction(lesson, rng):
     return new, np.stack((J_n, J_t), axis=1)
 
 
-@random_law("The residual finds too much friction, and too little.",
+@random_law("The residual detects too much friction, and too little.",
             "largest error of the residual with friction [m/s]", 1e-9)
 def residual_with_friction(lesson, rng):
     A, b = contact_problem(rng)
@@ -1053,7 +1074,7 @@ def arms(lesson, rng):
             (contacts.p - x[contacts.a], contacts.p - x[contacts.b], k[::2], k[1::2]))
 
 
-@random_law("A sweep without a matrix does what each contact by itself does to all velocities.",
+@random_law("A sweep without a matrix changes all velocities as one contact after the other does.",
             "largest error of the state after a quick sweep [m/s, rad/s, N s]", 1e-9)
 def quick_sweep(lesson, rng):
     (x, v, omega, contacts), inv_mass, inv_inertia, all_rows, w = held_contacts(lesson, rng)
@@ -1140,9 +1161,11 @@ def soft_contact(lesson, rng):
 
 @case("laws-of-contact", "Laws of contact", compiled=False)
 def laws_of_contact(lesson, check):
-    """Rows by the velocities of points; sweeps by triangular matrices; complementarity by trying all sets of contacts.
+    """Compare rows, sweeps and complementarity with independent computations.
 
-    A sweep takes new impulses for the contacts before, old ones for itself and those behind: tril(A) and triu(A).
+    The rows are checked by velocities of points, sweeps by triangular matrices, and complementarity by trying all sets
+    of contacts.  A sweep takes new impulses for the contacts before, old ones for itself and those behind: tril(A) and
+    triu(A).
     """
     check.laws(lesson, (rows_of_contacts, delassus_matrix, sweep_of_normals, direct_solver, residual_of_normals,
                         sweep_with_friction, arms, quick_sweep, sweep_in_space, free_turn, residual_with_friction,
@@ -1163,5 +1186,5 @@ def stops_in_a_substep(lesson, check):
         pile = pile._replace(gravity=0.0 * up)
         end = after(lesson, shape, state._replace(v=np.stack((-up, 0.0 * up))), pile, DT)
         found += [*(end.x[0] - r * up), *(end.v[0] + 0.5 * up)]
-    check.agree("What comes with 1 m/s goes down to the floor and not into it: gaps are those of each substep.",
+    check.agree("A body that arrives at 1 m/s stops on the floor and not in it: gaps are those of each substep.",
                 "places and velocities: largest error [m, m/s]", np.max(np.abs(found)), 1e-12)

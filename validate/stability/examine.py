@@ -1,4 +1,4 @@
-"""Run stability cases with the lessons of a subject."""
+"""Runs of stability cases with the lessons of a subject."""
 
 from importlib import import_module
 from pathlib import Path
@@ -11,26 +11,27 @@ from .case import CASES, Checks, Examined
 
 
 def cases_of(lesson):
-    """{slug: Case} of a lesson, in the order of its file; empty for a lesson without cases."""
+    """Return {slug: Case} of a lesson, in the order of its file; empty for a lesson without cases."""
     if Path(__file__).with_name(f"{lesson}.py").is_file():
         import_module(f".{lesson}", __package__)
     return CASES.get(lesson, {})
 
 
 def all_cases():
-    """Every case, in the order of the course."""
+    """Return every case, in the order of the course."""
     return [case for lesson in modules.lesson_names() for case in cases_of(lesson).values()]
 
 
 def subject_of(case, of="solutions", compiled=True):
-    """The lesson that a case examines, from that subject; compiled where the case says so."""
+    """Return the lesson of a subject that a case examines, compiled if the case says so."""
     return modules.module_set(of, compiled and case.compiled and modules.can_compile()).lesson(case.lesson)
 
 
 def examine(case, of="solutions", compiled=True):
     """The findings and the picture of one case."""
     with np.errstate(all="ignore"):              # overflow is what an unstable run does
-        return Examined(case.slug, case.title, case.lesson, *found_by(case, subject_of(case, of, compiled)))
+        found, picture = found_by(case, subject_of(case, of, compiled))
+        return Examined(case.slug, case.title, case.lesson, found, picture, found.not_run)
 
 
 def found_by(case, lesson):
@@ -41,7 +42,7 @@ def found_by(case, lesson):
 
 
 def stability_cases(lesson, plan):
-    """Every case of a lesson whose exercises have been attempted, as data."""
+    """Return every case of a lesson whose exercises have been attempted, as data."""
     found = []
     for case in cases_of(lesson).values():
         try:
@@ -54,16 +55,17 @@ def stability_cases(lesson, plan):
 
 
 def broken_off(case, error):
-    """A case that ended in an error of the subject's code: a finding that does not hold."""
+    """Return a case that ended in an error of the subject's code: a finding that does not hold."""
     words = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
     check = Checks()
     check(f"The case runs without an error; here it ended in {words}.", "cases without an error [of 1]",
           law=1, found=0, within=0.0, saw=words)
-    return Examined(case.slug, case.title, case.lesson, check, None)
+    return Examined(case.slug, case.title, case.lesson, check, None, [])
 
 
 def stored(examined):
-    """An examined case as data that JSON can hold."""
+    """Return an examined case as data that JSON can hold."""
     findings = [{**f._asdict(), "holds": f.holds} for f in examined.findings]
     picture = examined.picture._asdict() if examined.picture else None
-    return jsonable({**examined._asdict(), "findings": findings, "picture": picture})
+    return jsonable({**examined._asdict(), "findings": findings, "picture": picture,
+                     "not_run": [one._asdict() for one in examined.not_run]})

@@ -1,9 +1,10 @@
 """Stick and slip: the edges and errors of the steps of lesson 3, compared with theory.
 
 Edges are found by bisection of runs from rest, never from a formula.  A body that moves less than WAY
-counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the rest.
+counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the other numbers.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, ran
 from ..products import PYBULLET, PYMUNK
 
 G = 9.81                     # [m/s²]
-WAY = 1e-9                   # [m]: far above the round-off of one second, far below any slip beyond the edge by 1e-6
+WAY = 1e-9                   # [m]: far above the round-off of one second, far below the slip at 1e-6 beyond the edge
 ENGINE_WAY = 2e-5  # [m]: twice the overlap of 1e-5 that an engine tolerates, which limits how well it knows a position
 MILLIMETRES = 1e3            # millimetres per metre
 ROUND_OFF = 1e-12            # of numbers below 30 after a thousand steps
@@ -44,7 +45,7 @@ def particle(degrees, mu):
 
 
 def advanced(lesson, method, x, v, dt, steps, block):
-    """Return (x, v) of a block after so many steps of a method."""
+    """Return (x, v) of a block after this number of steps of a method."""
     step = getattr(lesson, method.function)
     return integrators.advance(step, lesson.driven_acceleration, 0.0, x, v, dt, steps, block)
 
@@ -61,7 +62,7 @@ def moved(lesson, method, degrees, mu_s, mu_k, dt=0.02, steps=50):
 
 
 def least_friction(lesson, method, degrees):
-    """Return the least static friction [-] that holds a body on a slope, by bisection."""
+    """Return the smallest static friction [-] that holds a body on a slope, by bisection."""
     return bisect(lambda mu: moved(lesson, method, degrees, mu, 0.5 * mu) < WAY, 0.01, 4.0)
 
 
@@ -85,18 +86,26 @@ def engine_moved(make, degrees, mu, dt=1.0 / 240.0):
 
 
 def least_friction_of_an_engine(make, degrees):
-    """Return the least friction [-] with which an engine's block holds."""
+    """Return the smallest friction [-] with which an engine's block holds."""
     return bisect(lambda mu: abs(engine_moved(make, degrees, mu)) < ENGINE_WAY, 0.3, 1.0)
 
 
 # ---------------------------------------------------------------------------------------------- stick and slip
 
+def held_by_an_engine(engine, make):
+    """Return what bisection finds of a block on 30° in an engine, for Checks.by."""
+    found = least_friction_of_an_engine(make, 30.0)
+    return {"law": np.tan(np.radians(30.0)), "found": found,
+            "within": EDGE + 2.0 * ENGINE_WAY / (G * np.cos(np.radians(30.0))),
+            "saw": f"By bisection {engine} holds a block at 30° from μ = {found:.5f} on."}
+
+
 @case("stick-threshold", "Stick and slip on a slope", compiled=False)
 def stick_threshold(lesson, check):
-    """A block at rest on a slope of angle θ holds from μ = tan θ on.
+    """Check that a block at rest on a slope of angle θ holds from μ = tan θ on.
 
-    Just below, at μ = tan θ (1 − ε), it slides with g sin θ ε.  In one second it moves WAY if ε > 2 WAY/(g sin θ),
-    which is below 1e-8 here.  An engine knows a position only to ENGINE_WAY.
+    Just below, at μ = tan θ (1 − ε), it slides with the acceleration g sin θ ε.  In one second it moves WAY if
+    ε > 2 WAY/(g sin θ), which is below 1e-8 here.  An engine knows a position only to ENGINE_WAY.
     """
     drawn, angles = [], (5.0, 10.0, 20.0, 30.0, 45.0, 60.0)
     for method in (SLIDING, EVENT, GRIPPING):
@@ -110,22 +119,19 @@ def stick_threshold(lesson, check):
                       f"tan θ is {bound:.6f}.")
         drawn.append(series(f"{method.label}, measured", angles, edges.values(), DOTS))
     for engine, make in MAKERS.items():
-        if engine.installed():
-            found = least_friction_of_an_engine(make, 30.0)
-            check("An engine's block holds from μ = tan θ on, to the accuracy of its position.",
-                  f"{engine}: least friction that holds at 30° [-]", law=np.tan(np.radians(30.0)), found=found,
-                  within=EDGE + 2.0 * ENGINE_WAY / (G * np.cos(np.radians(30.0))),
-                  saw=f"By bisection {engine} holds a block at 30° from μ = {found:.5f} on.")
+        check.by(engine, "An engine's block holds from μ = tan θ on, to the accuracy of its position.",
+                 f"{engine}: least friction that holds at 30° [-]", partial(held_by_an_engine, engine, make))
     fine = np.linspace(0.0, 62.0, 125)
     return Picture(
         "Stick or slip on a slope", "slope θ [°]", "least friction that holds [-]",
         [series("tan θ, theory", fine, np.tan(np.radians(fine)), LINE), *drawn],
-        "Above the line a block stays at rest, below it slides: three steps of this lesson agree with theory to six "
+        "Above the line a block stays at rest, below the line it slides: three steps of this lesson agree with theory "
+        "to six "
         "digits.")
 
 
 def least_force_that_moves(lesson, method):
-    """Return the least amplitude [N] of F cos t that moves a block of 1 kg with μ = 0.8, by bisection."""
+    """Return the smallest amplitude [N] of F cos t that moves a block of 1 kg with μ = 0.8, by bisection."""
     run = lambda force: advanced(lesson, method, STILL, STILL, 0.01, 100, slope(0.0, 0.8, 0.8, (force, 0.0), 1.0))
     return bisect(lambda force: run(force)[0][0] > 1e-12, 4.0, 16.0)
 
@@ -145,7 +151,7 @@ def slips_in_time(lesson, check, p, block, dt):
           law=times[1, 0], found=ours[1, 0], within=ROUND_OFF,
           saw=f"The second slip begins at {ours[1, 0]:.9f} s; |F cos t| = μ m g then.")
     end, goal = advanced(lesson, EVENT, STILL, STILL, dt, steps, block)[0][0], slip_position(p, T)[0]
-    check("An event step is of second order through all stops and starts.",
+    check("An event step keeps its second order through all stops and starts.",
           f"position after 4 s, with event steps of {milliseconds} [m]",
           law=goal, found=end, within=slip_limits(p, dt)[2] * abs(goal),
           saw=f"Steps of {milliseconds} end at {MILLIMETRES * end:.5f} mm; the reference solution is "
@@ -154,12 +160,13 @@ def slips_in_time(lesson, check, p, block, dt):
 
 @case("stick-slip-threshold", "Stick and slip under a periodic force", compiled=False)
 def stick_slip_threshold(lesson, check):
-    """A block under F cos t breaks away if F > μ m g; with F = 8 N, m = 1 kg and μ = 0.8 it slips twice in 4 s.
+    """Check the edge and the slips of a block under F cos t, which breaks away if F > μ m g.
 
-    Just above the edge, at F = μg + ε, it slips by 1.5 ε²/F, which shows if ε > √(WAY F/1.5).  The other numbers
-    are those of the scene stick_slip, in closed form.  At the end of a slip of s = 0.59 s an event step of dt is
-    wrong by dt² Aω² s/24 in speed, while the speed falls by at least 0.3 m/s²; per slip x is wrong by dt² (Aω
-    s/6 + Aω² s²/24). A sliding step is wrong by the limit of order 1 of that scene.
+    With F = 8 N, m = 1 kg and μ = 0.8 it slips twice in 4 s.  Just above the edge, at F = μg + ε, it slips by 1.5 ε²/F,
+    which is detected if ε > √(WAY F/1.5).  The other numbers are those of the scene stick_slip, in closed form.  At the
+    end of a slip of s = 0.59 s an event step of dt is wrong by dt² Aω² s/24 in speed, while the speed falls by at least
+    0.3 m/s²; per slip x is wrong by dt² (Aω s/6 + Aω² s²/24).  A sliding step is wrong by the limit of order 1 of that
+    scene.
     """
     p, hold = DrivenBlock(), 0.8 * G
     block = make_block((0.0, 1.0), p.mu, p.mu, (0.0, -p.g), (p.force / p.m, 0.0), p.omega)
@@ -186,10 +193,10 @@ def stick_slip_threshold(lesson, check):
 
 @case("regularised-friction-creeps", "Friction as a force: a swing in place of a stop", compiled=False)
 def regularised_friction_creeps(lesson, check):
-    """Friction as an ordinary force, −μ F_N v/|v|, never stops a block under Euler's method: every step overshoots.
+    """Check that friction as an ordinary force, −μ F_N v/|v|, never stops a block under Euler's method.
 
-    Once |v| < μg dt the next speed is v − μg dt sign v, and the one after that is v again: v alternates by exactly
-    μg dt.
+    Every step overshoots.  Once |v| < μg dt the next speed is v − μg dt sign v, and the one after that is v again: v
+    alternates by exactly μg dt.
     """
     mu, begin, drawn = 0.3, np.array([1.0, 0.0]), []
     block = slope(0.0, mu, mu)
@@ -210,7 +217,7 @@ def regularised_friction_creeps(lesson, check):
               f"swing of the velocity at rest, Euler with steps of {milliseconds} [m/s]",
               law=mu * G * dt, found=swing, within=ROUND_OFF,
               saw=f"With steps of {milliseconds} the velocity alternates by {swing:.6f} m/s without end.")
-        check("As an impulse, limited to the momentum that is left, friction stops the block.",
+        check("As an impulse, limited to the remaining momentum, friction stops the block.",
               f"speed at rest, sliding steps of {milliseconds} [m/s]", law=0.0, found=rest, within=0.0,
               saw=f"With sliding steps of {milliseconds} the velocity at rest is {rest:g} m/s.")
         drawn = drawn or [series("friction as a force, Euler", ts, swung[:, 0], DOTS),
@@ -222,10 +229,10 @@ def regularised_friction_creeps(lesson, check):
 
 @case("artificial-sliding", "Artificial sliding", compiled=False)
 def artificial_sliding(lesson, check):
-    """Artificial sliding: a particle that should stay creeps at g sin θ dt.
+    """Measure artificial sliding: a particle that should stay at rest creeps at g sin θ dt.
 
-    It is moved by dt² g sin θ per step and corrected along the normal only.  Friction on positions, up to μ times the
-    depth dt² g cos θ, undoes all of it while tan θ ≤ μ.
+    Each step moves it by dt² g sin θ and corrects it along the normal only.  Friction on positions, up to μ times the
+    depth dt² g cos θ, removes all of this displacement while tan θ ≤ μ.
     """
     pull, mu = G * np.sin(np.radians(30.0)), 1.1 * np.tan(np.radians(30.0))
     creep = lambda method, dt: moved(lesson, method, 30.0, mu, mu, dt, 200) / (200 * dt)
@@ -243,17 +250,17 @@ def artificial_sliding(lesson, check):
         [series("g sin θ dt, theory", fine, pull * fine, LINE),
          *(series(f"{method.label}, measured", dts, [creep(method, dt) for dt in dts], DOTS)
            for method in (CONTACT, GRIPPING))],
-        "This creep vanishes as dt goes to zero, but it is there at every step that you can afford.")
+        "This creep vanishes as dt goes to zero, but it is present at every affordable step.")
 
 
 LAUNCH, SLIPPERY = 3.0, 0.3              # of the block on two frictions: speed [m/s], μ [-]
 FINE = 0.0005                            # its step [s]
-STOPS = LAUNCH * LAUNCH / (2.0 * SLIPPERY * G)                                     # its way on a cone [m]
-BLURRED = (0.5 * LAUNCH * FINE + SLIPPERY * G * FINE * FINE / 8.0) / STOPS         # what the steps err by, over its way
+STOPS = LAUNCH * LAUNCH / (2.0 * SLIPPERY * G)                                     # its distance on a cone [m]
+BLURRED = (0.5 * LAUNCH * FINE + SLIPPERY * G * FINE * FINE / 8.0) / STOPS         # error of the steps over it
 
 
 def goes(lesson, method, degrees):
-    """Return where a block stops that is launched at an angle from x, over its way on a cone."""
+    """Return the distance at which a block stops that is launched at an angle from x, over its distance on a cone."""
     block = make_block((0.0, 0.0, 1.0), SLIPPERY, SLIPPERY, (0.0, 0.0, -G), (0.0, 0.0, 0.0), 0.0)
     v = LAUNCH * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees)), 0.0])
     x, _ = advanced(lesson, method, np.zeros(3), v, FINE, round(1.2 / FINE), block)
@@ -262,11 +269,12 @@ def goes(lesson, method, degrees):
 
 @case("cone-vs-pyramid", "Cone and pyramid", compiled=False)
 def cone_vs_pyramid(lesson, check):
-    """A friction pyramid along x and y: a block launched at the angle φ goes √(cos⁴φ + sin⁴φ) times as far, and turns.
+    """Compare a friction pyramid along x and y with the cone, and with theory.
 
-    Each component of v is decelerated by μg until it is zero: x = v² cos²φ/2μg and y = v² sin²φ/2μg, so the block
-    ends at the angle arctan tan²φ.  Summed at the end of each step, a component is short by ½ v_i dt and ahead by
-    at most ⅛ μg dt² (scene stopping_block).
+    A block launched at the angle φ goes √(cos⁴φ + sin⁴φ) times as far on the pyramid, and turns.  Each component of
+    v is decelerated by μg until it is zero: x = v² cos²φ/2μg and y = v² sin²φ/2μg, so the block ends at the angle
+    arctan tan²φ.  Summed at the end of each step, a component is short by ½ v_i dt and ahead by at most ⅛ μg dt²
+    (scene stopping_block).
     """
     def ways(method, degrees, law, within, claim):
         got = np.linalg.norm(goes(lesson, method, degrees))
@@ -289,12 +297,15 @@ def cone_vs_pyramid(lesson, check):
         [series("cone, theory", fine, np.ones_like(fine), LINE), series("pyramid, theory", fine, pyramid, LINE),
          *(series(f"{method.label}, measured", dots, [np.linalg.norm(goes(lesson, method, phi)) for phi in dots], DOTS)
            for method in (SLIDING, PYRAMID))],
-        "A floor with friction pyramids has a grain like wood: a block goes farthest along it.")
+        "A floor with friction pyramids has a preferred direction like the grain of wood: a block goes farthest along "
+        "it.")
 
 
 @case("curved-wall-order", "Energy loss along a curved wall", compiled=False)
 def curved_wall_order(lesson, check):
-    """A curved wall slows a frictionless particle: a step along the tangent turns the wall by α, tan α = v dt/R.
+    """Compare the loss of speed along a curved wall with theory.
+
+    A step along the tangent turns the wall by α, tan α = v dt/R.
 
     The bowl has neither friction nor gravity.  Only v cos α is left, so 1/v² grows by (dt/R)² per step and
     v_N = v₀/√(1 + N (v₀ dt/R)²).  Over a given time the loss is of first order in dt.
@@ -347,9 +358,10 @@ def calls_with_negative_friction(lesson):
 
 @case("extreme-coefficients", "Extreme friction", compiled=False)
 def extreme_coefficients(lesson, check):
-    """Extremes: no friction, infinite friction, no load, a fast launch, and a negative μ that must be refused by name.
+    """Check extremes: no friction, infinite friction, no load, a fast launch, and a negative μ, which is refused.
 
-    A block with μ = ∞ holds at 89.9° and stops from 10⁶ m/s within one step.  With μ = 0 it slides down with g sin θ.
+    A block with μ = ∞ holds at 89.9° and stops from 10⁶ m/s within one step.  With μ = 0 it slides with the
+    acceleration g sin θ.
     """
     asked = calls_with_negative_friction(lesson)
     refused = sum(refuses(getattr(lesson, name), arguments, "-0.3") for name, arguments in asked.items())
@@ -394,8 +406,8 @@ class Contact(NamedTuple):
     t_1: np.ndarray          # (3,) unit vector along the surface, and the other one
     t_2: np.ndarray
     m: float                 # mass [kg]
-    load: float              # into the surface [N], or [m/s²] over the mass; negative: it lifts
-    F_N: float               # what the surface answers with
+    load: float              # into the surface [N], or [m/s²] over the mass; negative: away from it
+    F_N: float               # normal force of the surface
     mu_k: float
     mu_s: float
     slip: np.ndarray         # (3,) velocity along the surface [m/s]
@@ -419,7 +431,7 @@ def nearest_in_disc(y, radius):
     return y if length(y) <= radius else radius / length(y) * y
 
 
-@random_law("A support pushes against a load, and does not hold what is pulled away.",
+@random_law("A support pushes against a load, and does not hold a body that is pulled away.",
             "largest error of the normal force [N]", 1e-10)
 def normal_forces(lesson, rng):
     c = random_contact(rng)
@@ -435,7 +447,7 @@ def static_forces(lesson, rng):
     return F, -min(pull, c.mu_s * c.F_N) * c.t_1
 
 
-@random_law("Kinetic friction is μ_k F_N against the slip, whatever its speed.",
+@random_law("Kinetic friction is μ_k F_N against the slip, at any speed.",
             "largest error of the kinetic friction [N]", 1e-10)
 def kinetic_forces(lesson, rng):
     c = random_contact(rng)
@@ -460,7 +472,7 @@ def impulses_of_the_pyramid(lesson, rng):
     return lesson.pyramid_impulse(c.slip, c.m, j_n, mu, c.t_1, c.t_2), side_1 * c.t_1 + side_2 * c.t_2
 
 
-@random_law("A slope holds below tan θ = μ_s; above, it pulls with g (sin θ − μ_k cos θ).",
+@random_law("A block holds below tan θ = μ_s; above, it slides with the acceleration g (sin θ − μ_k cos θ).",
             "largest error of the acceleration [m/s²]", 1e-10)
 def slopes(lesson, rng):
     c, g, steepness = random_contact(rng), rng.uniform(1.0, 20.0), rng.choice((0.99, 1.01))
@@ -469,10 +481,10 @@ def slopes(lesson, rng):
     return lesson.incline_acceleration(theta, c.mu_s, c.mu_k, g), pull
 
 
-@random_law("A block holds by μ_s, slides by μ_k, and is free where it is lifted.",
+@random_law("A block holds by μ_s, slides by μ_k, and is free if the load lifts it.",
             "largest error of the state of the block [m, m/s]", 1e-10)
 def blocks(lesson, rng):
-    """A block is pulled along a plane on which gravity presses it, or from which it lifts it."""
+    """Pull a block along a plane; gravity presses it on the plane, or lifts it off."""
     c, dt, moving = random_contact(rng), rng.uniform(0.01, 0.1), rng.choice((0.0, 1.0))
     pull, start = rng.choice((0.99, 1.01)) * c.mu_s * abs(c.load), moving * c.slip
     free = start + dt * pull * c.t_1
@@ -485,7 +497,7 @@ def blocks(lesson, rng):
 @random_law("A block on a pyramid slides by μ_k along each side.",
             "largest error of the state of the sliding block [m, m/s]", 1e-10)
 def blocks_on_a_pyramid(lesson, rng):
-    """A block slides over a level floor, under a force that changes."""
+    """Slide a block over a level floor, under a force that changes."""
     c, dt, t = random_contact(rng), rng.uniform(0.01, 0.1), rng.uniform()
     weight, swing, x, v = rng.normal(size=(4, 3))
     weight[2], v[2] = weight[2] - 5.0, 0.0
@@ -499,7 +511,7 @@ def blocks_on_a_pyramid(lesson, rng):
 @random_law("The normal of a bowl and of a trough is the derivative of the distance.",
             "largest error of the distance and normal [m, -]", 1e-10)
 def hollows(lesson, rng):
-    """A bowl, or a trough along a slanting axis: the distance to its wall and the derivative of that."""
+    """Compare the distance to the wall of a bowl, or of a trough along a tilted axis, with its derivative."""
     centre, x, radius = rng.normal(size=3), rng.normal(size=3), rng.uniform(3.0, 5.0)
     axis = rng.choice((0.0, 1.0)) * random_contact(rng).t_1
 
@@ -523,10 +535,10 @@ def random_hit(rng):
     return c, c.slip - fall * c.n, fall, p, rng.uniform(0.01, 0.1)
 
 
-@random_law("A particle rebounds by e, and slips by what μ (1 + e) leaves.",
+@random_law("A particle rebounds with e, and keeps the slip that the impulse μ (1 + e) leaves.",
             "largest error of the velocity of the particle [m/s]", 1e-10)
 def rebounds(lesson, rng):
-    """Friction has the whole normal impulse, rebound included."""
+    """Let friction use the whole normal impulse, rebound included."""
     c, v, fall, p, dt = random_hit(rng)
     after = c.slip + nearest_in_disc(-c.slip, p.mu * (1.0 + p.e) * fall) + p.e * fall * c.n
     J = lesson.particle_contact_impulse(v, c.n, c.m, p.e, p.mu)
@@ -534,7 +546,8 @@ def rebounds(lesson, rng):
     return (v + J / c.m, stepped), (after, after)
 
 
-@random_law("The position slips back by μ times its depth at most.", "largest error of the position [m]", 1e-10)
+@random_law("The correction of the position along the wall is at most μ times the depth.",
+            "largest error of the position [m]", 1e-10)
 def shifts(lesson, rng):
     c, v, fall, p, dt = random_hit(rng)
     shift = nearest_in_disc(-dt * c.slip, p.mu * dt * fall)
@@ -557,10 +570,10 @@ def particle_after(force, p, friction_of_positions, t, x, v, dt, steps):
     return x, v
 
 
-@random_law("Steps of a particle are one after the other, each under the force of its beginning.",
+@random_law("Each step of a particle uses the force at its beginning.",
             "largest error of the state of the particle [m, m/s]", 1e-10)
 def two_steps(lesson, rng):
-    """Two steps under a force that changes: inside on the way in, inside on the way out, or outside."""
+    """Take two steps under a force that changes: inside on the way in, inside on the way out, or outside."""
     c, dt, t = random_contact(rng), rng.uniform(0.01, 0.1), rng.uniform()
     still, swing, point = rng.normal(size=(3, 3))
     force = lambda t: still + np.cos(3.0 * t) * swing
@@ -574,7 +587,7 @@ def two_steps(lesson, rng):
 
 @case("laws-of-friction", "Laws of friction", compiled=False)
 def laws_of_friction(lesson, check):
-    """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
+    """Check the cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
     check.laws(lesson, (normal_forces, static_forces, kinetic_forces, impulses_of_the_cone, impulses_of_the_pyramid,
                         slopes, blocks, blocks_on_a_pyramid, hollows, rebounds, two_steps, shifts),
                seed=31, times=TRIED)
@@ -589,21 +602,21 @@ def sliding_contact(rng):
 
 
 def block_at(lesson, c, pull, drive=(0.0, 0.0, 0.0), omega=1.0):
-    """Make a Block of the lesson: pull [m/s²] is along t_1, and a drive [m/s²] swings."""
+    """Make a Block of the lesson: pull [m/s²] is along t_1, and a drive [m/s²] oscillates."""
     return lesson.make_block(c.n, c.mu_s, c.mu_k, pull * c.t_1 - c.load * c.n, drive, omega)
 
 
-@random_law("Under constant forces a block stops after v/(μ_k a_n − a_t), completely.",
+@random_law("Under constant forces a block stops completely after v/(μ_k a_n − a_t).",
             "time, place and velocity of a stop: largest error [s, m, m/s]", 1e-9)
 def stops(lesson, rng):
-    """A step of `share` of the time to the stop, at a constant deceleration."""
+    """Take a step of `share` of the time to the stop, at a constant deceleration."""
     c, speed, pull = sliding_contact(rng)
     share, brake = rng.choice((0.7, 2.0)), c.mu_k * c.load - pull
     dt, lasts = share * speed / brake, min(share, 1.0) * speed / brake
     end = max(0.0, speed - dt * brake)
     tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, np.zeros(3), speed * c.t_1, dt,
                                         block_at(lesson, c, pull))
-    # a stop is a stop: round-off would count as motion
+    # the velocity after a stop is exactly zero: round-off would count as motion
     return (tau, np.any(v), x, v), (lasts, end > 0.0, 0.5 * (speed + end) * lasts * c.t_1, end * c.t_1)
 
 
@@ -616,7 +629,7 @@ def random_drive(c, rng):
 @random_law("A block breaks away where the force passes μ_s a_n, to the side of the force.",
             "time of a start: largest error [s]", 1e-9)
 def starts(lesson, rng):
-    """A block at rest from a quarter of a period on, where the drive is zero."""
+    """Let a block rest from a quarter of a period on, where the drive is zero."""
     c, _, _ = sliding_contact(rng)
     along, press, omega = random_drive(c, rng)
     sign, t, law = rng.choice((-1.0, 1.0)), 0.5 * np.pi / omega, lesson.driven_acceleration
@@ -626,7 +639,7 @@ def starts(lesson, rng):
     return (tau, x, side), (np.pi / 6.0 / omega, c.n, -sign * c.t_1)
 
 
-@random_law("Between events its motion is that of the midpoint rule.",
+@random_law("Between events the motion of a block is that of the midpoint rule.",
             "state after a step: largest error [m, m/s]", 1e-9)
 def midpoint_steps(lesson, rng):
     c, speed, _ = sliding_contact(rng)
@@ -638,10 +651,10 @@ def midpoint_steps(lesson, rng):
     return got, (dt * (speed + 0.5 * dt * force(t)) * c.t_1, (speed + dt * force(t + 0.5 * dt)) * c.t_1)
 
 
-@random_law("A block that static friction does not hold slides back at once, in a slip of its own.",
+@random_law("A block that static friction does not hold slides back at once, in a separate slip.",
             "times of slips: largest error [s]", 1e-9)
 def slides_back(lesson, rng):
-    """A block that a pull stops and moves back; and one without load and pull, which stays."""
+    """Let a pull stop a block and move it back; and let a block without load and pull stay."""
     c, speed, _ = sliding_contact(rng)
     t, law, still = rng.uniform(0.0, 1.0), lesson.driven_acceleration, np.zeros(3)
     after = speed / ((c.mu_k + 1.2 * c.mu_s) * c.load)
@@ -654,8 +667,9 @@ def slides_back(lesson, rng):
 
 @case("times-of-stops-and-starts", "Times of stops and starts", compiled=False)
 def stops_and_starts(lesson, check):
-    """Constant forces: it stops after v/(μ_k a_n − a_t).  A periodic force breaks away where it passes μ_s a_n.
+    """Compare the times of stops and starts with theory.
 
-    A force that grows with time bends the speed: the step under kinetic friction is then the midpoint rule.
+    Under constant forces a block stops after v/(μ_k a_n − a_t).  A periodic force breaks away where it passes μ_s a_n.
+    A force that grows with time makes the speed nonlinear: the step under kinetic friction is then the midpoint rule.
     """
     check.laws(lesson, (stops, starts, slides_back, midpoint_steps), seed=32, times=TRIED // 2)

@@ -1,7 +1,7 @@
-"""Impulses at their limits: the functions of lesson 7 compared with theory.
+"""Limits of impulses: the functions of lesson 7 compared with theory.
 
 Edges are found by bisection of runs or of impacts, never from a formula.
-*Source:* Painlevé 1895 for the rod; each case derives the rest.
+*Source:* Painlevé 1895 for the rod; each case derives the other numbers.
 """
 
 from collections.abc import Callable
@@ -30,7 +30,7 @@ def ball(lesson, e, stiffness=1.0, damping=0.0, point=(0.0, 0.0)):
 
 
 def dropped(lesson, step, x, v, dt, steps, p):
-    """Return (x, v), each (copies, 2), of falling balls after so many steps."""
+    """Return (x, v), each (copies, 2), of falling balls after this number of steps."""
     return lesson.advance_balls(step, lesson.falling_acceleration, 0.0, x, v, dt, steps, p)
 
 
@@ -46,12 +46,12 @@ def rod(lesson, degrees):
 
 
 def against_the_first_slip(K, mu, side):
-    """Return n · K d [1/kg] for friction against the slip before the impact; that rule's impulse is divided by it."""
+    """Return n · K d [1/kg] for friction against the slip before the impact, the denominator of that rule's impulse."""
     return UP @ (K @ (UP + mu * side * ACROSS))
 
 
 def impact_of_a_rod(lesson, K, mu, slip):
-    """Return (whether it is finite, gain of energy [J], |u_n| after it [m/s], its size over the bound) of an impact."""
+    """Return (whether the impact is finite, gain of energy [J], |u_n| after it [m/s], impulse over the bound)."""
     u = slip * ACROSS - UP
     J = lesson.contact_impulse(u, UP, K, 0.0, mu)
     bound = max(np.linalg.norm(np.linalg.solve(K, u)), 1.0 / K[1, 1])
@@ -80,12 +80,13 @@ def impacts_of_all_rods(lesson, check):
 
 @case("painleve-rod", "Painlevé's rod", compiled=False)
 def painleve_rod(lesson, check):
-    """A rod slides on its tip over a rough floor: friction against the slip drives the tip into the floor.
+    """Compare the paradox of a rod that slides on its tip over a rough floor with theory.
 
-    With d = n + μ t,  n · K d = 1 + 3c² − 3μ sc.  It is zero first at tan θ = 2, for μ = 4/3.  From there on a rule
-    that fixes friction against the first slip divides by zero, or pulls.  cone_impulse puts friction in the
-    direction of a sticking impulse.  All J that end the normal motion that way lie on a line from the frictionless
-    impulse to the sticking one.  Energy is convex along it, and neither of its ends gains any with e = 0.
+    Friction against the slip drives the tip into the floor.  With d = n + μ t,  n · K d = 1 + 3c² − 3μ sc.  It is
+    zero first at tan θ = 2, for μ = 4/3.  From there on a rule that fixes friction against the first slip divides
+    by zero, or pulls.  cone_impulse puts friction in the direction of a sticking impulse.  All J that end the
+    normal motion that way lie on a line from the frictionless impulse to the sticking one.  Energy is convex along
+    it, and neither of its ends gains any with e = 0.
     """
     near = [rod(lesson, a) for a in (STEEPEST - 1.0, STEEPEST, STEEPEST + 1.0)]
     edge = bisect(lambda mu: min(against_the_first_slip(K, mu, 1.0) for K in near) <= 0.0, 0.1, 10.0)
@@ -124,9 +125,9 @@ def ball_is_placed_on_its_floor(lesson, check):
     check("The correction does the work m g times the depth, and no more.", "energy gained [J/kg]",
           law=G * depth + 0.5 * (0.5 * G * SHORT) ** 2, found=work, within=ROUND_OFF,
           saw=f"The correction has given it {work:.5f} J/kg; g times the depth is {G * depth:.5f}.")
-    check("It gains no speed from the correction: its speed e g dt comes from the fall of that step.",
+    check("The correction adds no speed: the speed e g dt comes from the fall of that step.",
           "speed after one step [m/s]", law=0.5 * G * SHORT, found=speed, within=ROUND_OFF,
-          saw=f"It leaves with {speed:.4f} m/s, which is e g dt.")
+          saw=f"It leaves at {speed:.4f} m/s, which is e g dt.")
 
 
 def speed_of_ejection(lesson, depth):
@@ -140,7 +141,7 @@ def speed_of_ejection(lesson, depth):
 
 
 def overlapping_discs_come_apart(lesson, check):
-    """Let five discs in a row, each a quarter inside the next, be moved apart; and two on one point."""
+    """Separate five discs in a row, each a quarter inside the next, and two discs at the same place."""
     step, inverse_masses = lesson.position_projection_discs_step, np.array([1.0, 0.5, 1.0, 2.0, 1.0])
     row = np.stack((0.75 * 2.0 * RADIUS * np.arange(5.0), np.zeros(5)), axis=1)
     apart, still = lesson.advance_discs(step, row[None], np.zeros((1, 5, 2)), SHORT, 400,
@@ -148,23 +149,24 @@ def overlapping_discs_come_apart(lesson, check):
     before, after = ((1.0 / inverse_masses) @ places / np.sum(1.0 / inverse_masses) for places in (row, apart[0]))
     overlap, fastest = max(0.0, (2.0 * RADIUS - np.diff(apart[0, :, 0])).max()), np.abs(still).max()
     way = np.linalg.norm(after - before)
-    check("Five discs in a row, each a quarter inside the next, come apart.", "largest overlap after 400 steps [m]",
+    check("Five discs in a row, each a quarter inside the next, separate.", "largest overlap after 400 steps [m]",
           law=0.0, found=overlap, within=ROUND_OFF, saw=f"After 400 steps the largest overlap is {overlap:.0e} m.")
-    check("Not one of them moves then.", "largest speed [m/s]", law=0.0, found=fastest, within=0.0,
-          saw=f"The fastest of them has {fastest:g} m/s.")
-    check("And their centre of mass stays where it was.", "way of the centre of mass [m]",
+    check("After that, no disc moves.", "largest speed [m/s]", law=0.0, found=fastest, within=0.0,
+          saw=f"The fastest of them moves at {fastest:g} m/s.")
+    check("Their centre of mass does not move.", "way of the centre of mass [m]",
           law=0.0, found=way, within=ROUND_OFF, saw=f"Their centre of mass has moved by {way:.0e} m.")
     same = np.zeros((1, 2, 2))
     x, _ = lesson.advance_discs(step, same, same, SHORT, 1, lesson.Discs(np.full(2, RADIUS), np.ones(2), 0.8))
     distance = np.linalg.norm(x[0, 0] - x[0, 1])
-    check("Two discs on one point have no normal between them, and still come apart.", "distance after one step [m]",
+    check("Two discs with the same centre have no normal between them, and still separate.",
+          "distance after one step [m]",
           law=2.0 * RADIUS, found=distance, within=ROUND_OFF,
-          saw=f"Two discs on one point are {distance:g} m apart after one step.")
+          saw=f"Two discs with the same centre are {distance:g} m apart after one step.")
 
 
 @case("deep-overlap", "Deep overlap", compiled=False)
 def deep_overlap(lesson, check):
-    """Overlapping bodies are moved apart without gaining speed: the correction does the work m g d and no more.
+    """Check that the correction of an overlap adds no speed: it does the work m g d and no more.
 
     A ball at rest at a depth d inside its floor is on the floor after one projecting step, with v = e g dt from the
     fall of that step.  The penalty method stores ½ k d² in its spring instead, and ejects the ball with √(ω² d² − 2
@@ -188,7 +190,7 @@ def deep_overlap(lesson, check):
 # ---------------------------------------------------------------------------------------------- Zeno, and far away
 
 def bouncing(lesson, e, T, steps, place=(0.0, 0.0), copies=1):
-    """Return (x, v) of copies released at 1 m over a plane at `place`, each a little earlier than the one before."""
+    """Return (x, v) of copies released at 1 m over a plane at `place`, each slightly earlier than the one before."""
     before = 0.01 * np.arange(copies)
     x = np.stack((np.zeros(copies), 1.0 - 0.5 * G * before**2), axis=1) + place
     v = np.stack((0.5 * np.ones(copies), -G * before), axis=1)
@@ -203,12 +205,12 @@ def time_to_rest(lesson, e):
 
 @case("zeno-and-far-away", "Zeno's bounce, and bounces far from the origin", compiled=False)
 def zeno_and_far_away(lesson, check):
-    """Infinitely many bounces end after √(2h/g) (1 + e)/(1 − e), and far from the origin only floats are coarser.
+    """Check that infinitely many bounces end after √(2h/g) (1 + e)/(1 − e), and bounces far from the origin.
 
     At 10⁵ m a position is rounded to half a spacing, twice per step, so N steps add up to an error of N spacings in
     the height at which a ball meets its plane.  A height wrong by δ changes the speed by g δ/v and the time by δ/v
-    at an impact with v.  One flight later both have grown by at most (1 + 2/e).  Three impacts make less than
-    (1 + 2/e)³ = 43 of it.
+    at an impact with v.  One flight later both have grown by at most (1 + 2/e).  Three impacts multiply the error
+    by less than (1 + 2/e)³ = 43.
     """
     for e in (0.5, 0.8, 0.95):
         end, stop = time_to_rest(lesson, e)
@@ -216,17 +218,17 @@ def zeno_and_far_away(lesson, check):
               law=end, found=stop, within=EDGE * end,
               saw=f"With e = {e:g} a ball dropped from 1 m is at rest from {stop:.5f} s on.")
     x, v = bouncing(lesson, 0.8, 5.0, 500)
-    check("The stepped run reaches the same rest, on the plane to the last digit.",
+    check("The stepped run ends at rest on the plane, to the last digit.",
           "height and speed after 5 s in 500 steps [m, m/s]",
           law=0.0, found=np.hypot(x[0, 1], v[0, 1]), within=ROUND_OFF,
-          saw=f"After 500 steps it lies at {x[0, 1]:.0e} m with {v[0, 1]:g} m/s.")
+          saw=f"After 500 steps it lies at {x[0, 1]:.0e} m and moves at {v[0, 1]:g} m/s.")
     steps, far = 190, 10.0 ** np.arange(2, 9)
     near, _ = bouncing(lesson, 0.8, 1.9, steps, copies=COPIES)
     errors = []
     for place in far[:, None] * np.array([1.0, -0.8]):
         x, _ = bouncing(lesson, 0.8, 1.9, steps, place, COPIES)
         errors.append(np.sqrt(np.mean((x - place - near) ** 2)))
-    check("10⁵ m away the error is that of the floats there, summed over the steps.",
+    check("At a distance of 10⁵ m the error is the rounding of floats there, summed over the steps.",
           "error of the position at (10⁵, −8·10⁴) m after 190 steps [m]",
           law=0.0, found=errors[3], within=43.0 * steps * np.spacing(1e5),
           saw=f"At (10⁵, −8·10⁴) m the position is off by {errors[3]:.1e} m; floats are {np.spacing(1e5):.1e} m apart "
@@ -259,7 +261,7 @@ def swings_up(lesson, h_omega, zeta):
 
 @case("penalty-stability", "Longest step and depth of a penalty spring", compiled=False)
 def penalty_stability(lesson, check):
-    """The penalty's spring is stable for ω dt < 2(√(1 + ζ²) − ζ), and a ball at rest compresses it by m g/k = g/ω².
+    """Compare the longest stable step of a penalty spring with 2(√(1 + ζ²) − ζ)/ω, and its depth at rest with g/ω².
 
     Just beyond, at ω dt (1 + ε), an undamped oscillation grows by √(8ε) per step.  500 steps amplify it by 10⁶ from
     ε = 9.5e-5 on, so the edge is found that much late.  With a damper the growth is at least 2ε per step, and 2,000
@@ -285,7 +287,7 @@ def penalty_stability(lesson, check):
     return Picture(
         "Penalty: the longest step", "damping ratio ζ [-]", "ω dt [-]",
         [series("theory", fine, law(fine), LINE), series("measured", edges.keys(), edges.values(), DOTS)],
-        "A floor twice as stiff needs steps 1.4 times as short, and a damper shortens them further.")
+        "A floor that is twice as stiff needs steps shorter by a factor of 1.4, and a damper shortens them further.")
 
 
 # ---------------------------------------------------------------------------------------------- gain of energy
@@ -296,7 +298,7 @@ def gain(lesson, K, u, e, mu):
 
 
 def least_restitution_that_gains(lesson, degrees):
-    """Return the e from which on a sticking impact of a rod with u_n = −1 m/s gains energy at some slip."""
+    """Return the smallest e with which a sticking impact of a rod with u_n = −1 m/s gains energy at some slip."""
     K = rod(lesson, degrees)
     lost = lambda slip, e: -gain(lesson, K, slip * ACROSS - UP, e, np.inf)
     least = lambda e: minimize_scalar(lost, bounds=(-5.0, 5.0), args=(e,), method="bounded", options={"xatol": 1e-9})
@@ -324,10 +326,10 @@ def count_gains(lesson, tried):
 
 @case("energy-gain", "Energy gained by restitution with friction", compiled=False)
 def energy_gain(lesson, check):
-    """Newton's restitution with friction gains energy if e > 1/√(K_nn (K⁻¹)_nn), at the wrong slip.
+    """Check that Newton's restitution with friction gains energy if e > 1/√(K_nn (K⁻¹)_nn), at a certain slip.
 
     For the rod that is 2/√((1 + 3c²)(1 + 3s²)).  A sticking J gives ½ (e² u_n² n · K⁻¹n − u · K⁻¹u).  The gain is
-    largest where u · K⁻¹u is least for its u_n, at u_n²/K_nn.  Energy is a convex function on the line from the
+    largest where u · K⁻¹u is smallest for its u_n, at u_n²/K_nn.  Energy is a convex function on the line from the
     frictionless impulse to the sticking one, so no sliding impact gains unless one of the two does.
     """
     law = lambda a: 2.0 / np.sqrt((1.0 + 3.0 * np.cos(np.radians(a)) ** 2) * (1.0 + 3.0 * np.sin(np.radians(a)) ** 2))
@@ -337,10 +339,10 @@ def energy_gain(lesson, check):
               f"least restitution that gains, rod at {a:g}° [-]", law=law(a), found=edges[a], within=10.0 * EDGE,
               saw=f"A rod at {a:g}° gains energy at some slip from e = {edges[a]:.5f} on.")
     gained, broken, dead = count_gains(lesson, 1500)
-    check("Below that restitution no impact gains, sliding or sticking, in the plane or in space.",
+    check("Below that restitution no impact gains energy, sliding or sticking, in the plane or in space.",
           "impacts that gain energy below it [of 1500]", law=0, found=broken, within=0.0,
           saw=f"Of 1,500 random impacts {gained} gain energy, {broken} of them below the bound.")
-    check("Without restitution none gains.", "impacts with e = 0 that gain energy [of 1500]",
+    check("Without restitution no impact gains energy.", "impacts with e = 0 that gain energy [of 1500]",
           law=0, found=dead, within=0.0, saw=f"With e = 0 {dead} of 1,500 impacts gain energy.")
     K, u = rod(lesson, 45.0), 2.0 * ACROSS - UP
     worst = np.max([abs(gain(lesson, K, u, e, 0.0) + 0.5 * (1.0 - e * e) / K[1, 1]) for e in (0.0, 0.5, 1.0)])
@@ -384,7 +386,7 @@ def invalid_calls(lesson, u):
 
 @case("invalid-impacts", "Invalid and extreme impacts", compiled=False)
 def invalid_impacts(lesson, check):
-    """Impossible impacts are refused by name and value; extreme but valid ones are solved."""
+    """Check that impossible impacts are refused by name and value, and that extreme but valid ones are solved."""
     u, exponents, sizes, errors = np.array([1.0, -2.0, 0.5]), np.linspace(-6.0, 8.0, 15), [], []
     asked = invalid_calls(lesson, u)
     refused = sum(refuses(getattr(lesson, name), arguments, value) for name, arguments, value in asked)
@@ -396,7 +398,7 @@ def invalid_impacts(lesson, check):
         J = lesson.contact_impulse(speed * u, UP, np.eye(3), 0.5, 0.3)
         sizes.append(np.linalg.norm(J) / speed)
         errors.append(abs(UP @ (speed * u + np.eye(3) @ J) - speed) / speed)
-    check("An impact has no characteristic speed: the same law holds from a micrometre to 10⁸ m per second.",
+    check("An impact has no characteristic speed: the same law holds from 10⁻⁶ to 10⁸ m/s.",
           "largest error of the rebound, over the speed [-]", law=0.0, found=np.max(errors), within=ROUND_OFF,
           saw=f"Over fourteen decades of speed the rebound is right to {np.max(errors):.0e}.")
     K = np.diag([1e6, 1.0, 1e-6]) + 1e-7 * np.ones((3, 3))
@@ -447,7 +449,7 @@ def along(y, n):
 # ---------------------------------------------------------------------------------------------- two bodies
 
 class Pair(NamedTuple):
-    """Two bodies that touch, their velocities y, and what acts on them: u = G y, and y changes by W Gᵀ J."""
+    """Two bodies that touch: their velocities y, and the matrices of u = G y and of the change W Gᵀ J of y."""
     bodies: tuple            # a and b of the lesson
     arms: tuple              # of the contact
     y: np.ndarray            # (v_a, ω_a, v_b, ω_b)
@@ -463,19 +465,19 @@ class Pair(NamedTuple):
         return np.concatenate([np.append(body.v, body.omega) for body in hit])
 
 
-# of (v_a, ω_a, v_b, ω_b) what cannot change: nothing, an axle, the floor, a body that does not turn, and likewise for a
+# entries of (v_a, ω_a, v_b, ω_b) that are held: none, an axle, the floor, a body that cannot rotate; the same for a
 HELD: tuple[list[int], ...] = ([], [3, 4], [3, 4, 5], [5], [0, 1], [2, 3, 4, 5])
 
 
 def inverse_masses(rng, held):
-    """Return (6,): what acts on the velocities of two bodies in the plane; some of them are held."""
+    """Return (6,): the inverse masses of two bodies in the plane, some of which are held."""
     inverse = 1.0 / rng.uniform(0.5, 2.0, 4)[[0, 0, 1, 2, 2, 3]]
     inverse[HELD[rng.integers(len(HELD))] if held else []] = 0.0
     return inverse
 
 
 def planar_pair(lesson, rng, held=True):
-    """Return a Pair in the plane, however slow:  v + ω × r = (v_x − ω r_y, v_y + ω r_x)."""
+    """Return a Pair in the plane at any speed:  v + ω × r = (v_x − ω r_y, v_y + ω r_x)."""
     r_a, r_b = rng.normal(size=(2, 2))
     inverse = inverse_masses(rng, held)
     y = 10.0 ** rng.uniform(-4.0, 0.0) * rng.normal(size=6)
@@ -499,7 +501,7 @@ def spatial_pair(lesson, rng):
 
 
 def relative_velocity(pair):
-    """Return that of the lesson, and G y."""
+    """Return the relative velocity of the lesson, and G y."""
     return pair.relative_velocity(*pair.bodies, *pair.arms), pair.G @ pair.y
 
 
@@ -547,14 +549,14 @@ def impact(lesson, rng, held=True):
     return pair, n, -e * u_n / size, change / size, -(1.0 + e) * u_n / k_n / size
 
 
-@random_law("They separate with −e u_n, however slowly they have come.",
+@random_law("They separate with −e u_n, at any speed of approach.",
             "largest error of the velocity after the impact, relative [-]", 1e-12)
 def rebounds(lesson, rng):
     pair, n, u_sep, change, _ = impact(lesson, rng)
     return n @ pair.G @ (pair.y / np.linalg.norm(pair.y) + change), u_sep
 
 
-@random_law("What is held keeps its velocity, and all else changes by M⁻¹ Gᵀ j.",
+@random_law("A held coordinate keeps its velocity, and all others change by M⁻¹ Gᵀ j.",
             "largest error of the change of velocity, relative [-]", 1e-12)
 def changes(lesson, rng):
     pair, n, _, change, j = impact(lesson, rng)
@@ -576,10 +578,10 @@ def angular_momenta(lesson, rng):
     return sum(cross_2d(place - r, P[k:k + 2]) + P[k + 2] for k, r in zip((0, 3), pair.arms)), 0.0
 
 
-@random_law("L changes by r × J, and the angular momentum of both stays.",
+@random_law("L changes by r × J, and the total angular momentum is conserved.",
             "largest error of the momenta in space [kg m²/s]", 1e-12)
 def angular_momenta_in_space(lesson, rng):
-    """Both bodies touch at one point, so that J and −J have no torque together about the origin."""
+    """Let both bodies touch at one point, so that J and −J together have no torque about the origin."""
     place, r_a, r_b, L_a, L_b, J = rng.normal(size=(6, 3))
     new_a, new_b = lesson.angular_momenta(L_a, L_b, r_a, r_b, J)
     orbital = np.cross(place - r_a, J) - np.cross(place - r_b, J)
@@ -588,10 +590,10 @@ def angular_momenta_in_space(lesson, rng):
 
 @case("two-bodies", "An impact of two free bodies, in the plane and in space", compiled=False)
 def two_bodies(lesson, check):
-    """K = G M⁻¹ Gᵀ with the rows G of the contact's velocity; momentum and angular momentum about the origin are kept.
+    """Compare K with G M⁻¹ Gᵀ, where G are the rows of the contact's velocity, and check both momenta about the origin.
 
     In space a body's block of M is its inertia tensor in the world, and its part of G is n and r × n.
-    What is held has a 0 in M⁻¹: a body on an axle moves as little as the floor, but turns.
+    A held coordinate has a 0 in M⁻¹: a body on an axle does not move, like the floor, but rotates.
     """
     check.laws(lesson, (planar_velocities, planar_masses, rebounds, changes, momenta, angular_momenta, spatial_masses,
                         spatial_velocities, pushes, angular_momenta_in_space), seed=77, times=TRIED)
@@ -599,11 +601,11 @@ def two_bodies(lesson, check):
 
 # ---------------------------------------------------------------------------------------------- laws of an impact
 
-FLIGHTS = 400                # summed up [-]: 0.9⁴⁰⁰ is below round-off
+FLIGHTS = 400                # terms of a sum [-]: 0.9⁴⁰⁰ is below round-off
 LONG = 10.0                  # a step [s] within which most gaps close
 
 
-@random_law("A surface reverses what comes, times e, and leaves alone what goes, however slowly.",
+@random_law("A surface reverses an approaching velocity, times e, and does not change a leaving one, at any speed.",
             "largest error of the velocity [m/s]", 1e-9)
 def reflections(lesson, rng):
     n, e = unit_vector(rng), rng.uniform()
@@ -614,7 +616,7 @@ def reflections(lesson, rng):
 @random_law("A penalty spring with its damper pushes while it is compressed, and never pulls.",
             "largest error of the force, relative [-]", 1e-9)
 def springs(lesson, rng):
-    """At the velocity `part` the damper alone would pull as strongly as the spring pushes."""
+    """Include the velocity `part` at which the damper alone would pull as strongly as the spring pushes."""
     k, d, deep = rng.uniform(0.5, 2.0, 3)
     part = -k * deep / d
     cases = ((-deep, 0.0), (-deep, part), (-deep, -0.5 * part), (-deep, -2.0 * part), (deep, part), (0.0, part))
@@ -629,7 +631,7 @@ def responses(lesson, rng):
 
 
 def rough_impact(rng):
-    """Return (u, n, K, u_sep, the J of sticking) of an impact whose points stick if the contact is rough enough."""
+    """Return (u, n, K, u_sep, sticking J) of an impact whose points stick if the contact is rough enough."""
     n, u, u_sep = unit_vector(rng), rng.normal(size=3), rng.uniform(0.0, 0.5)
     u = along(u, n) - rng.uniform(0.5, 1.5) * n
     K = response(rng.normal(size=3), *random_body(rng))
@@ -642,7 +644,7 @@ def needed(stick, n):
     return np.linalg.norm(along(stick, n)) / (stick @ n)
 
 
-@random_law("A rough impact ends with the normal velocity that restitution asks for.",
+@random_law("A rough impact ends with the normal velocity that restitution requires.",
             "largest error of the normal velocity [m/s]", 1e-9)
 def normal_velocities(lesson, rng):
     u, n, K, u_sep, stick = rough_impact(rng)
@@ -650,7 +652,7 @@ def normal_velocities(lesson, rng):
     return n @ (u + K @ J), u_sep
 
 
-@random_law("5 % inside the cone it sticks, 5 % outside it is on the rim.",
+@random_law("5 % inside the cone the point sticks, 5 % outside the impulse is on the rim.",
             "largest error of the law of Coulomb [N s, m/s]", 1e-9)
 def cones(lesson, rng):
     u, n, K, u_sep, stick = rough_impact(rng)
@@ -660,7 +662,8 @@ def cones(lesson, rng):
     return (np.linalg.norm(along(J, n)), mu * (J @ n)) if share < 1.0 else (u + K @ J, u_sep * n)
 
 
-@random_law("Friction is on the side of the sticking impulse.", "largest error of the direction of friction [-]", 1e-9)
+@random_law("Friction has the direction of the sticking impulse.", "largest error of the direction of friction [-]",
+            1e-9)
 def sides(lesson, rng):
     u, n, K, u_sep, stick = rough_impact(rng)
     J = lesson.cone_impulse(u, n, K, u_sep, rng.choice(NEAR) * needed(stick, n))
@@ -668,10 +671,10 @@ def sides(lesson, rng):
     return J_t / np.linalg.norm(J_t), stick_t / np.linalg.norm(stick_t)
 
 
-@random_law("Where sticking would pull, the impulse is on the rim, whatever μ is.",
+@random_law("If a sticking impulse would pull, the impulse is on the rim for any μ.",
             "largest error of the impulse, relative [-]", 1e-9)
 def pulls(lesson, rng):
-    """The point slips so fast that sticking would pull."""
+    """Let the point slip so fast that a sticking impulse would pull."""
     n, u_sep = unit_vector(rng), rng.uniform(0.0, 0.5)
     K = response(rng.normal(size=3), *random_body(rng))
     k_n, t = n @ K @ n, along(K @ n, n)
@@ -708,7 +711,7 @@ def closing_times(lesson, rng):
     return lesson.impact_time(phi, v_n, a_n, LONG), min(ahead, default=LONG)
 
 
-@random_law("What is inside touches: it closes at once, when it comes back, or never.",
+@random_law("A point inside is in contact: its gap closes at once, when it returns, or never.",
             "largest error of the time from inside [s]", 1e-9)
 def times_from_inside(lesson, rng):
     phi = rng.uniform(0.1, 1.0)
@@ -717,7 +720,7 @@ def times_from_inside(lesson, rng):
     return tuple(lesson.impact_time(-phi, *way, LONG) for way in ways), (0.0, min(2.0 * speed / pull, LONG), LONG)
 
 
-@random_law("All bounces last as long as the sum of their flights.",
+@random_law("The duration of all bounces is the sum of their flights.",
             "largest error of the time of all bounces, relative [-]", 1e-9)
 def times_of_all_bounces(lesson, rng):
     speed, pull = abs(rng.normal(size=2))
@@ -726,10 +729,10 @@ def times_of_all_bounces(lesson, rng):
     return np.array(times) * pull / (2.0 * speed), np.array([np.sum(e ** np.arange(FLIGHTS)), np.inf, 0.0])
 
 
-@random_law("A plane pushes and never pulls: what lifts a ball lifts it off.",
+@random_law("A plane pushes and never pulls: an upward force lifts a ball off.",
             "largest error of the state after sliding [m, m/s]", 1e-9)
 def slides(lesson, rng):
-    """Gravity into a plane slides a ball, gravity away from it lifts it off."""
+    """Let gravity into a plane slide a ball, and gravity away from it lift the ball off."""
     n, dt = unit_vector(rng), rng.uniform(0.1, 1.0)
     x, v, a = rng.normal(size=(3, 3))
     pushed, v_t = a - min(0.0, a @ n) * n, along(v, n)
@@ -744,7 +747,7 @@ def flights(lesson, rng):
 
 
 def tilted_ball(lesson, rng):
-    """Return (BouncingBall, axes, place, v, dt): its plane is tilted, axes are its normal and two along it.
+    """Return (BouncingBall, axes, place, v, dt) over a tilted plane; axes are its normal and two vectors along it.
 
     The place is in these coordinates, from the point of the plane.
     """
@@ -753,7 +756,7 @@ def tilted_ball(lesson, rng):
     return p, axes, rng.normal(size=3) * (0.1, 1.0, 1.0), rng.normal(size=3), rng.uniform(0.1, 1.0)
 
 
-@random_law("A gap is the distance along the normal, however the plane is tilted.",
+@random_law("A gap is the distance along the normal, for any tilt of the plane.",
             "largest error of the gap over a tilted plane [m]", 1e-9)
 def distances(lesson, rng):
     p, axes, place, _, _ = tilted_ball(lesson, rng)
@@ -770,7 +773,7 @@ def penalties(lesson, rng):
     return pushed, v + dt * (p.gravity + push * p.n)
 
 
-@random_law("A ball that ends inside is moved out along the normal, also if it leaves already.",
+@random_law("A ball that ends inside is moved out along the normal, even if it is already leaving.",
             "largest error of the state after a step over a tilted plane [m, m/s]", 1e-9)
 def tilted_steps(lesson, rng):
     p, axes, place, v, dt = tilted_ball(lesson, rng)
@@ -790,7 +793,7 @@ def spinning(lesson, p, mu):
 @random_law("Each step of a loop takes the acceleration of its own time.",
             "largest error of the velocity after four steps [m/s]", 1e-9)
 def steps_in_time(lesson, rng):
-    """Loops far above a plane, under a force that swings."""
+    """Run loops far above a plane, under a force that oscillates."""
     p, _, x, v, dt = tilted_ball(lesson, rng)
     t, p = rng.uniform(0.0, 6.0), p._replace(point=p.point - 1e3 * p.n)
     swings = lambda t, x, v, p: np.cos(t) * p.gravity
@@ -801,20 +804,20 @@ def steps_in_time(lesson, rng):
     return tuple(ends), (v + dt * p.gravity * sum(np.cos(t + k * dt) for k in range(4)),) * 3
 
 
-@random_law("After an impact a ball flies for what is left of the step.",
+@random_law("After an impact a ball flies for the rest of the step.",
             "largest error of the height after an impact [m]", 1e-9)
 def rests_of_a_step(lesson, rng):
-    """A ball without gravity hits after three tenths of a step, and flies away for the other seven."""
+    """Let a ball without gravity hit after three tenths of a step; it flies away for the other seven."""
     p, _, x, omega, dt = tilted_ball(lesson, rng)
     p = spinning(lesson, p._replace(gravity=np.zeros(3), point=x - 0.3 * dt * p.n), 0.0)
     there, _, _ = lesson.backtracking_spin_step(lesson.falling_acceleration, 0.0, x, -p.n, omega, dt, p)
     return (there - p.point) @ p.n, 0.7 * dt * p.e
 
 
-@random_law("Two discs meet at the first root of their distance, or now.",
+@random_law("Two discs meet at the first root of their gap, or at once if they overlap.",
             "largest error of the time until two discs meet [s]", 1e-9)
 def meetings(lesson, rng):
-    """Two discs in the plane, apart or in each other."""
+    """Let two discs in the plane meet, apart or overlapping at first."""
     places, speeds = rng.normal(size=(2, 2, 2))
     reach = rng.uniform(0.5, 1.5)
     d, u = places[0] - places[1], speeds[0] - speeds[1]
@@ -826,7 +829,7 @@ def meetings(lesson, rng):
 
 @case("laws-of-an-impact", "Laws of an impact", compiled=False)
 def laws_of_an_impact(lesson, check):
-    """What a surface does to a point, a spring to a ball, Coulomb's cone to a slip, and when a gap closes."""
+    """Check the laws of a surface, a spring, Coulomb's cone, and the time at which a gap closes."""
     check.laws(lesson, (reflections, springs, responses, normal_velocities, cones, pulls, sides, works, gaps,
                         closing_times, times_from_inside, times_of_all_bounces, slides, flights, distances, penalties,
                         steps_in_time, rests_of_a_step, meetings, tilted_steps), seed=78, times=TRIED)
@@ -859,7 +862,7 @@ def velocities(body):
 
 
 def landing(lesson, rng):
-    """Return a random Landing, of a body that turns a little or much."""
+    """Return a random Landing of a body that rotates slowly or fast."""
     r, n = CORNERS + rng.uniform(-0.2, 0.2, (3, 3)), np.array([0.3 * unit_vector(rng) for _ in range(3)])
     n[:, 2] += 1.0
     n /= np.linalg.norm(n, axis=1)[:, None]
@@ -878,27 +881,27 @@ def most_dissipative(lesson, body, r, n, e, mu):
     return velocities(after)
 
 
-@random_law("Restitution asks for −e u_n of the points that come in, and for nothing of the others.",
+@random_law("Restitution requires −e u_n of the approaching points, and nothing of the others.",
             "speeds of separation: largest error [m/s]", 1e-12)
 def speeds_of_separation(lesson, rng):
     one = landing(lesson, rng)
     return lesson.rebound_speeds(one.body, one.r, one.n, one.e), np.maximum(0.0, -one.e * one.G @ one.y)
 
 
-@random_law("The impact that dissipates most moves no point into the other body.",
+@random_law("The impact of maximal dissipation moves no point into the other body.",
             "largest speed of approach after it [m/s]", 1e-4)
 def approaches(lesson, rng):
-    """The third point leaves, and the impact slows it."""
+    """Let the third point leave, so that the impact slows it."""
     one = landing(lesson, rng)
     leaves = np.linalg.pinv(one.G) @ (-2.0, -2.0, 0.1)
     slim = one.body._replace(v=leaves[:3], omega=leaves[3:], inv_inertia=20.0 * one.body.inv_inertia)
     return np.minimum(0.0, one.G @ most_dissipative(lesson, slim, one.r, one.n, one.e, 0.2)), np.zeros(3)
 
 
-@random_law("At one point it is the pair of cones: J in Coulomb's, u in the dual one, J · u = 0.",
+@random_law("At one point J lies in Coulomb's cone, u in the dual cone, and J · u = 0.",
             "largest violation [J, N s, m/s]", 1e-9)
 def pairs_of_cones(lesson, rng):
-    """At one point J and u⁺ are at right angles, J in Coulomb's cone and u⁺ in the cone dual to it."""
+    """Check at one point that J and u⁺ are orthogonal, J in Coulomb's cone and u⁺ in the cone dual to it."""
     one = landing(lesson, rng)
     n, y = one.n[0], most_dissipative(lesson, one.body, one.r[:1], one.n[:1], 0.0, one.mu)
     J, u = np.linalg.solve(one.W, y - one.y)[:3], point_rows(one.r[0]) @ y
@@ -917,10 +920,10 @@ def frictionless_impacts(lesson, rng):
     return velocities(after), one.y + one.W @ one.G.T @ lam
 
 
-@random_law("The impact that dissipates most loses 1 − e² of what it loses with e = 0.",
+@random_law("The impact of maximal dissipation loses 1 − e² of the energy that it loses with e = 0.",
             "share of the loss: largest error [-]", 1e-9)
 def shares_of_the_loss(lesson, rng):
-    """All points come in."""
+    """Let all points approach."""
     one = landing(lesson, rng)
     while np.any(one.G @ one.y >= 0.0):
         one = landing(lesson, rng)
@@ -931,11 +934,11 @@ def shares_of_the_loss(lesson, rng):
 
 @case("several-points", "Impacts at several points at once", compiled=False)
 def several_points(lesson, check):
-    """Without friction the impulses solve a linear complementarity problem; 0 ≤ λ ⊥ A λ + n · u − u_sep ≥ 0.
+    """Compare impacts at several points with a linear complementarity problem, 0 ≤ λ ⊥ A λ + n · u − u_sep ≥ 0.
 
-    The impact that dissipates most scales the impulses of e = 0 by 1 + e where all points come in: ½ m v² is then a
-    parabola in that factor, and 1 − e² of the largest loss is lost.  Its gradient steps converge slowly where a body
-    turns easily: after 2,000 sweeps some 1e-6 of 2 m/s are left.
+    Without friction the impulses solve it.  The impact of maximal dissipation scales the impulses of e = 0 by 1 + e
+    if all points approach: ½ m v² is then a parabola in that factor, and 1 − e² of the largest loss is lost.  Its
+    gradient steps converge slowly if a body rotates easily: after 2,000 sweeps some 1e-6 of 2 m/s are left.
     """
     check.laws(lesson, (speeds_of_separation, approaches, pairs_of_cones, frictionless_impacts, shares_of_the_loss),
                seed=79, times=6)

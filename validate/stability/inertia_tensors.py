@@ -1,7 +1,7 @@
-"""Inertia tensors at the limits of floats and of bodies: lesson 4 far from the origin, for thin and for invalid bodies.
+"""Limits of inertia tensors: lesson 4 far from the origin, for thin and for invalid bodies.
 
-A mesh far from the origin: its corners are rounded to the spacing of floats there, and no other error may appear.
-Needles, plates, and impossible tensors: the edge between them.
+The corners of a mesh far from the origin are rounded to the spacing of floats there, and no other error may appear.
+Needles, plates and impossible tensors define the edge of valid tensors.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from validate.stability.case import DOTS, LINE, Picture, case, log_series, log_slope, random_law, refuses, relative
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
-PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
+PLACES = 64  # directions in which the body is moved: the mean square of this number of errors is known to 18 %
 # of a box whose corner is cut off [m]
 CORNER = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.6]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -34,7 +34,7 @@ def error(I):
 def about_the_world(x):
     """Return the tensor from integrals about the origin of the world, shifted afterwards.
 
-    Written out here: an answer of mesh_integrals that loses fewer digits is right, too.
+    It is written out here, because an answer of mesh_integrals that loses fewer digits is right, too.
     """
     corners = x[FACES]
     w, s = np.sum(corners[:, 0] * np.cross(corners[:, 1], corners[:, 2]), axis=1), corners.sum(axis=1)
@@ -53,13 +53,13 @@ def mean_error(tensor, distances):
 
 @case("far-from-origin", "A mesh far from the origin", compiled=False)
 def far_from_origin(lesson, check):
-    """Corners at the distance D are rounded by D/2^53, and the tensor by five times that over the size: ∝ D.
+    """Compare the error of a mesh at the distance D with the rounding of its corners.
 
-    About the origin of the world each tetrahedron reaches from there to its triangle.  w sums products of D³ and
-    the second moments products of D⁵, each rounded by 1.1e-16 of itself: ∝ D⁵.  Distances are powers of 2, so the
-    spacing of floats grows with them exactly.  Slopes over 20 (8) doublings of errors known to 9 % each are known
-    to 0.02 (0.04).  At 4 m the body's own half metre still counts: (3.5/3)⁵ more error there, which lowers the
-    second slope by 0.14.
+    Corners are rounded by D/2^53, and the tensor by five times that over the size: ∝ D.  About the origin of the
+    world each tetrahedron reaches from there to its triangle.  w sums products of D³ and the second moments
+    products of D⁵, each rounded by 1.1e-16 of itself: ∝ D⁵.  Distances are powers of 2, so the spacing of floats
+    grows with them exactly.  Slopes over 20 (8) doublings of errors known to 9 % each are known to 0.02 (0.04).  At
+    4 m the body's own half metre still counts: (3.5/3)⁵ more error there, which lowers the second slope by 0.14.
     """
     near, far = 2.0 ** np.arange(2, 11), 2.0 ** np.arange(6, 27, 4)
     ours = mean_error(lambda x: lesson.mesh_body(1.0, x, FACES).I, far)
@@ -106,7 +106,7 @@ def far_body(lesson, check):
 # ---------------------------------------------------------------------------------------------- thin bodies
 
 def last_that_passes(check, good, bad):
-    """Bisect for the last accepted number between an accepted and a refused one; NaN if they are not."""
+    """Return the last accepted number between an accepted and a refused one, by bisection; NaN if they are not."""
     if refuses(check, (good,)) or not refuses(check, (bad,)):
         return np.nan
     while True:
@@ -135,9 +135,10 @@ def needle_errors(lesson, ratios, rng):
 
 @case("thin-bodies", "Needles, plates, and impossible tensors", compiled=False)
 def thin_bodies(lesson, check):
-    """I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0, and I₁ > 0; both to ε = MOMENT_ROUND_OFF, which round-off must not exceed.
+    """Check I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0 and I₁ > 0 at their edges.
 
-    Determinant and cofactors lose the condition number I₃/I₁ in digits, about twenty roundings each.
+    Both hold to ε = MOMENT_ROUND_OFF, which round-off must not exceed.  Determinant and cofactors lose the
+    condition number I₃/I₁ in digits, with about twenty rounding errors each.
     """
     epsilon, rng = lesson.MOMENT_ROUND_OFF, np.random.default_rng(41)
     top = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([1.0, 2.0, m]))), 2.5, 4.0)
@@ -167,7 +168,7 @@ def thin_bodies(lesson, check):
 
 # ---------------------------------------------------------------------------------------------- laws of bodies
 
-CASES, ROUNDED = 50, 1e-12   # random bodies of each law; a few dozen roundings of 1.1e-16, relative
+CASES, ROUNDED = 50, 1e-12   # random bodies of each law; a few dozen rounding errors of 1.1e-16, relative
 
 
 def points(rng):
@@ -214,7 +215,7 @@ def momentum_about_point(lesson, rng):
 
 @case("momenta", "Momenta of a body that moves and rotates", compiled=False)
 def momenta(lesson, check):
-    """P = M V,  L about the centre = I ω,  L about any other point = I ω + (X − about) × M V.
+    """Compare momenta with P = M V,  L about the centre = I ω,  L about any other point = I ω + (X − about) × M V.
 
     The tensor is summed in coordinates: I_jk = Σ m (r² δ_jk − r_j r_k).
     """
@@ -257,7 +258,7 @@ def rotation(rng):
     return R
 
 
-@random_law("The integrals over a mesh are those over its inside, wherever the origin is.",
+@random_law("The integrals over a mesh are those over its inside, for any origin.",
             "integrals: largest error [-]", ROUNDED)
 def integrals(lesson, rng):
     """Integrate polynomials of degree 2 over a tetrahedron beside the origin, by four points inside it."""
@@ -267,7 +268,7 @@ def integrals(lesson, rng):
     return relative((lesson.mesh_integrals(corners, FACES), truth))
 
 
-@random_law("A tensor and its inverse turn with the body.",
+@random_law("A tensor and its inverse rotate with the body.",
             "tensor along the axes of the body: largest error [-]", ROUNDED)
 def inverse(lesson, rng):
     """Multiply with R: along its k-th column the tensor is the k-th moment."""
@@ -277,12 +278,12 @@ def inverse(lesson, rng):
 
 
 def axes_found(lesson, rng):
-    """Return (moments, axes) from a turned tensor, and the R and the moments of which it is made."""
+    """Return (moments, axes) of a rotated tensor, and the R and the moments from which it is made."""
     R, moments = rotation(rng), np.sort(rng.uniform(1.0, 1.9, 3))
     return *lesson.principal_axes(R @ np.diag(moments) @ R.T), R, moments
 
 
-@random_law("Principal axes are those that the body was turned to.", "moments and axes: largest error [-]", ROUNDED)
+@random_law("Principal axes are those to which the body was rotated.", "moments and axes: largest error [-]", ROUNDED)
 def axes(lesson, rng):
     got_moments, got_axes, R, moments = axes_found(lesson, rng)
     return (got_moments, np.abs(np.sum(got_axes * R, axis=0))), (moments, np.ones(3))
@@ -295,7 +296,7 @@ def handedness(lesson, rng):
 
 @case("bodies-with-holes", "Bodies with holes, in any axes", compiled=False)
 def bodies_with_holes(lesson, check):
-    """Sums over points whose masses may be negative, and tensors whose products do not vanish.
+    """Compare sums over points with negative masses, and tensors with non-zero products, with their definitions.
 
     The sums are numpy's, over the definitions: X = Σ m x/Σ m,  P = Σ m v,  L = Σ (x − about) × m v,
     I_jk = Σ m (r² δ_jk − r_j r_k).

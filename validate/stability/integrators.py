@@ -91,7 +91,7 @@ def departure(measured, edges):
 
 
 def turning(lesson, method, h_omega, steps, flatness=1.0):
-    """Return the mean angle [rad] by which one step turns the motion, on an ellipse with axes 1 (x) and flatness (v/ω).
+    """Return the mean angle [rad] by which a step rotates the motion, on an ellipse with axes 1 (x) and flatness (v/ω).
 
     On a wrong ellipse the angle alternately leads and lags, but the mean over many steps stays the same.
     """
@@ -120,17 +120,23 @@ def runge_kutta_edge(weights, zeta):
 
 
 def euler_edge(zeta):
-    """|1 + hs| = 1:  hω = 2ζ for a complex pair, ζ ≤ 1;  2(ζ − √(ζ² − 1)) for the faster of two real roots."""
+    """Return the hω at which |1 + hs| = 1.
+
+    It is 2ζ for a complex pair, ζ ≤ 1, and 2(ζ − √(ζ² − 1)) for the faster of two real roots.
+    """
     return 2.0 * zeta if zeta <= 1.0 else 2.0 * (zeta - np.sqrt(zeta * zeta - 1.0))
 
 
 def symplectic_euler_edge(zeta):
-    """An eigenvalue reaches −1 where 1 + tr A + det A = 4 − 4ζ hω − (hω)² = 0."""
+    """Return the hω at which an eigenvalue reaches −1: 1 + tr A + det A = 4 − 4ζ hω − (hω)² = 0."""
     return 2.0 * (np.sqrt(1.0 + zeta * zeta) - zeta)
 
 
 def average_velocity_edge(zeta):
-    """det A = 1 − 2ζ hω + ½(hω)² passes 1 at hω = 4ζ;  tr A + det A = 3 − 4ζ hω passes −1 at hω = 1/ζ."""
+    """Return the smaller of two edges.
+
+    det A = 1 − 2ζ hω + ½(hω)² passes 1 at hω = 4ζ;  tr A + det A = 3 − 4ζ hω passes −1 at hω = 1/ζ.
+    """
     return 4.0 * zeta if zeta <= 0.5 else 1.0 / zeta
 
 
@@ -167,7 +173,7 @@ def edge_picture(title, measured, sentence):
 
 @case("stability-limits", "Stability limits of the explicit methods")
 def stability_limits(lesson, check):
-    """Every explicit method has an edge.  Without damping that of some is at hω = 0."""
+    """Compare the edge of every explicit method with theory; without damping the edge of some is at hω = 0."""
     measured = {}
     for method, law in EDGES.items():
         edges = {zeta: law(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)}
@@ -186,9 +192,10 @@ def stability_limits(lesson, check):
 
 @case("stable-for-every-step", "Methods that are stable for every step", compiled=False)
 def stable_for_every_step(lesson, check):
-    """The two implicit methods have no edge: their motion stays bounded however long the step is.
+    """Check that the two implicit methods have no edge: their motion stays bounded for any step.
 
-    Seven steps: a velocity that is wrong by 1e-12 moves x by h 1e-12 = 3e-10 at the longest step, below NOISE.
+    There are seven steps: a velocity that is wrong by 1e-12 moves x by h 1e-12 = 3e-10 at the longest step, below
+    NOISE.
     """
     tried = [(h_omega, zeta) for h_omega in (0.1, 1.0, 10.0, 100.0, 1000.0) for zeta in (0.0, 0.5)]
     for method in IMPLICIT:
@@ -215,7 +222,7 @@ def amplification(lesson, method, h_omega, zeta):
 
 @case("amplification", "Amplification by one step", compiled=False)
 def amplification_map(lesson, check):
-    """The factor of one step over hω and ζ is at most 1 up to the edge that theory gives, and above 1 beyond it."""
+    """Check that the factor of one step over hω and ζ is at most 1 up to the edge of theory, and above 1 beyond it."""
     hs, zetas = (np.round(high * (np.arange(CELLS) + 0.5) / CELLS, 6) for high in (3.2, 2.0))
     h_omega, zeta = np.meshgrid(hs, zetas)
     fine, maps = np.linspace(0.0, 2.0, 201), []
@@ -238,7 +245,7 @@ def amplification_map(lesson, check):
 # ---------------------------------------------------------------------------------------------- one method each
 
 def edges_agree(lesson, check, method, edges, claim):
-    """Check that the edges {ζ: hω} of a method are those of theory, and that they flip; return the measured ones."""
+    """Check that the edges {ζ: hω} of a method are those of theory, and that they flip; return the measured edges."""
     measured = {zeta: edge(lesson, method, zeta) for zeta in edges}
     worst, flipped, count = departure(measured, edges), flips(lesson, method, edges), len(edges)
     check(claim, f"largest relative error of the edge at {count} damping ratios [-]", law=0.0, found=worst, within=EDGE,
@@ -252,7 +259,10 @@ def edges_agree(lesson, check, method, edges, claim):
 
 @case("explicit-euler", "Explicit Euler")
 def explicit_euler(lesson, check):
-    """Explicit Euler:  |1 + hs|² = 1 − 2ζ hω + (hω)² for ζ ≤ 1:  stable below 2ζ;  2(ζ − √(ζ² − 1)) for ζ > 1."""
+    """Compare explicit Euler's edge with |1 + hs|² = 1 − 2ζ hω + (hω)² = 1 for ζ ≤ 1.
+
+    It is stable below 2ζ, and below 2(ζ − √(ζ² − 1)) for ζ > 1.
+    """
     edges = {zeta: euler_edge(zeta) for zeta in (0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 3.0)}
     tiny, half, over = growth(lesson, EULER, 0.001), edge(lesson, EULER, 0.5), edge(lesson, EULER, 1.5)
     check("Without damping explicit Euler is never stable: the motion grows by √(1 + (hω)²) per step.",
@@ -272,7 +282,7 @@ def explicit_euler(lesson, check):
 
 @case("symplectic-euler", "Symplectic Euler")
 def symplectic_euler(lesson, check):
-    """Symplectic Euler:  stable below hω = 2(√(1 + ζ²) − ζ)."""
+    """Compare symplectic Euler's edge with hω = 2(√(1 + ζ²) − ζ)."""
     edges = {zeta: symplectic_euler_edge(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)}
     undamped, critical = edge(lesson, SYMPLECTIC_EULER, 0.0), edge(lesson, SYMPLECTIC_EULER, 1.0)
     check("Without damping symplectic Euler is stable up to hω = 2.", "edge hω at ζ = 0 [-]",
@@ -291,7 +301,7 @@ def symplectic_euler(lesson, check):
 
 @case("midpoint", "Midpoint: slow growth", compiled=False)
 def midpoint(lesson, check):
-    """Midpoint, undamped:  R(iy) = 1 + iy − ½y²,  |R|² = 1 + ¼y⁴,  y = hω."""
+    """Compare the growth of undamped midpoint with theory:  R(iy) = 1 + iy − ½y²,  |R|² = 1 + ¼y⁴,  y = hω."""
     law = lambda y: np.sqrt(1.0 + y**4 / 4.0)
     for y in (0.05, 0.2, 1.0):
         rate = growth(lesson, MIDPOINT, y)
@@ -309,7 +319,7 @@ def midpoint(lesson, check):
 
 @case("rk4", "Runge–Kutta 4")
 def rk4(lesson, check):
-    """Runge–Kutta 4, undamped:  |R(iy)|² = 1 − y⁶/72 + y⁸/576, stable up to √8.
+    """Compare Runge–Kutta 4, undamped, with theory:  |R(iy)|² = 1 − y⁶/72 + y⁸/576, stable up to √8.
 
     On the real axis it is stable up to the root of R(−z) = 1.  The real axis is an over-damped oscillator: at
     ζ = 5/4 it decays with the rates λ = 2ω and ½ω.
@@ -343,7 +353,7 @@ def rk4(lesson, check):
 
 @case("implicit-euler", "Implicit Euler: numerical damping", compiled=False)
 def implicit_euler(lesson, check):
-    """Implicit Euler damps an undamped oscillator:  |R(iy)| = (1 + y²)^(−½) per step, y = hω.
+    """Compare the damping of implicit Euler on an undamped oscillator with  |R(iy)| = (1 + y²)^(−½) per step, y = hω.
 
     It acts like a damping ratio  ln(1 + y²)/2y ≈ ½y.
     """
@@ -371,15 +381,17 @@ def implicit_euler(lesson, check):
         "Implicit Euler: numerical damping", "hω [-]", "growth per step [-]",
         growth_curves(lesson, "implicit Euler, ", IMPLICIT_EULER, law, dots, fine, few)
         + growth_curves(lesson, "implicit midpoint, ", IMPLICIT_MIDPOINT, np.ones_like, dots, fine, few),
-        "Implicit Euler never grows because it always shrinks. Implicit midpoint is equally stable, and keeps the "
+        "Under implicit Euler the motion never grows, because it always shrinks. Implicit midpoint is equally stable, "
+        "and keeps the "
         "amplitude.")
 
 
 @case("phase-error", "Phase errors of Verlet and implicit midpoint", compiled=False)
 def phase_error(lesson, check):
-    """Verlet turns the motion by 2 asin(½hω) per step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
+    """Compare phase errors: Verlet turns the motion by 2 asin(½hω) per step, implicit midpoint by 2 atan(½hω).
 
-    Verlet follows the ellipse  x² (1 − (hω)²/4) + (v/ω)² = const,  implicit midpoint the circle  x² + (v/ω)² = const.
+    Both keep the energy, but not the phase.  Verlet follows the ellipse  x² (1 − (hω)²/4) + (v/ω)² = const,  implicit
+    midpoint the circle  x² + (v/ω)² = const.
     *Source:* cos θ = ½ tr A; Hairer, Lubich, Wanner 2006, I.5.
     """
     verlet = phase_curves(lesson, check, VERLET, np.arcsin, 0.25, GROWTH)
@@ -434,7 +446,7 @@ NEWTON_OF_THE_PAIR = NEWTON * SOFT * SQUEEZED * TIMES
 
 
 def stiff_pair(t, x, v, p):
-    """a₁ = (F − k₁(x₁ − L))/m,  a₂ = −F/m,  F = k₂(x₂ − x₁ − L)."""
+    """Return a₁ = (F − k₁(x₁ − L))/m,  a₂ = −F/m,  F = k₂(x₂ − x₁ − L)."""
     F = p.k2 * (x[1] - x[0] - p.rest)
     return np.array([F - p.k1 * (x[0] - p.rest), -F]) / p.m
 
@@ -453,7 +465,7 @@ def pair_run(lesson, method):
 
 
 def soft_mode(lesson, check, method, angle, shrink, loose):
-    """Check a run against a method that turns the soft mode by `angle` and shrinks it by `shrink` per step.
+    """Check a run against a method that turns the soft mode by `angle` and multiplies it by `shrink` per step.
 
     loose    largest stretch that the method leaves in the stiff spring [m]
     """
@@ -479,13 +491,13 @@ def soft_mode(lesson, check, method, angle, shrink, loose):
 
 @case("stiff-pair", "A stiff pair", compiled=False)
 def stiff_pair_case(lesson, check):
-    """A stiff pair, released at rest from x = (0.5, 1.5), moves as one: ω² = k₁/2m = 375,  ω₂ = √(2k₂/m) = 1.4e10.
+    """Check a stiff pair, released from x = (0.5, 1.5), which moves as one: ω² = k₁/2m = 375,  ω₂ = √(2k₂/m) = 1.4e10.
 
-    The second spring starts unstretched and must pull with 187.5 N: it stretches by 1.9e-18 m, below a hundredth of the
-    spacing of floats there.  Per step the mean of both turns by atan(hω) on a spiral under implicit Euler, and by
-    2 atan(½hω) on a circle under implicit midpoint.  At dt = 10 ms the 1 in  1 + h²k₂  is below round-off, and Newton's
-    matrix is singular.  Implicit Euler removes the stiff mode at every step, implicit midpoint keeps what every step
-    leaves of it.
+    The second spring starts unstretched and must pull with 187.5 N: it stretches by 1.9e-18 m, below a hundredth of
+    the spacing of floats there.  Per step the mean of both turns by atan(hω) on a spiral under implicit Euler, and
+    by 2 atan(½hω) on a circle under implicit midpoint.  At dt = 10 ms the 1 in  1 + h²k₂  is below round-off, and
+    Newton's matrix is singular.  Implicit Euler removes the stiff mode at every step; implicit midpoint keeps the
+    part of it that every step leaves.
     """
     y = SOFT * DT
     shrink = 1.0 / np.sqrt(1.0 + y * y)
@@ -493,7 +505,7 @@ def stiff_pair_case(lesson, check):
     midpoint = soft_mode(lesson, check, IMPLICIT_MIDPOINT, 2.0 * np.arctan(0.5 * y), 1.0, NEWTON_OF_THE_PAIR)
     refused = refuse(EXPLICIT, lambda name: lesson.advance(
         getattr(lesson, name), stiff_pair, 0.0, np.array([0.5, 1.5]), np.zeros(2), DT, TIMES, PAIR))
-    check("Every explicit method must refuse: its step may not exceed about 2/ω₂ = 1.4e-10 s.",
+    check("Every explicit method must end in an error, because its step may not exceed about 2/ω₂ = 1.4e-10 s.",
           "explicit methods that raise Diverged [of 6]", law=len(EXPLICIT), found=refused, within=0.0,
           saw=f"At dt = {DT} s {refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number.")
     fine = np.linspace(0.0, TIMES * DT, 241)
@@ -501,7 +513,7 @@ def stiff_pair_case(lesson, check):
         "A stiff pair: motion of the soft mode", "t [s]", "position of mass 1 [m]",
         [series("truth", fine, 1.0 - SQUEEZED * np.cos(SOFT * fine), LINE), euler, midpoint],
         "The step is ten million times too long for the stiff spring, and both implicit methods follow the soft mode. "
-        "Implicit Euler damps it, implicit midpoint does not.")
+        "Implicit Euler damps the mode; implicit midpoint does not.")
 
 
 END = 1e11                   # of the reaction [s]
@@ -509,7 +521,7 @@ PUBLISHED = np.array([2.08334014970e-8, 8.33336077e-14, 0.99999997917])      # y
 
 
 def robertson(t, x, v, p):
-    """ẏ₁ = −0.04 y₁ + 10⁴ y₂ y₃,   ẏ₂ = −ẏ₁ − ẏ₃,   ẏ₃ = 3·10⁷ y₂²,  with y in the place of v; x is unused.
+    """Return ẏ₁ = −0.04 y₁ + 10⁴ y₂ y₃,   ẏ₂ = −ẏ₁ − ẏ₃,   ẏ₃ = 3·10⁷ y₂²,  with y in the place of v; x is unused.
 
     *Source:* Robertson 1966; Hairer and Wanner 1996, IV.10; values at 10¹¹ s: Mazzia and Magherini, "Test set for
     IVP solvers".
@@ -545,7 +557,7 @@ def reached(lesson, ratio):
 
 
 def leaves(lesson, dt):
-    """Return whether 1,000 steps of explicit Euler amplify a y₂ that starts half too large.
+    """Return whether 1,000 steps of explicit Euler amplify a y₂ that starts 50 % too large.
 
     y₂ returns to a value that differs by 4·10⁻⁶ of the disturbance, because y₁ has taken up the rest.  Over 1,000
     steps that shifts the edge by 2e-9.
@@ -560,9 +572,9 @@ def leaves(lesson, dt):
 
 @case("robertson", "Robertson's reaction", compiled=False)
 def robertson_case(lesson, check):
-    """Robertson's reaction to 10¹¹ s, with the steps in a constant ratio.
+    """Check Robertson's reaction to 10¹¹ s, with steps in a constant ratio.
 
-    Late, y₂ = 4·10⁻⁶ y₁ and  ẏ₁ = −c y₁²,  c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s:  y₁ = 1/ct.
+    For late times y₂ = 4·10⁻⁶ y₁ and  ẏ₁ = −c y₁²,  c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s:  y₁ = 1/ct.
     Implicit Euler with times tₙ₊₁ = q tₙ turns that into  uₙ₊₁ = uₙ − (q − 1) tₙ c uₙ₊₁²,  solved by uₙ = q/(c tₙ).
     Its relative error is q − 1, first order in the step.  The exact solution differs by 3.3e-6 from 1/ct, so the
     error is known to about that.  Explicit Euler is limited by the fast rate |λ| = 0.04 + 10⁴ y₃ + … to steps below
@@ -583,7 +595,7 @@ def robertson_case(lesson, check):
           law=1.0, found=total, within=len(ts) * 16 * 1.1e-16,
           saw=f"After {len(ts):,} steps the sum differs from 1 by {abs(total - 1.0):.0e}.")
     refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
-    check("Every explicit method must refuse such steps.", "explicit methods that raise Diverged [of 6]",
+    check("Every explicit method must end in an error for such steps.", "explicit methods that raise Diverged [of 6]",
           law=len(EXPLICIT), found=refused, within=0.0,
           saw=f"{refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number.")
     longest, step = 2.0 / fastest_rate(PUBLISHED), bisect(lambda dt: leaves(lesson, dt), 1e-5, 1e-3)
@@ -594,7 +606,7 @@ def robertson_case(lesson, check):
 
 
 def reaction_picture(ts, ys, ratio):
-    """Draw the concentrations of a run, their published ends, and the law of late times."""
+    """Draw the concentrations of a run, their published final values, and the law of late times."""
     late = ts > 1e3
     drawn = [series(f"{name}, implicit Euler", np.log10(ts), np.log10(y), LINE)
              for name, y in zip(("y₁", "y₂", "y₃"), ys.T)]
@@ -613,7 +625,7 @@ ROUNDED = 1e-13              # of a few hundred roundings of 1.1e-16, relative t
 
 
 class Swing(NamedTuple):
-    """Two masses whose force depends on everything: on time, place and velocity, each across both of them."""
+    """Two masses under a force that depends on time, position and velocity; matrices couple the two."""
     k: np.ndarray            # (2, 2) [1/s²]
     c: np.ndarray            # (2, 2) [1/s]; 0: the force does not depend on the velocity
     drive: np.ndarray        # (2,) [m/s²]
@@ -621,7 +633,7 @@ class Swing(NamedTuple):
 
 
 def swinging(t, x, v, p):
-    """a = −K sin x − C tanh v + drive cos ωt."""
+    """Return a = −K sin x − C tanh v + drive cos ωt."""
     return -p.k @ np.sin(x) - p.c @ np.tanh(v) + p.drive * np.cos(p.omega * t)
 
 
@@ -656,7 +668,7 @@ def history(lesson, rng):
 
 @case("one-step", "One step of each method", compiled=False)
 def one_step(lesson, check):
-    """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
+    """Compare one step of each method, under a force of t, x and v, with that of its table of coefficients."""
     steps = [random_law(f"One step of {method.label} is that of its published coefficients.",
                         f"{method.label}: largest error of a step [m, m/s]",
                         100.0 * NEWTON if method in IMPLICIT else ROUNDED)(partial(single_step, method))
@@ -672,7 +684,7 @@ COUNTED = SHARE**2           # the rate lags behind the truth by the square of a
 
 
 def attracted(t, x, v, p):
-    """a = −μ x/|x|³"""
+    """Return a = −μ x/|x|³."""
     return -p.mu / np.sum(x * x) ** 1.5 * x
 
 
@@ -694,7 +706,7 @@ def counted_by_theory(e):
     return 2.0 * np.pi * np.mean(1.0 / np.sqrt(1.0 - e * np.cos(E))) / SHARE
 
 
-@random_law("A planet at any place of its ellipse moves as by the published rule.",
+@random_law("From any place on its ellipse a planet moves according to the published rule.",
             "positions after some revolutions: largest error, over a [-]", 100.0 * ROUNDED)
 def adaptive_run(lesson, rng):
     """Compare a run from any place of an ellipse, anywhere in space, with the published rule in complex numbers."""
@@ -710,7 +722,7 @@ def adaptive_run(lesson, rng):
 
 @case("adaptive-steps", "Steps that adapt to the distance", compiled=False)
 def adaptive_steps(lesson, check):
-    """A revolution takes as many steps as the rule promises, from any place, and a fall ends where the sun is."""
+    """Compare the number of adaptive steps of a revolution with the rule, and check a fall that ends at the sun."""
     check.laws(lesson, (adaptive_run,), seed=13, times=TRIED // 2)
     counts = [steps_per_revolution(lesson, Planet(e=e)) for e in SHAPES]
     theory, equal = counted_by_theory(SHAPES[-1]), 1e3 * 2.0 * np.pi / SHARE
@@ -723,7 +735,7 @@ def adaptive_steps(lesson, check):
     ends = lambda T: lambda name: lesson.advance_adaptive(
         getattr(lesson, name), attracted, 0.0, start, np.zeros(2), SHARE, T, p)
     longest = bisect(lambda T: refuse((BLANES_MOAN,), ends(T)) == 1, 0.5 * fall, 2.0 * fall)
-    check("A fall from rest reaches the origin after π/√8 √(r³/μ), and no step leads beyond.",
+    check("A fall from rest reaches the origin after π/√8 √(r³/μ), and no step goes beyond it.",
           "longest run that ends with a number [s]", law=fall, found=longest, within=(SHARE**4 + EDGE) * fall,
           saw=f"A run of {longest:.6f} s ends; a longer one raises Diverged.")
     fine = np.linspace(0.0, 0.995, 100)
@@ -744,7 +756,7 @@ def matrix_of_euler(lesson, rng):
     return lesson.amplification_matrix(lesson.euler_step, omega, zeta, h), truth
 
 
-@random_law("Newton's matrix is 1 − dt ∂a/∂v, along x + dt v.", "Newton's matrix: largest error [-]", 1e-9)
+@random_law("Newton's matrix is 1 − dt ∂a/∂v, at x + dt v.", "Newton's matrix: largest error [-]", 1e-9)
 def matrix_of_newton(lesson, rng):
     p, t, x, v, dt = random_swing(rng)
     slope = -dt * p.k * np.cos(x + dt * v) - p.c / np.cosh(v) ** 2
@@ -768,10 +780,10 @@ def fitted_order(lesson, rng):
 
 @case("what-measures-methods", "Measures of a method", compiled=False)
 def what_measures_methods(lesson, check):
-    """The matrix of a step, its spectral radius and the order of convergence, on examples whose answers are known.
+    """Check the matrix of a step, its spectral radius and the order of convergence on examples whose answers are known.
 
     A central difference of h = 6e-6 errs by h²/6 times a third derivative, and by round-off over h: 2e-10 in all.  Near
-    a double eigenvalue round-off counts by its root.
+    a double eigenvalue the error is the square root of round-off.
     """
     check.laws(lesson, (matrix_of_euler, matrix_of_newton, largest_eigenvalue, fitted_order), seed=12, times=TRIED)
 
@@ -780,12 +792,12 @@ def what_measures_methods(lesson, check):
 
 DYADIC = 1.0 / 64.0          # a step [s] whose products with ½ and with itself are exact: a sum is all that is rounded
 CIRCLES = 16                 # planets on the same circle, at other places
-SPREAD = 3.0 / np.sqrt(2.0 * CIRCLES)   # three standard deviations of the root mean square of so many, over its mean
+SPREAD = 3.0 / np.sqrt(2.0 * CIRCLES)   # three standard deviations of the root mean square of these, over its mean
 MANY, FEW = 10**6, 10**4     # steps of a run: compiled, and in plain Python
 
 
 def attracted_each(t, x, v, p):
-    """a = −μ x/|x|³ for each row of x (n, 2)"""
+    """Return a = −μ x/|x|³ for each row of x (n, 2)."""
     a = np.empty_like(x)
     for k in range(x.shape[0]):
         square = x[k, 0] * x[k, 0] + x[k, 1] * x[k, 1]
@@ -815,12 +827,11 @@ def walk_of_energy(dt):
 
 @case("a-million-steps", "A million steps of a planet")
 def a_million_steps(lesson, check):
-    """On its discrete circle Verlet keeps the energy, so that nothing but rounding changes it: a random walk.
+    """Check that rounding alone changes the energy of a planet on Verlet's discrete circle, as a random walk.
 
-    After n steps it is off by √n times one step's share (Brouwer's law).  The step is a power of two, because a rounded
-    ½dt² would be a systematic error, which grows by n.
-    *Source:* Brouwer 1937; Hairer, McLachlan, Razakarivony 2008, "Achieving Brouwer's law with implicit Runge–Kutta
-    methods".
+    After n steps the energy is off by √n times the error of one step (Brouwer's law).  The step is a power of two,
+    because a rounded ½dt² would be a systematic error, which grows with n.  *Source:* Brouwer 1937; Hairer,
+    McLachlan, Razakarivony 2008, "Achieving Brouwer's law with implicit Runge–Kutta methods".
     """
     fast = hasattr(lesson.verlet_step, "py_func")
     law, longest = (jitted(attracted_each), MANY) if fast else (attracted_each, FEW)
@@ -831,7 +842,7 @@ def a_million_steps(lesson, check):
         off = energy(*lesson.advance(lesson.verlet_step, law, 0.0, x, v, DYADIC, int(n), Planet())) - energy(x, v)
         walks.append(np.sqrt(np.mean(off**2)))
         revolutions = n * 2.0 * np.arcsin(0.5 * DYADIC) / (2.0 * np.pi)
-        check("Rounding changes the energy of a planet like a random walk, by √n times the share of one step.",
+        check("Rounding changes the energy of a planet like a random walk, by √n times the error of one step.",
               f"energy after {n:,} steps: root mean square of {CIRCLES} planets [J/kg]",
               law=share * np.sqrt(n), found=walks[-1], within=SPREAD * share * np.sqrt(n),
               saw=f"After {n:,} steps, {revolutions:,.0f} revolutions, the energy is off by {walks[-1]:.1e} J/kg.")
@@ -840,7 +851,8 @@ def a_million_steps(lesson, check):
         "log₁₀ of the energy's error [J/kg]",
         [series("√n times the share of one step", np.log10(counts), np.log10(share * np.sqrt(counts)), LINE),
          series("measured", np.log10(counts), np.log10(walks), DOTS)],
-        "A hundred times as many steps make ten times the error. Shorter steps do not help, because more are needed.")
+        "A hundred times as many steps make ten times the error. Shorter steps do not help, because more steps are "
+        "needed.")
 
 
 # ---------------------------------------------------------------------------------------------- the limit of prediction
@@ -853,7 +865,7 @@ RIPPLE = 0.1                 # [s]
 
 
 def double_pendulum(t, x, v, p):
-    """θ̈ of two equal arms of 1 m with masses at their ends, in each row of x = (θ₁, θ₂), both from the vertical.
+    """Return θ̈ of two arms of 1 m with equal masses at their ends, in each row of x = (θ₁, θ₂) from the vertical.
 
     2θ̈₁ + c θ̈₂ = −s ω₂² − 2g sin θ₁,    c θ̈₁ + θ̈₂ = s ω₁² − g sin θ₂,    s, c: sine and cosine of θ₁ − θ₂
     """
@@ -864,9 +876,9 @@ def double_pendulum(t, x, v, p):
 
 
 def true_growth():
-    """Return (ts, angles (n, 2), factors (n,)): the motion, and what a small error in θ₁ has grown to at most by then.
+    """Return (ts, angles (n, 2), factors (n,)): the motion, and the largest growth of a small error in θ₁ until then.
 
-    An imaginary part of 1e-30 in the start is carried along as the derivative by it, to all digits.
+    An imaginary part of 1e-30 in the start carries the derivative by θ₁ to all digits.
     """
     def rates(t, y):
         return np.concatenate((y[2:], double_pendulum(t, y[None, :2], y[None, 2:], None)[0]))
@@ -883,7 +895,7 @@ def first_beyond(ts, sizes, limit=HORIZON):
 
 
 def sampled(lesson, starts, steps):
-    """Return the angles (n, k, 2) of runs from these starts, with so many steps per second, at the times ts."""
+    """Return the angles (n, k, 2) of runs from these starts, with this number of steps per second, at the times ts."""
     run = lesson.trajectory(lesson.rk4_step, double_pendulum, 0.0, starts, 0.0 * starts, 1.0 / steps,
                             round(AHEAD * steps), None)
     return run[1][::steps // SLICES]
@@ -891,7 +903,7 @@ def sampled(lesson, starts, steps):
 
 @case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False)
 def limit_of_prediction(lesson, check):
-    """A small error grows by a factor that the motion alone decides, whatever its cause: method, start or rounding."""
+    """Check that the motion alone decides the growth of a small error from the method, the start or rounding."""
     ts, truth, factor = true_growth()
     starts = HELD + np.array([[0.0, 0.0], *([10.0**-k, 0.0] for k in EXPONENTS)])
     fine, coarse = (sampled(lesson, starts, steps) for steps in (500, 250))
@@ -899,7 +911,7 @@ def limit_of_prediction(lesson, check):
     for k, neighbour in zip(EXPONENTS, np.swapaxes(fine[:, 1:], 0, 1)):
         apart, theory = np.linalg.norm(neighbour - fine[:, 0], axis=1), factor * 10.0**-k
         differ = first_beyond(ts, apart)
-        check("Two starts that differ by ε are apart by ε times the growth of a small error, while that is small.",
+        check("Two runs that start ε apart differ by ε times the growth of a small error, while that is small.",
               f"time until starts 1e-{k} rad apart differ by {HORIZON:g} rad [s]",
               law=first_beyond(ts, theory), found=differ, within=RIPPLE,
               saw=f"They differ by {HORIZON:g} rad after {differ:.2f} s.")

@@ -1,7 +1,7 @@
 """Gains, straight arms, targets out of reach, conflicts and limits, and the laws of arms.
 
 Bounds come from singular values and second derivatives of chains of complex numbers, never from the lesson.
-*Source:* each case derives what it needs; Bertsekas 1982 for limits.
+*Source:* each case derives its theory; Bertsekas 1982 for limits.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from solutions.checks import Diverged
 from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of, spatial_end
 from validate.stability.case import DOTS, LINE, Picture, bisect, case, log_series, random_law, refuses, series
 
-SMALL = 1e-8                 # disturbance that a linear theory knows [rad]: leaves 1e-8 of what is measured
+SMALL = 1e-8                 # small disturbance [rad]: the linear theory is then right to 1e-8
 FOUR_DIGITS = 1e-4           # of an edge that bisection finds, and of a factor, relative [-]
 ARRIVED = 1e-9               # |e| over the reach at which a search ends [-]
 
@@ -23,13 +23,13 @@ def arm_of(lesson, lengths, gain=0.0, damping=0.0, low=-np.inf, high=np.inf):
 
 
 def after(lesson, name, arm, theta, target, iterations, task=None):
-    """Return the angles after so many iterations."""
+    """Return the angles after this number of iterations."""
     step, task = getattr(lesson, name), task or lesson.reach_2d
     return lesson.advance_reach(step, task, np.array(theta, float), np.array(target, float), iterations, arm)
 
 
 def growth(lesson, name, arm, rest, target, away, iterations=40):
-    """Return the factor per iteration by which the distance from angles at rest grows, in the long run."""
+    """Return the factor per iteration by which the distance from angles at rest finally grows."""
     theta, total, counted = np.array(rest) + SMALL * away, 0.0, 0
     for k in range(iterations):
         theta = after(lesson, name, arm, theta, target, 1)
@@ -54,9 +54,10 @@ def largest_gain(lesson, lengths, rest):
 
 @case("transpose-gain", "The largest stable gain of the transpose", compiled=False)
 def transpose_gain(lesson, check):
-    """Near a target in reach the error along u_i is multiplied by 1 − α σ_i² per iteration: stable for α < 2/σ₁².
+    """Compare the largest stable gain of the transpose with 2/σ₁².
 
-    At the edge the factor is −1.  Forty iterations from 1e-8 rad show a relative difference of 1e-6 as 8e-5.
+    Near a target in reach the error along u_i is multiplied by 1 − α σ_i² per iteration.  At the edge the factor is −1.
+    Forty iterations from 1e-8 rad show a relative difference of 1e-6 as 8e-5.
     """
     arms = (([1.0, 1.0], (0.3, 1.2)), ([1.0, 0.7, 0.4], (0.4, 0.9, 0.7)), ([0.1, 0.1], (0.3, 2.0)),
             ([1.0] * 10, [0.2] * 10))
@@ -65,11 +66,11 @@ def transpose_gain(lesson, check):
         name = f"{len(lengths)} links of reach {sum(lengths):g} m"
         check("The transpose converges for α < 2/σ₁², σ₁ the largest singular value of J.",
               f"largest gain, {name} [1/m²]", law=law, found=edge, within=FOUR_DIGITS * law,
-              saw=f"{name} stand a gain of {edge:.5g}/m².")
+              saw=f"{name} are stable up to a gain of {edge:.5g}/m².")
     fine = np.linspace(np.log10(min(laws)), np.log10(max(laws)), 20)
     return Picture("The largest gain", "log₁₀ of 2/σ₁²", "log₁₀ of the largest gain", [
         series("theory", fine, fine, LINE), log_series("measured", laws, edges, DOTS)],
-        "A gain that suits one arm is a hundred times too much for another: longer arms stand less.")
+        "A gain that suits one arm is a hundred times too large for another: longer arms need smaller gains.")
 
 
 # ---------------------------------------------------------------------------------------------- straight arms
@@ -92,11 +93,12 @@ def factors_of_a_bend(d):
 
 @case("straight-arm", "The way out of a straight arm", compiled=False)
 def straight_arm(lesson, check):
-    """Two straight links and a target on their axis at d < reach: nothing moves, but a disturbance grows.
+    """Compare the growth of a small bend of two straight links, with a target on their axis at d < reach, with theory.
 
-    With  H = JᵀJ − e · ∂²x:  transpose 1 − αH, damped 1 − (JᵀJ + λ²)⁻¹H; the largest eigenvalue is above 1.
-    CCD: the second link points at the target, −l₁φ/(d − l₁) for a small φ of the first; that one then turns by what is
-    left: factor l₂ d/((l₁ + l₂)(d − l₁)).  FABRIK: joint 1 goes aside by l₂/(d − l₁) and l₁/(d − l₂): the product.
+    With  H = JᵀJ − e · ∂²x:  transpose 1 − αH, damped 1 − (JᵀJ + λ²)⁻¹H; the largest eigenvalue is above 1.  CCD:
+    the second link points at the target, −l₁φ/(d − l₁) for a small φ of the first; then the first joint turns by
+    the remaining angle: factor l₂ d/((l₁ + l₂)(d − l₁)).  FABRIK: joint 1 moves aside by l₂/(d − l₁) and l₁/(d −
+    l₂): the product.
     """
     arm, distances, curves = arm_of(lesson, TWO, GAIN, DAMPING), np.linspace(1.2, 1.7, 6), []
     for name, label in LABELS.items():
@@ -120,7 +122,7 @@ def straight_arm(lesson, check):
 
 
 def step_across(lesson, name, bend, damping=0.0):
-    """Return (length of a step [rad], σ₂ [m]) of two links bent by so little, with an error of 30 cm along u₂."""
+    """Return (length of a step [rad], σ₂ [m]) of two links with a small bend, for an error of 30 cm along u₂."""
     theta = np.array([0.0, bend])
     u, sigma, _ = np.linalg.svd(jacobian_of(theta, TWO))
     target = end_of(theta, TWO) + 0.3 * u[:, 1]
@@ -135,16 +137,16 @@ def longest_step(lesson, damping):
 
 
 def near_singular(lesson, check):
-    """Bend an arm by ε: the pseudo-inverse jumps as 1/ε, a damped step stays below |e|/(2λ)."""
+    """Compare steps of an arm bent by ε with theory: J⁺ jumps as 1/ε, a damped step is at most |e|/(2λ)."""
     for bend in (1e-2, 1e-4, 1e-6):
         jump, sigma = step_across(lesson, "pseudo_inverse_step", bend)
-        check("Along the direction that the arm can hardly move, the pseudo-inverse asks for |e|/σ₂.",
+        check("Along the direction in which the arm can hardly move, the step of the pseudo-inverse is |e|/σ₂.",
               f"step times σ₂ over |e|, bent by {bend:g} rad [-]",
               law=1.0, found=jump * sigma / 0.3, within=1e-14 / bend,
               saw=f"Bent by {bend:g} rad, an error of 30 cm makes it turn its joints by {jump:.3g} rad.")
     for damping in (0.05, 0.3):
         longest = longest_step(lesson, damping)
-        check("No damped step is longer than |e|/(2λ); at σ = λ one is as long.",
+        check("No damped step is longer than |e|/(2λ); at σ = λ the step has this length.",
               f"longest step over |e|/(2λ), λ = {damping:g} m [-]", law=1.0, found=longest, within=1e-9,
               saw=f"With λ = {damping:g} m the longest step over all bends is {longest:.6f} of the bound.")
 
@@ -169,17 +171,17 @@ def least_damping(lesson, far):
 
 @case("far-targets", "Targets a thousand times too far", compiled=False)
 def far_targets(lesson, check):
-    """A target out of reach at d: the arm comes to rest straight at d − reach, if the damping is enough.
+    """Check that an arm comes to rest straight at d − reach from a target out of reach, if the damping is large enough.
 
     At rest  H = JᵀJ + S,  S = −e · ∂²x, positive.  A damped step multiplies by  1 − (JᵀJ + λ²)⁻¹ H,  which is stable
-    while no eigenvalue of (JᵀJ + λ²)⁻¹ H is above 2:  λ² > ½ of the largest eigenvalue of S − JᵀJ.
+    if no eigenvalue of (JᵀJ + λ²)⁻¹ H is above 2:  λ² > ½ of the largest eigenvalue of S − JᵀJ.
     """
     times = (1.5, 3.0, 10.0, 100.0, 1000.0)
     laws, edges = np.transpose([least_damping(lesson, far) for far in times])
     for far, law, edge in zip(times, laws, edges, strict=True):
         check("A damped search for a target out of reach comes to rest only above a damping that grows with |e|.",
               f"least λ² for a target at {far:g} reaches [m²]", law=law, found=edge, within=FOUR_DIGITS * law,
-              saw=f"At {far:g} reaches a search with λ² below {edge:.4g} m² trembles.")
+              saw=f"At {far:g} reaches a search with λ² below {edge:.4g} m² does not come to rest.")
     e = 999.0 * REACH
     arm = arm_of(lesson, THREE, 1.0 / (3.0 * REACH * (e + REACH)), np.sqrt(1.5 * REACH * e))
     for name in ("damped_step", "limited_step", "transpose_step", "ccd_step", "fabrik_step"):
@@ -193,17 +195,17 @@ def far_targets(lesson, check):
                    "log₁₀ of the least λ² [m²]", [
                        log_series("theory", times, laws, LINE),
                        log_series("measured", times, edges, DOTS)],
-                   "Without it the arm flails: out of reach, more damping is not caution but a condition.")
+                   "Without it the arm does not come to rest: for targets out of reach this damping is necessary.")
 
 
 # ---------------------------------------------------------------------------------------------- many links
 
 @case("two-to-two-hundred-links", "Two to two hundred links", compiled=False)
 def two_to_two_hundred_links(lesson, check):
-    """All methods reach a target at 0.6 of the reach, and the damped step contracts in the end by λ²/(σ₂² + λ²).
+    """Check that all methods reach a target at 0.6 of the reach, and that the damped step contracts by λ²/(σ₂² + λ²).
 
-    An angle is rounded by 1.1e-16 and moves the end by the reach: n roundings, n · 1e-15 of the reach.  The factor is
-    a central difference over 1e-6 rad: a rounding of the end over that, and a few, is 1e-9.
+    An angle is rounded by 1.1e-16 and moves the end by the reach: n rounding errors, n · 1e-15 of the reach.  The
+    factor is a central difference over 1e-6 rad: a few rounding errors of the end over that are 1e-9.
     """
     sizes, damping, target, curves = (2, 5, 20, 200), 0.3, 0.6 * np.array([np.cos(1.0), np.sin(1.0)]), []
     for name, label in (("ccd_step", "CCD"), ("fabrik_step", "FABRIK"), ("damped_step", "damped, λ = 0.3 reach")):
@@ -221,17 +223,18 @@ def two_to_two_hundred_links(lesson, check):
                 contraction(lesson, check, lengths, angles, damping)
         curves.append(log_series(label, sizes, np.maximum(counts, 1), DOTS))
     return Picture("Iterations to 10⁻⁹ of the reach", "log₁₀ of the number of links", "log₁₀ of the iterations", curves,
-                   "The number of links hardly matters; an iteration costs in proportion to it.")
+                   "The number of links hardly changes the number of iterations; the cost of an iteration is "
+                   "proportional to it.")
 
 
 def contraction(lesson, check, lengths, angles, damping):
-    """Compare with theory what a damped iteration leaves of an error along u₂, at the answer."""
+    """Compare the fraction that a damped iteration leaves of an error along u₂, at the answer, with theory."""
     u, sigma, v = np.linalg.svd(jacobian_of(angles, lengths), full_matrices=False)
     target, arm = end_of(angles, lengths), arm_of(lesson, lengths, damping=damping)
     ends = [end_of(after(lesson, "damped_step", arm, angles + sign * 1e-6 * v[1], target, 1), lengths)
             for sign in (1.0, -1.0)]
     factor = u[:, 1] @ (ends[0] - ends[1]) / (2e-6 * sigma[1])
-    check("In the end the damped step leaves λ²/(σ₂² + λ²) of the error.",
+    check("Finally the damped step leaves λ²/(σ₂² + λ²) of the error.",
           f"factor per iteration, {len(lengths)} links [-]",
           law=damping**2 / (sigma[1] ** 2 + damping**2), found=factor, within=1e-9,
           saw=f"{len(lengths)} links: {factor:.6f} of the error is left after an iteration.")
@@ -249,9 +252,9 @@ def elbow_and_end(theta, target, arm):
 
 @case("conflicting-targets", "Two targets, one arm", compiled=False)
 def conflicting_targets(lesson, check):
-    """Two targets that exclude each other: every method with a Jacobian comes to rest where Σ|e|² is smallest nearby.
+    """Check that with two targets that exclude each other a method with a Jacobian stops at a local minimum of Σ|e|².
 
-    Where it rests, Jᵀe = 0.  SciPy's least squares finds the same minimum from there; the transpose and the damped step
+    At rest Jᵀe = 0.  SciPy's least squares finds the same minimum from there; the transpose and the damped step
     leave 1e-9 of the angles after their iterations, which is 1e-17 of a minimum.
     """
     arm, start = arm_of(lesson, [1.0, 0.8, 0.6], 0.12, 1.0), (0.5, 0.5, 0.5)
@@ -270,15 +273,17 @@ def conflicting_targets(lesson, check):
     return Picture("What no arm can satisfy", "pair of targets", "|e| of the compromise [m]", [
         series("least squares", numbers, [f.predicted for f in check[::2]], LINE),
         series("transpose", numbers, measured[::2], DOTS), series("damped", numbers, measured[1::2], DOTS)],
-        "A task is what is stacked into e: any number of rows, and the methods stay the same.")
+        "A task is any number of rows stacked into e; the methods stay the same.")
 
 
 @case("limits-that-forbid", "Limits that forbid the target", compiled=False)
 def limits_that_forbid(lesson, check):
-    """Two links whose elbow bends by B at most, and a target nearer than that allows: r² = l₁² + l₂² + 2 l₁l₂ cos B.
+    """Compare the remaining distance to targets that the limits of two links forbid with theory.
 
-    The free first joint turns to the bearing of the target, and r − d is left.  If the first joint has limits, too, the
-    target is seen from the end at an angle that neither joint may close: |r e^{iA} − target| is left at the corner A.
+    The elbow bends by at most B, and the target is closer than that allows: r² = l₁² + l₂² + 2 l₁l₂ cos B.  The
+    free first joint turns to the bearing of the target, and r − d is left.  If the first joint has limits, too, the
+    target is seen from the end at an angle that neither joint may close: |r e^{iA} − target| is left at the corner
+    A.
     """
     bends, target, measured = (0.3, 0.6, 1.0, 1.5), (0.3, 0.5), []
     law = lambda bend: np.sqrt(1.49 + 1.4 * np.cos(bend)) - np.hypot(*target)
@@ -287,15 +292,15 @@ def limits_that_forbid(lesson, check):
         for name in ("limited_step", "ccd_step"):
             angles = after(lesson, name, arm, (0.1, 0.1), target, 600)
             measured.append(np.linalg.norm(end_of(angles, arm.lengths) - target))
-            check("An elbow that may not bend further leaves r − d.",
+            check("If the elbow is at its limit, the distance r − d is left.",
                   f"way that is left, {name}, elbow up to {bend:g} rad [m]",
                   law=law(bend), found=measured[-1], within=1e-12,
-                  saw=f"{name}: the elbow stops at {angles[1]:.4f} rad, {measured[-1]:.4f} m are left.")
+                  saw=f"{name}: the elbow stops at {angles[1]:.4f} rad, and {measured[-1]:.4f} m are left.")
     corner_of_limits(lesson, check)
     fine = np.linspace(0.2, 1.6, 40)
     return Picture("An elbow with a limit", "limit of the elbow [rad]", "way that is left [m]", [
         series("theory, r − d", fine, law(fine), LINE), series("damped, with limits", bends, measured[::2], DOTS)],
-        "Limits make the hole in the middle of the reach larger.")
+        "Limits enlarge the hole in the middle of the reach.")
 
 
 def limited(lesson, low, high):
@@ -313,7 +318,7 @@ def corner_of_limits(lesson, check):
           saw=f"It rests at ({angles[0]:.3f}, {angles[1]:.3f}) rad.")
     shut = limited(lesson, (0.2, 0.3), (0.2, 0.3))
     angles = after(lesson, "limited_step", shut, (2.0, -1.0), target, 1)
-    check("Limits that leave no freedom put the joints where they say.", "largest angle off equal limits [rad]",
+    check("Limits that leave no freedom determine the joints.", "largest angle off equal limits [rad]",
           law=0.0, found=np.max(np.abs(angles - (0.2, 0.3))), within=0.0,
           saw=f"Between equal limits it stands at ({angles[0]:g}, {angles[1]:g}) rad.")
 
@@ -338,9 +343,9 @@ def pose_error(theta, x, R):
 
 @case("six-joints-in-space", "Six joints in space", compiled=False)
 def six_joints_in_space(lesson, check):
-    """A damped step in space leaves λ²/(σ² + λ²) of a small error of the pose, along each of six directions.
+    """Check that a damped step in space leaves λ²/(σ² + λ²) of a small error of the pose, along each of six directions.
 
-    J comes from central differences of matrices: 1e-10 of it is wrong, and of the small σ that is 1e-9.  Factors are
+    J comes from central differences of matrices: its error is 1e-10, and of the small σ that is 1e-9.  Factors are
     central differences over 1e-5 rad, with 1e-10 from their third order and from round-off.
     """
     x, R = spatial_end(SIX, AXES, OFFSETS)
@@ -363,30 +368,30 @@ def six_joints_in_space(lesson, check):
     return Picture("What one iteration leaves", "σ [m, or 1 for a rotation]", "factor [-]", [
         series("theory, λ²/(σ² + λ²)", fine, damping**2 / (fine**2 + damping**2), LINE),
         series("measured", sigma, factors, DOTS)],
-        "In space as in the plane: what the arm can hardly move comes last.")
+        "In space, as in the plane, the directions in which the arm can hardly move converge last.")
 
 
 def ellipse_of_two_links(lesson, check):
-    """Multiply the half axes of two links that are bent a little: σ₁ σ₂ = l₁ l₂ sin θ₂.
+    """Multiply the half axes of two links with a small bend: σ₁ σ₂ = l₁ l₂ sin θ₂.
 
-    J is rounded by 1e-16, which is 1e-16 over the bend of that.
+    J is rounded by 1e-16, which is 1e-16 over the bend, relative to the product.
     """
     for bend in (1.0, 1e-3, 1e-7):
         longer, shorter, _ = lesson.velocity_ellipse(lesson.jacobian_2d(joints_of((0.4, bend), [1.0, 0.7])))
-        check("The half axes of two links multiply to l₁ l₂ sin θ₂, however straight they are.",
+        check("The product of the half axes of two links is l₁ l₂ sin θ₂, even if they are nearly straight.",
               f"σ₁ σ₂ over l₁ l₂ sin θ₂, bent by {bend:g} rad [-]",
               law=1.0, found=longer * shorter / (0.7 * np.sin(bend)), within=1e-15 / bend + 1e-14,
               saw=f"Bent by {bend:g} rad σ₂ is {shorter:.4g} m.")
 
 
 def posture(lesson, check):
-    """Pull an arm to a rest posture: its end moves by nothing to first order, so by a quarter for half of the pull."""
+    """Pull an arm to a rest posture: its end does not move to first order; half of the pull moves it by a quarter."""
     lengths, theta, moved = np.array([1.0, 0.8, 0.6, 0.4]), np.array([0.3, 0.6, 0.5, 0.4]), []
     target = end_of(theta, lengths)
     for pull in (2e-3, 1e-3):
         arm = lesson.make_arm_2d(lengths, 0.0, 0.0, -np.inf, np.inf, (0.9, -0.2, 0.4, 0.8), pull)
         moved.append(np.linalg.norm(end_of(after(lesson, "null_space_step", arm, theta, target, 1), lengths) - target))
-    check("A pull to rest moves the end by the square of the pull: the null space is one of first order.",
+    check("A pull towards the rest posture moves the end by the square of the pull: the null space is of first order.",
           "way of the end over that with half of the pull [-]", law=4.0, found=moved[0] / moved[1], within=0.01,
           saw=f"The end moves by {moved[0]:.1e} m, and with half of the pull by {moved[1]:.1e} m.")
 
@@ -400,7 +405,7 @@ def left_by_closed_form(lesson, target, lengths, elbow=1.0):
 
 @case("extremes", "Impossible arms and targets", compiled=False)
 def extremes(lesson, check):
-    """Both edges of the ring, the centre of one without a hole, angles of many turns, and values that are refused."""
+    """Check both edges of the ring, the centre of one without a hole, angles of many turns, and refused values."""
     way = np.array([np.cos(2.0), np.sin(2.0)])
     for lengths in ((1.0, 1.0), (1.0, 0.6), (1.0, 1e-6), (1e-3, 1e3)):
         off = max(left_by_closed_form(lesson, r * way, lengths, elbow)
@@ -414,7 +419,7 @@ def extremes(lesson, check):
           law=0.0, found=centre, within=1e-15, saw=f"Folded, the end is {centre:.0e} m from the base.")
     turns = np.array([0.4, 0.9, 0.7]) + 2.0 * np.pi * np.array([1e6, -1e6, 1e6])
     off = np.linalg.norm(lesson.joint_positions(turns, THREE)[-1] - end_of((0.4, 0.9, 0.7), THREE))
-    check("A million turns change nothing but the rounding of the angle, 1e-9 rad.",
+    check("A million turns change only the rounding of the angle, 1e-9 rad.",
           "distance of the end from where it is without the turns [m]", law=0.0, found=off, within=5e-9,
           saw=f"After a million turns the end is {off:.0e} m aside.")
     refusals(lesson, check)
@@ -424,11 +429,11 @@ def extremes(lesson, check):
                    "log₁₀ of the way that is left [m]", [
                        series("closed form", exponents, np.log10(np.maximum(left, 1e-17)), DOTS),
                        series("a few roundings", exponents, np.full(7, -15.0), LINE)],
-                   "The closed form is as good at the edge as anywhere.")
+                   "The closed form is as accurate at the edge as anywhere.")
 
 
 def refusals(lesson, check):
-    """Ask for arms and searches that are none."""
+    """Make calls with invalid arms and searches."""
     make = lambda lengths=(1.0, 0.7), gain=0.1, damping=0.3, low=-np.inf, high=np.inf: lesson.make_arm_2d(
         lengths, gain, damping, low, high, 0.0, 0.5)
     search = lambda theta=(0.1, 0.2), target=(0.9, 0.8), tolerance=1e-6, most=9: lesson.solve_reach(
@@ -451,8 +456,8 @@ def refusals(lesson, check):
         after(lesson, "transpose_step", make(gain=1e200), (0.1, 0.2), (1e200, 0.0), 5)
     except Diverged:
         done += 1
-    check.count("Impossible lengths, limits, axes and targets are refused with their value, and what overflows has "
-                "diverged.", "calls that end in such a sentence", done, len(asked) + 1,
+    check.count("Impossible lengths, limits, axes and targets are refused with their value, and overflow raises "
+                "Diverged.", "calls that end in such a sentence", done, len(asked) + 1,
                 "such calls end in a sentence that names the value.")
 
 
@@ -499,14 +504,14 @@ def step_between_limits(lesson, rng):
     low, high = random_limits(rng, theta, 3.0)
     damping, e = rng.uniform(0.1, 0.5), 0.5 * rng.normal(size=2)
     J = jacobian_of(theta, lengths)
-    wish = J.T @ e                                                       # a joint at its limit is free to go inwards
+    wish = J.T @ e                                                       # a joint at its limit is free to move inwards
     J[:, ((theta >= high) & (wish > 0.0)) | ((theta <= low) & (wish < 0.0))] = 0.0
     truth = np.clip(theta + np.linalg.solve(J.T @ J + damping**2 * np.eye(4), J.T @ e), low, high)
     arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
     return lesson.limited_step(lesson.reach_2d, theta, end_of(theta, lengths) + e, arm), truth
 
 
-@random_law("A rest posture attracts the arm by motions that leave the end in its place.",
+@random_law("A rest posture attracts the arm by motions that do not move the end.",
             "largest error of the angles [rad]", 1e-9)
 def pull_to_rest(lesson, rng):
     lengths, theta = random_arm(rng)
@@ -517,7 +522,7 @@ def pull_to_rest(lesson, rng):
     return step, free.T @ (free @ (pull * (rest - theta)))
 
 
-@random_law("A search ends when it is near enough, and counts its iterations.",
+@random_law("A search ends when it is close enough, and counts its iterations.",
             "largest error of the search [-, rad, m]", 1e-9)
 def counted_search(lesson, rng):
     lengths, theta = random_arm(rng)
@@ -548,7 +553,7 @@ def links_of_a_sweep(lesson, rng):
     return np.linalg.norm(np.diff(swept, axis=0), axis=1), lengths
 
 
-@random_law("What has no direction goes along the first axis.", "largest error of the place [m]", 1e-9)
+@random_law("A vector without a direction is replaced by the first axis.", "largest error of the place [m]", 1e-9)
 def no_direction(lesson, rng):
     x, length = rng.normal(size=3), rng.uniform(0.5, 1.0)
     return lesson.point_at(x, x, length), x + length * X
@@ -571,7 +576,7 @@ def closed_forms(lesson, rng):
     return (two, lesson.solve_3r(pose, lengths, elbow)), (angles[:2], angles)
 
 
-@random_law("A target in the hole is refused, whichever link is longer.",
+@random_law("A target in the hole is refused, also if the other link is longer.",
             "largest error of the refusals that are missing [-]", 1e-9)
 def target_in_the_hole(lesson, rng):
     lengths, angles, elbow = bent_arm(rng)
@@ -579,7 +584,7 @@ def target_in_the_hole(lesson, rng):
     return float(refuses(lesson.solve_2r, (hole, lengths, elbow))), 1.0
 
 
-@random_law("The pseudo-inverse is that of the singular values, whatever the unit of length is.",
+@random_law("The pseudo-inverse is that of the singular values, for any unit of length.",
             "largest error of the J⁺ times the size [-]", 1e-9)
 def pseudo_inverse(lesson, rng):
     M, size = rng.normal(size=(3, 4)), 10.0 ** rng.uniform(-12.0, 12.0)
@@ -614,7 +619,7 @@ def cyclic_descent(lesson, rng):
     return lesson.ccd_step(lesson.reach_2d, theta, target, arm), once
 
 
-@random_law("A history holds each iteration, from where the one before ended.",
+@random_law("A history holds each iteration, which begins where the one before ended.",
             "largest error of the angles of a history [rad]", 1e-9)
 def history(lesson, rng):
     (theta, target, arm), once, twice = random_descent(lesson, rng)
@@ -622,7 +627,7 @@ def history(lesson, rng):
             np.array([theta, once, twice]))
 
 
-@random_law("Of many targets each is looked for from the same angles.",
+@random_law("A search for many targets begins each one at the same angles.",
             "largest error of the searches [rad, m, -]", 1e-9)
 def many_targets(lesson, rng):
     lengths, theta = random_arm(rng)
@@ -633,7 +638,7 @@ def many_targets(lesson, rng):
     return many, tuple(np.array(part) for part in zip(*each, strict=True))
 
 
-@random_law("In space the end is where products of rotations have it.",
+@random_law("In space products of rotations give the place of the end.",
             "largest error of the end in space [m, -]", 1e-9)
 def end_in_space(lesson, rng):
     theta, target, arm = rng.uniform(-2.0, 2.0, 6), rng.normal(size=3), spatial_arm(lesson, 0.1)
@@ -653,9 +658,10 @@ def slope_in_space(lesson, rng):
 
 @case("geometry-of-arms", "Ellipse, rotation, limits and null space", compiled=False)
 def geometry_of_arms(lesson, check):
-    """The ellipse by singular values, the error of a rotation by SciPy, and a step with limits or with a rest posture.
+    """Compare the ellipse, the error of a rotation, and steps with limits or a rest posture with independent ones.
 
-    A damped step between limits is that of the joints that are free to go; one at its limit is free to go inwards.
+    A damped step between limits is that of the joints that are free to move; a joint at its limit is free to move
+    inwards.
     """
     check.laws(lesson, (ellipse, missing_rotation, step_between_limits, pull_to_rest, counted_search, base_of_a_sweep,
                         links_of_a_sweep, no_direction, closed_forms, target_in_the_hole, pseudo_inverse,

@@ -1,7 +1,7 @@
 """Softness of constraints that should not stretch, and the cost of sweeps and steps: lesson 8 compared with theory.
 
-Most bodies hang straight down or move in a circle.  A sweep is then a linear map, and its
-result is known in closed form.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each case derives the rest.
+Most bodies hang straight down or move in a circle.  A sweep is then a linear map with a known closed form.
+*Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each case derives the other numbers.
 """
 
 import itertools
@@ -18,11 +18,11 @@ from validate.stability.case import DOTS, LINE, Picture, Worst, case, log_series
 G = 9.81                     # [m/s²]
 MILLIMETRES = 1e3            # millimetres per metre
 ROUND_OFF = 1e-12            # of positions around 1 m after a thousand visits to a link [m]
-SETTLED = 1e-10              # distance to rest at which a run ends [m]
+SETTLED = 1e-10              # a run ends at this distance to rest [m]
 
 
 def network(masses, stiffness=1.0, alpha=0.0, sweeps=1, g=G):
-    """Return one hanging chain: masses [kg] from top to bottom under a fixed point, links of 1 m."""
+    """Return a hanging chain: masses [kg] from top to bottom under a fixed point, links of 1 m."""
     n = len(masses)
     return ConstraintNetwork(np.array([0.0, *(1.0 / m for m in masses)]), np.array([0.0, -g]), np.arange(n),
                              np.arange(1, n + 1), np.ones(n), np.full(n, stiffness), np.full(n, alpha), sweeps)
@@ -34,7 +34,7 @@ def straight(n):
 
 
 def settle(lesson, step, p, dt, steps):
-    """Return the positions of a chain after so many steps from rest, or NaN if the run diverges."""
+    """Return the positions of a chain after this number of steps from rest, or NaN if the run diverges."""
     x = straight(len(p.rest))
     try:
         return integrators.advance(getattr(lesson, step), lesson.network_gravity, 0.0, x, 0.0 * x, dt, steps, p)[0]
@@ -48,12 +48,12 @@ def stretch(x):
 
 
 def sag(lesson, step, p, dt, steps):
-    """Return how much too low the end of a chain is after so many steps from rest [m]."""
+    """Return the distance [m] by which the end of a chain is too low after this number of steps from rest."""
     return stretch(settle(lesson, step, p, dt, steps)).sum()
 
 
 def millimetres(law, found, within):
-    """Return three lengths [m] as those arguments of a check, in millimetres."""
+    """Return three lengths [m] as the arguments law, found and within of a check, in millimetres."""
     return {"law": MILLIMETRES * law, "found": MILLIMETRES * found, "within": MILLIMETRES * within}
 
 
@@ -69,11 +69,11 @@ SOFT_STEPS = 300             # of a weight on a soft link, until it is at rest
 
 @case("stiffness-depends-on-dt", "Softness of PBD and its step", compiled=False)
 def stiffness_depends_on_dt(lesson, check):
-    """PBD's softness depends on dt: a weight sags by g dt² S/(1 − S), S = (1 − s)ⁿ.
+    """Check that PBD's softness depends on dt: a weight sags by g dt² S/(1 − S), S = (1 − s)ⁿ.
 
-    A step lowers the weight by g dt², and n sweeps leave a share S of the error; at rest  S (sag + g dt²) = sag.  The
-    recursion y ← S (2y − y_before + g dt²) has roots |z|² = S, so a run converges by √S per step.  300 steps leave
-    √0.75³⁰⁰ < 1e-18.
+    A step lowers the weight by g dt², and n sweeps leave a fraction S of the error; at rest  S (sag + g dt²) =
+    sag.  The recursion y ← S (2y − y_before + g dt²) has roots |z|² = S, so a run converges by √S per step.  300
+    steps leave √0.75³⁰⁰ < 1e-18.
     """
     for s, n, dt in ((0.5, 1, 1.0 / 60.0), (0.5, 1, 1.0 / 120.0), (0.5, 3, 1.0 / 60.0), (0.25, 1, 1.0 / 60.0)):
         S = (1.0 - s) ** n
@@ -93,7 +93,7 @@ def stiffness_depends_on_dt(lesson, check):
     return Picture(
         "A link that PBD leaves soft", "log₁₀ of dt [s]", "log₁₀ of the sag [mm]",
         soft_link(lesson, 1) + soft_link(lesson, 3),
-        "Half the step gives a quarter of the sag: a stiffness of 0.5 means nothing unless the step is given.")
+        "Half the step gives a quarter of the sag: a stiffness of 0.5 has no meaning without the step.")
 
 
 def soft_link(lesson, n):
@@ -108,7 +108,7 @@ def soft_link(lesson, n):
 def chain_of_springs(lesson, check, N=8, alpha=1e-4):
     """Compare the sag of a chain of N springs of 1/α under XPBD with theory, for several sweeps and two steps.
 
-    The rest position does not depend on the velocity that is lost on the way, so a tenth of it is taken in each step.
+    The rest position does not depend on the velocity that is lost on the way, so each step begins with a tenth of it.
     """
     weights = np.ones(N)
     for sweeps, per_second in ((1, 60), (5, 60), (20, 60), (1, 240)):
@@ -117,11 +117,11 @@ def chain_of_springs(lesson, check, N=8, alpha=1e-4):
         for _ in range(10 * per_second):
             x, v = lesson.xpbd_step(lesson.network_gravity, 0.0, x, 0.9 * v, dt, p)
         got = stretch(x).sum()
-        check("A chain is as soft as its compliance says only when the sweeps have converged; before that it is "
+        check("A chain is as soft as its compliance only when the sweeps have converged; before that it is "
               "softer, by the amount that the theory of Gauss–Seidel iteration gives.",
               f"{N} springs, {sweeps_of(sweeps)} of 1/{per_second} s: sag [mm]",
               **millimetres(left_over(weights, sweeps, dt, alpha).sum(), got, SETTLED),
-              saw=f"The end hangs {MILLIMETRES * got:.2f} mm too low; the springs themselves would sag by "
+              saw=f"The end hangs {MILLIMETRES * got:.2f} mm too low; springs would sag by "
                   f"{MILLIMETRES * alpha * G * 0.5 * N * (N + 1):.2f} mm.")
 
 
@@ -141,9 +141,9 @@ def oscillation(lesson, dt, m, k, steps):
 
 @case("compliance", "Compliance of XPBD", compiled=False)
 def compliance(lesson, check):
-    """One spring under XPBD is implicit Euler, and sags by m g/k for any step and any number of sweeps.
+    """Check that one spring under XPBD is implicit Euler, and sags by m g/k for any step and any number of sweeps.
 
-    With (s, v) relative to rest and h = dt, implicit Euler is  (s, v) ← ((1, h), (−hω², 1))/(1 + h²ω²).  It settles by
+    With (s, v) relative to rest and h = dt, implicit Euler is  (s, v) ← ((1, h), (−hω², 1))/(1 + h²ω²).  It decays by
     (1 + h²ω²)^(−1/2) per step.  With hω = 1, 80 steps leave 2⁻⁴⁰ = 1e-12 of the sag, whose 10 cm give SETTLED.
 
     A chain of springs is as soft as its compliance only when the sweeps have converged: see left_over.
@@ -177,9 +177,9 @@ def compliance(lesson, check):
 def left_over(masses, sweeps, dt, alpha=0.0):
     """Return the exact stretch [m] of each link of a chain at rest under PBD or XPBD, left by n Gauss–Seidel sweeps.
 
-    Each step falls by g dt², which Λ* (the weight below, times dt²) would undo.  n sweeps solve B Λ = b up to Gⁿ, with
-    B = A + α/dt², A = J W Jᵀ, G = 1 − L⁻¹B and B's lower triangle L.  At rest Λ = (1 − Gⁿ) B⁻¹ b equals Λ*, and the
-    sweeps leave  b − AΛ* = B (1 − Gⁿ)⁻¹ Gⁿ Λ* + α/dt² Λ*,  of which the last part is Hooke's law.
+    Each step falls by g dt², which Λ* (the weight below, times dt²) would remove.  n sweeps solve B Λ = b up to Gⁿ,
+    with B = A + α/dt², A = J W Jᵀ, G = 1 − L⁻¹B and B's lower triangle L.  At rest Λ = (1 − Gⁿ) B⁻¹ b equals Λ*,
+    and the sweeps leave  b − AΛ* = B (1 − Gⁿ)⁻¹ Gⁿ Λ* + α/dt² Λ*,  of which the last part is Hooke's law.
     """
     n, w = len(masses), 1.0 / np.array(masses, dtype=float)
     A = np.diag(w + np.append(0.0, w[:-1])) - np.diag(w[:-1], 1) - np.diag(w[:-1], -1)
@@ -211,11 +211,11 @@ def rest_of_chain(lesson, step, sweeps, dt):
 
 @case("unconverged-iterations", "Softness from too few sweeps", compiled=False)
 def unconverged_iterations(lesson, check):
-    """With too few sweeps a chain of N weights stretches: after one sweep link k is too long by (N − k) g dt².
+    """Compare the stretch of a chain of N weights after too few sweeps with theory.
 
-    The last visit to link k + 1 has moved point k down by the error of that link: the weights below k times dt²/m.
-    In total the end is ½N(N − 1) g dt² too low; n sweeps leave less (left_over).  `patience` is the number of steps
-    to rest.
+    After one sweep link k is too long by (N − k) g dt².  The last visit to link k + 1 has moved point k down by the
+    error of that link: the weights below k times dt²/m.  In total the end is ½N(N − 1) g dt² too low; n sweeps
+    leave less (left_over).  `patience` is the number of steps to rest.
     """
     N, dt = LINKS, FRAME
     for sweeps in (1, 5, 20):
@@ -242,8 +242,8 @@ def unconverged_iterations(lesson, check):
 def errors_of_sweeps(lesson, r):
     """Return the errors [m] of the upper link before the first sweep and after each; the lower link starts too long.
 
-    The first sweep makes the upper link wrong.  Six sweeps at least, and more until a thousandth of that is left where
-    that takes only hundreds.
+    The first sweep makes the upper link wrong.  There are at least six sweeps, and more until a thousandth of the
+    error is left if that takes only hundreds.
     """
     p, x, errors = network([1.0, r]), straight(2), []
     x[2, 1] -= 0.01
@@ -255,12 +255,12 @@ def errors_of_sweeps(lesson, r):
 
 @case("mass-ratio", "Mass ratio of a chain", compiled=False)
 def mass_ratio(lesson, check):
-    """Mass ratio: M hangs under m, r = M/m, and each sweep leaves r/(1 + r) of the error.
+    """Check that with M hanging under m, r = M/m, each sweep leaves r/(1 + r) of the error.
 
     A visit to the upper link moves m by its whole error c, which makes the lower link wrong by c.  The visit to the
-    lower link gives the share w_m/(w_m + w_M) = r/(1 + r) back to m, and that is the new error of the upper link.
+    lower link gives the fraction w_m/(w_m + w_M) = r/(1 + r) back to m, and that is the new error of the upper link.
 
-    c is known to 1e-15 of 1 m and begins at 0.01 m.  Over five sweeps the ratio is known to 1e-11 where r ≥ 1.
+    c is known to 1e-15 of 1 m and begins at 0.01 m.  Over five sweeps the ratio is known to 1e-11 if r ≥ 1.
     """
     ratios, measured = (1.0, 10.0, 100.0, 1e4), []
     for r in ratios:
@@ -281,7 +281,7 @@ def mass_ratio(lesson, check):
         "A heavy weight under a light one", "log₁₀ of the mass ratio", "log₁₀ of (1 − share that a sweep leaves)",
         [series("theory: 1/(1 + r)", np.log10(fine), -np.log10(1.0 + fine), LINE),
          log_series("distance_sweep, measured", ratios, 1.0 - np.array(measured), DOTS)],
-        "A mass ratio of a hundred needs about sixty times the sweeps of equal masses. Where you can, hang the "
+        "A mass ratio of a hundred needs about sixty times the sweeps of equal masses. If possible, hang the "
         "light weight under the heavy one.")
 
 
@@ -300,7 +300,7 @@ def circling(lesson, step, turn, steps):
 
 @case("projection-dissipation", "Speed lost by projection on a circle", compiled=False)
 def projection_dissipation(lesson, check):
-    """Projection slows a weight that circles on a string without gravity.
+    """Compare the loss of speed of a weight that circles on a string without gravity with theory.
 
     A step goes along the last chord and is projected back radially:  tan β = sin α/(2 − cos α)  for the next angle,
     after tan α = ω dt for the first.  β ≈ α − α³, so 1/α² grows by 2 per step and  ω_N ≈ ω/√(1 + 2N(ω dt)²).  The
@@ -331,7 +331,7 @@ def projection_dissipation(lesson, check):
 
 @case("substeps-vs-iterations", "Substeps against sweeps", compiled=False)
 def substeps_vs_iterations(lesson, check):
-    """Substeps compared with sweeps: n sweeps of one step, or n steps with one sweep each, for the same work per frame.
+    """Compare n sweeps of one step with n steps of one sweep each, for the same work per frame.
 
     n sweeps leave a softness of  A (1 − Gⁿ)⁻¹ Gⁿ Λ*, at first about 1/n of that of one sweep.  n substeps leave
     ½N(N − 1) g (dt/n)², which is 1/n² of it.  But sweeps converge: from some 3 N² visits on, Gⁿ is the smaller one.
@@ -344,7 +344,7 @@ def substeps_vs_iterations(lesson, check):
     for way, run in runs.items():
         for n in (10, 300):
             got = run(n)
-            check("n substeps are n² times as stiff as one step with one sweep, and n sweeps are not, unless they are "
+            check("n substeps are n² times as stiff as one step with one sweep, but n sweeps are not, unless they are "
                   "so many that they have converged.", f"{n} {way} per frame: end of {N} links too low by [mm]",
                   **millimetres(theory[way](n), got, SETTLED),
                   saw=f"With {n} {way} per frame a chain of {N} m hangs {MILLIMETRES * got:.2g} mm too low.")
@@ -360,7 +360,7 @@ def substeps_vs_iterations(lesson, check):
 # ---------------------------------------------------------------------------------------------- extremes
 
 def impossible(lesson):
-    """Return calls that ask for what no network can be."""
+    """Return calls for impossible networks."""
     x, three = straight(2), np.zeros((4, 3))
     same, flat_fold, chain = 0.0 * x, np.array([[0.0, 0, 0], [1.0, 0, 0], [0, 1.0, 0], [0, 0, 0]]), network([1.0, 1.0])
     valid = {"x": x, "m": 1.0, "fixed": [0], "pairs": [(0, 1), (1, 2)], "alpha": 0.0, "stiffness": 1.0,
@@ -382,7 +382,7 @@ def impossible(lesson):
 
 
 def lengths_at_a_million(lesson):
-    """Return how much too long a chain is after each of 300 steps of ten sweeps, at a mass ratio of a million [m]."""
+    """Return the excess length [m] of a chain after each of 300 steps of ten sweeps, at a mass ratio of a million."""
     y, p, excess = straight(2), network([1.0, 1e6], 1.0, 0.0, 10), []
     v = 0.0 * y
     for _ in range(300):
@@ -393,7 +393,7 @@ def lengths_at_a_million(lesson):
 
 @case("extremes", "Extremes of constraints", compiled=False)
 def extremes(lesson, check):
-    """Extremes: impossible input is refused, and extreme but valid input gives the right limit.
+    """Check that impossible input is refused, and that extreme but valid input gives the right limit.
 
     With a compliance of 10¹² m/N the spring has no effect: the weight falls by ½g t(t + dt) in t.  At a mass ratio
     of 10⁶ ten sweeps hardly hold the chain.  A projection can only shorten a link that is too long, so the chain
@@ -446,7 +446,7 @@ def fold_reaches_its_angle(lesson, check):
     check("A fold reaches its rest angle.", "error of the angle after 12 visits [rad]",
           law=0.0, found=left, within=ROUND_OFF, saw=f"After 12 visits the fold is {left:.0e} rad off.")
     shift = np.abs(x.T @ (1.0 / loose.inv_mass) - centre).max()
-    check("Folding exerts no net force.", "displacement of the centre of mass, times the mass [kg m]",
+    check("The correction of a fold exerts no net force.", "displacement of the centre of mass, times the mass [kg m]",
           law=0.0, found=shift, within=ROUND_OFF,
           saw=f"Times the mass, its centre of mass has moved by {shift:.0e} kg m.")
 
@@ -528,10 +528,10 @@ def cloth_stays_outside(lesson, check):
 
 @case("primitives", "A fold, a ball, a rod and a cloth", compiled=False)
 def primitives(lesson, check):
-    """Larger parts: a fold keeps its angle, a ball its volume, a rod its period, and no point stays inside an obstacle.
+    """Check a fold's angle, a ball's volume, a rod's period, and that no point stays inside an obstacle.
 
     A weightless fold of stiffness 1 reaches its angle by Newton's method in a few visits.  A ball without gravity
-    and with no compliance of its air settles at its volume.  Neither exerts a network external force.  The rod's
+    and with no compliance of its air settles at its volume.  Neither exerts a net external force.  The rod's
     quarter period, extrapolated from steps of dt and dt/2, is off by a few (ω dt)² of its value.
     """
     for part in (fold_reaches_its_angle, ball_reaches_its_volume, rod_swings, cloth_stays_outside):
@@ -598,7 +598,7 @@ def row_of(lesson, x, w, fixed=(0,), sweeps=1):
 
 
 def random_body(rng):
-    """Return (m, I_body, rotation) of a rigid body with three different moments, turned anyhow."""
+    """Return (m, I_body, rotation) of a rigid body with three different moments and a random orientation."""
     return rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), Rotation.random(rng=rng)
 
 
@@ -624,7 +624,7 @@ def correction(lesson, rng):
 
 
 def rope_equations(y, chain, goal, dt):
-    """Return what is left of both equations of a row of points: places y[:12] and forces y[12:] of the links."""
+    """Return the residuals of both equations of a row of points: places y[:12] and forces y[12:] of the links."""
     x, lam = y[:12].reshape(4, 3), y[12:]
     r, pull = x[:-1] - x[1:], np.zeros((4, 3), dtype=y.dtype)
     lengths = np.sqrt(np.sum(r * r, axis=1))
@@ -637,7 +637,7 @@ def rope_equations(y, chain, goal, dt):
 @random_law("Newton's correction solves both linearised equations, with the curvature of the links.",
             "newton: largest error of the places and forces, relative [-]", 1e-6)
 def newton(lesson, rng):
-    """Begin with a guess that breaks the links; the first point is fixed."""
+    """Begin with a guess in which the links have wrong lengths; the first point is fixed."""
     x, w = random_points(rng)
     chain, dt, lam = row_of(lesson, x, w), 0.1, rng.normal(size=3)
     guess, goal = x + 0.1 * rng.normal(size=(2, 4, 3))
@@ -667,7 +667,7 @@ def ball(lesson, rng):
     return lesson.ball_gap(x, obstacle), (gap(x), derivative(gap, x))
 
 
-@random_law("The gradient of a volume is its derivative, wherever the origin is.",
+@random_law("The gradient of a volume is its derivative, for any origin.",
             "volume: largest error of the volume [m³, m²]", 1e-11)
 def volume(lesson, rng):
     """Take the origin outside: some faces count negative."""
@@ -676,7 +676,7 @@ def volume(lesson, rng):
     return lesson.volume_gradient(x, FACES), (V(x), derivative(V, x))
 
 
-@random_law("A point that cannot move keeps its velocity, and all others feel the force of their time.",
+@random_law("A point that cannot move keeps its velocity, and the force at the time of the step acts on all others.",
             "driven: largest error of the predicted place [m]", 1e-12)
 def driven(lesson, rng):
     (x, w), v, t, dt = random_points(rng), rng.normal(size=(4, 3)), rng.uniform(0.0, 6.0), 0.1
@@ -685,7 +685,7 @@ def driven(lesson, rng):
     return lesson.predict(force, t, x, v, dt, row_of(lesson, x, w)), x + dt * v + dt * dt * a
 
 
-@random_law("Points inside a ball go to its surface; one that cannot move stays.",
+@random_law("Points inside a ball are moved to its surface; a fixed point does not move.",
             "outside: largest error of the place [m]", 1e-12)
 def outside(lesson, rng):
     """Put the fixed point inside the ball, too."""
@@ -706,7 +706,7 @@ def exact(lesson, rng):
     return np.linalg.norm(held[:-1] - held[1:], axis=1), chain.rest
 
 
-@random_law("A network that feels the same everywhere moves as one, by the accelerations of both times.",
+@random_law("A network under a uniform acceleration translates, by the accelerations of both times.",
             "as one: largest error of the state [m, m/s]", 1e-9)
 def as_one(lesson, rng):
     """Take a step of RATTLE, which is given, by the mean of both accelerations."""
@@ -717,11 +717,11 @@ def as_one(lesson, rng):
 
 
 def sheet_of(lesson, x, net, share, off=0.0):
-    """Return four points as a cloth of one fold, which is off its rest angle by so much [rad]."""
+    """Return four points as a cloth of one fold, which is off its rest angle by this angle [rad]."""
     return lesson.Cloth(net, np.array([[0, 1, 2, 3]]), np.array([fold_angle(x) - off]), share, out_of_reach(lesson))
 
 
-@random_law("A visit to a fold keeps the centre of mass, however its points are numbered.",
+@random_law("A visit to a fold conserves the centre of mass, for any numbering of its points.",
             "numbers: largest error of the way [-, kg]", 1e-6)
 def numbers(lesson, rng):
     (x, w), share, off = random_points(rng), rng.uniform(0.2, 0.8), 1e-6
@@ -741,7 +741,7 @@ def random_pair(lesson, rng):
     return x, w, links._replace(rest=rest), x[::2] - x[1::2]
 
 
-@random_law("A visit leaves 1 − s of a link's error, and the centre of mass where it is.",
+@random_law("A visit leaves 1 − s of a link's error, and conserves the centre of mass.",
             "visit: largest error of the place [m, kg m]", 1e-12)
 def visit(lesson, rng):
     x, w, links, r = random_pair(lesson, rng)
@@ -772,7 +772,7 @@ def lever(lesson, rng):
             1.0 / m + arm @ inverse_tensor(I_body, turn) @ arm)
 
 
-@random_law("A positional impulse moves by p/m, and turns about I⁻¹ (r × p).",
+@random_law("A positional impulse moves a body by p/m, and rotates it about I⁻¹ (r × p).",
             "impulse: largest error of the place and turn [m, -]", 1e-11)
 def impulse(lesson, rng):
     (m, I_body, turn), (x, r, p) = random_body(rng), rng.normal(size=(3, 3))
@@ -781,7 +781,7 @@ def impulse(lesson, rng):
     return (new_x, np.sign(new_q @ after) * new_q), (x + p / m, after)
 
 
-@random_law("The rate of turning is the inverse of the update, for long turns, too.",
+@random_law("The rate of rotation is the inverse of the update, also for large rotations.",
             "rate: largest error of the ω [rad/s]", 1e-9)
 def rate(lesson, rng):
     turn, omega, dt = Rotation.random(rng=rng), rng.normal(size=3), rng.uniform(0.2, 0.8)
@@ -806,7 +806,7 @@ def bent(lesson, rng):
     return (fold_angle(lesson.fold_sweep(x, sheet)) - sheet.fold[0]) / off, 1.0 - share
 
 
-@random_law("A cloth in the air falls as one, and its velocity is its way over the step.",
+@random_law("A cloth in the air falls without deforming, and its velocity is its displacement over the step.",
             "falls: largest error of the state [m, m/s]", 1e-9)
 def falls(lesson, rng):
     (x, w), v, dt = random_points(rng), np.tile(rng.normal(size=3), (4, 1)), 0.01
@@ -815,10 +815,10 @@ def falls(lesson, rng):
     return lesson.cloth_step(lesson.network_gravity, 0.0, x, v, dt, sheet), (x + dt * new_v, new_v)
 
 
-@random_law("Air is a spring for the volume, whatever the step is.",
+@random_law("Air is a spring for the volume, for any step.",
             "air: largest error of the velocity over the missing volume [1/(m² s)]", 1e-4)
 def air(lesson, rng):
-    """Hardly compress it: p = (V₀ − V)/α for one implicit step, m v = dt p ∇V, all linear."""
+    """Compress it slightly: p = (V₀ − V)/α for one implicit step, m v = dt p ∇V, all linear."""
     w, alpha, dt, less = rng.uniform(0.5, 2.0, 4), rng.uniform(0.5, 2.0), rng.uniform(0.1, 0.5), 1e-6
     x = rng.uniform(0.8, 1.2) * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
     faces = FACES if volume_of(x, FACES) > 0.0 else FACES[:, ::-1]
@@ -832,7 +832,7 @@ def air(lesson, rng):
 
 @case("constraints-and-their-gradients", "Constraints, their gradients and corrections", compiled=False)
 def constraints_and_gradients(lesson, check):
-    """A gradient is the derivative of its constraint, taken along the imaginary axis; rotations are SciPy's.
+    """Compare gradients with derivatives of constraints along the imaginary axis, and rotations with SciPy's.
 
     A correction satisfies its linearised constraint with the least Σ m |Δx|².  Newton's method is compared with a
     dense solution of both equations, linearised along the imaginary axis; its regularisation is 1e-13 of the weights.
@@ -861,7 +861,7 @@ def length_of_edges(x):
 
 
 def at_height(x, share):
-    """Return the tetrahedron with its fourth corner at so much of its height over the other three."""
+    """Return the tetrahedron with its fourth corner at this fraction of its height above the other three."""
     n = np.cross(x[1] - x[0], x[2] - x[0])
     n /= np.linalg.norm(n)
     moved = x.copy()
@@ -871,11 +871,12 @@ def at_height(x, share):
 
 @case("inside-out", "A tetrahedron that is inside out", compiled=False)
 def inside_out(lesson, check):
-    """A corner that has passed through the face opposite makes the volume negative, and the gradient still points out.
+    """Check a tetrahedron that is inside out: its volume is negative, and the gradient still points out.
 
-    The mirror image has V → −V, and ∇V, an area times a direction, is mirrored and changes its sign.  So a correction
-    along ∇V leads back through the face.  Lengths cannot do that: the mirror image has the same edges.  Flat, V = 0 and
-    ∇V is the areas of the faces, so that a flat body is no obstacle; only a body that is a line has no gradient.
+    The mirror image has V → −V, and ∇V, an area times a direction, is mirrored and changes its sign.  So a
+    correction along ∇V leads back through the face.  Lengths cannot do that: the mirror image has the same edges.
+    A flat body has V = 0 and a ∇V of the areas of its faces, so it can leave this state; only a body that is a line
+    has no gradient.
     """
     rng, errors, mirror = np.random.default_rng(31), Worst(), np.diag((1.0, 1.0, -1.0))
     for _ in range(TRIED):
@@ -889,11 +890,11 @@ def inside_out(lesson, check):
     errors.note("line", lesson.volume_gradient(line, TETRAHEDRON), (0.0, np.zeros((4, 3))))
     check.agree("The mirror image of a body has the negative volume, and the mirrored gradient with the other sign.",
                 "volume and gradient: largest error [m³, m²]", errors["mirrored"], ROUND_OFF)
-    check.agree("The mirror image has the same edges, so that no length can tell it.",
+    check.agree("The mirror image has the same edges, so no length can distinguish it.",
                 "edges: largest difference [m]", errors["edges"], ROUND_OFF)
     check.agree("A volume leads a tetrahedron that is inside out back through its own face.",
                 "volume in the end, from inside out: largest error [m³]", errors[-1.0], ROUND_OFF)
-    check.agree("A flat one gets its volume back, too.",
+    check.agree("A flat tetrahedron gets its volume back, too.",
                 "volume in the end, from flat: largest error [m³]", errors[0.0], ROUND_OFF)
-    check.agree("Corners on a line have neither a volume nor a direction in which there would be one.",
+    check.agree("If all corners lie on a line, both the volume and its gradient are zero.",
                 "volume and gradient [m³, m²]", errors["line"], 1e2 * ROUND_OFF)

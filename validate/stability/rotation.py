@@ -1,7 +1,7 @@
 """Rotation at its limits: energy drift, fast spins, needles, and the spin of a sleeping top.
 
 Every bound here is a closed form; the experiment is a run of the lesson's own steps.
-pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so fast-spin omits it.
+pybullet silently limits a rotation to π/4 per step, 785 rad/s at a millisecond, so fast-spin omits it.
 *Source:* Euler 1758; Landau and Lifshitz, Mechanics, §§ 33 to 37; Klein and Sommerfeld 1897 for the sleeping top.
 """
 
@@ -39,7 +39,7 @@ AT_START = np.array([1.0, 0.0, 0.0, 0.0])
 def released(lesson, method, I, omega, dt, steps):
     """Return (R, L, energy over its initial value) of a free body that starts at R = 1 with this ω.
 
-    Raises Diverged where the step refuses.
+    Raises Diverged if the step raises it.
     """
     body = lesson.RigidBody(1.0, np.array(I))
     L = body.I_body * np.array(omega)
@@ -49,7 +49,7 @@ def released(lesson, method, I, omega, dt, steps):
 
 
 def tried(lesson, method, I, omega, dt, steps):
-    """Return the same, or None where the step refuses, or where its numbers are beyond a linear solver."""
+    """Return the same, or None if the step raises Diverged, or if its numbers are beyond a linear solver."""
     try:
         return released(lesson, method, I, omega, dt, steps)
     except (Diverged, np.linalg.LinAlgError):
@@ -57,7 +57,7 @@ def tried(lesson, method, I, omega, dt, steps):
 
 
 def energies(lesson, method, I, omega, dt, ts):
-    """Return the energy over its initial value at the times ts; NaN where its numbers are beyond a linear solver."""
+    """Return the energy over its initial value at the times ts; NaN if its numbers are beyond a linear solver."""
     body, q, now, found = lesson.RigidBody(1.0, np.array(I)), AT_START, 0.0, []
     L = body.I_body * np.array(omega)
     begin = lesson.kinetic_energy(q, L, body.I_body)
@@ -73,7 +73,7 @@ def energies(lesson, method, I, omega, dt, ts):
 
 
 def substeps(method):
-    """Return of how many rotations a step of a method consists."""
+    """Return the number of rotations of which a step of a method consists."""
     return 5 if method.startswith("composed") else 1
 
 
@@ -97,7 +97,7 @@ def gyroscopic_energy(t, sign):
 
 
 def kept_L_energy(t, times=1.0):
-    """Return E/E₀ of a step that keeps L and turns with the first ω, to first order in dt.
+    """Return E/E₀ of a step that keeps L and rotates with the first ω, to first order in dt.
 
     u = L₃² obeys the logistic equation  u̇ = ρ u (L² − u).
     """
@@ -110,7 +110,9 @@ def kept_L_energy(t, times=1.0):
 
 
 def gyroscopic_drift_of_energy(check, energy):
-    """Judge both gyroscopic steps by ±½ dt ω̇ᵀIω̇, and each by the factor of ω_⊥²; energy: {method: gain in the run}.
+    """Compare both gyroscopic steps with ±½ dt ω̇ᵀIω̇, and each with the factor of ω_⊥².
+
+    energy: {method: gain in the run}.
 
     The first tolerance: sinh x = x (1 + x²/6 + …) with x = 2 · drift / share of ω_⊥ in the energy < 0.1.
     """
@@ -133,14 +135,14 @@ def gyroscopic_drift_of_energy(check, energy):
 
 @case("gyroscopic-drift", "Gyroscopic drift", compiled=False)
 def gyroscopic_drift(lesson, check):
-    """A first-order step changes the energy by  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ in body coordinates.
+    """Compare the change of energy of first-order steps with  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ in body coordinates.
 
     For this cylinder that is ±0.95 % in 2 s at 1 ms.  With the gyroscopic term at the beginning,  I Δω = −dt
-    ω × Iω,  so ΔE = ½ Δωᵀ I Δω > 0; at the end, minus that.  In body coordinates the cylinder's ω_⊥ turns at
-    Ω = (I₃ − I₁)/I₁ ω₃. Explicit Euler multiplies its length by √(1 + (Ω dt)²), and implicit Euler divides it by
-    the same. That is exact, because a turn about ω does not change ω.  Where L is kept, ℓ ← e^(−dt ω*) ℓ has the
-    same ΔE. Renormalising by columns adds  dt² κ  to the turn, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this cylinder
-    twice the drift on top.
+    ω × Iω,  so ΔE = ½ Δωᵀ I Δω > 0; at the end, minus that.  In body coordinates the cylinder's ω_⊥ rotates at
+    Ω = (I₃ − I₁)/I₁ ω₃.  Explicit Euler multiplies its length by √(1 + (Ω dt)²), and implicit Euler divides it by
+    the same.  That is exact, because a rotation about ω does not change ω.  If L is kept, ℓ ← e^(−dt ω*) ℓ has the
+    same ΔE.  Renormalising by columns adds  dt² κ  to the rotation, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this cylinder
+    twice the drift in addition.
     """
     ts = np.linspace(0.0, SPUN_FOR, 11)[1:]
     runs = {m: energies(lesson, m, CYLINDER, SPUN, MS, ts) - 1.0 for m in LABEL}
@@ -180,17 +182,18 @@ FAST, FAST_STEPS = (6000.0, 0.0, 8000.0), 200        # ω [rad/s]; of 1 ms
 
 
 def fast_angle():
-    """Return the angle [rad] by which the fast cylinder turns, about L and about its axis together."""
+    """Return the angle [rad] by which the fast cylinder rotates, about L and about its axis together."""
     I, L = np.array(CYLINDER), np.array(CYLINDER) * FAST
     return (np.linalg.norm(L) / I[0] + abs(1.0 - I[2] / I[0]) * FAST[2]) * FAST_STEPS * MS
 
 
 @case("fast-spin", "Spin at 10⁴ rad/s", compiled=False)
 def fast_spin(lesson, check):
-    """A cylinder at 10⁴ rad/s with 10 rad per step keeps L, and two equal moments make the splitting exact.
+    """Check that steps of a cylinder at 10⁴ rad/s with 10 rad per step keep L, and that the splitting is exact.
 
-    L does not change where it is the state.  Round-off: an angle of N rad is known to about 16 roundings of N/2⁵³.
-    The gyroscopic term at the beginning multiplies ω_⊥ by √(1 + (Ω dt)²) = √17 per step.
+    L does not change if it is the state.  The splitting is exact because two moments are equal.  An angle of N rad
+    is known to about 16 rounding errors of N/2⁵³.  The gyroscopic term at the beginning multiplies ω_⊥ by √(1 + (Ω
+    dt)²) = √17 per step.
     """
     I, steps, seconds, angle = np.array(CYLINDER), FAST_STEPS, FAST_STEPS * MS, fast_angle()
     runs = {m: tried(lesson, m, CYLINDER, FAST, MS, steps) for m in LABEL}
@@ -243,9 +246,10 @@ PRICKED_STEPS = 2000         # of 1 ms
 
 @case("slender-body", "A needle", compiled=False)
 def slender_body(lesson, check):
-    """A needle, I₃ = 10⁻⁶ I₁, one radian per step: L₃ = 10⁻³ is a small difference, known to 10⁻¹⁶ |L| per step.
+    """Compare the energy of a needle, I₃ = 10⁻⁶ I₁, at one radian per step, with the accuracy of L₃.
 
-    ω₃ = L₃/I₃.  Any orientation has an energy between L²/2I₁ and L²/2I₃.
+    L₃ = 10⁻³ is a small difference, known to 10⁻¹⁶ |L| per step.  ω₃ = L₃/I₃.  Any orientation has an energy between
+    L²/2I₁ and L²/2I₃.
     """
     I, w, seconds = np.array(NEEDLE), np.array(PRICKED), PRICKED_STEPS * MS
     energy = 0.5 * (I * w) @ w
@@ -275,7 +279,7 @@ def slender_body(lesson, check):
 
 
 def needle_stays_finite(check, runs, bounds):
-    """Judge the numbers in which runs end, and their energies over the first by the bounds that L sets."""
+    """Check that runs end in finite numbers or errors, and compare their energies with the bounds that L sets."""
     ended = sum(run is None or bool(np.all(np.isfinite(run[0])) and np.isfinite(run[2])) for run in runs.values())
     refused = [LABEL[m] for m, run in runs.items() if run is None]
     check("A step ends in finite numbers or raises an error.", f"steps that do so [of {len(runs)}]",
@@ -283,7 +287,7 @@ def needle_stays_finite(check, runs, bounds):
           saw=f"Of {len(runs)} steps {len(refused)} refused: {', '.join(refused)}.")
     least, most = (1.0 - 1e-9) * bounds[0], (1.0 + 1e-9) * bounds[1]
     inside = sum(runs[m] is None or least <= runs[m][2] <= most for m in KEEP_L)
-    check("Where L is kept the energy stays between L²/2I₁ and L²/2I₃, whatever the error of the orientation.",
+    check("If L is kept the energy stays between L²/2I₁ and L²/2I₃, for any error of the orientation.",
           f"steps that stay inside [of {len(KEEP_L)}]", law=len(KEEP_L), found=inside, within=0.0,
           saw=f"{inside} of {len(KEEP_L)} steps stay between {bounds[0]:.2f} and {bounds[1]:,.0f} times the "
               "initial energy.")
@@ -299,7 +303,7 @@ STANDS = np.sqrt(4.0 * ACROSS * MGL) / ALONG             # least spin of a sleep
 
 
 def tilts(lesson, spin, tilt, dt, seconds, look):
-    """Yield the tilt [rad] of a top released with nothing but its spin: first at the start, then every `look` steps."""
+    """Yield the tilt [rad] of a top released with only its spin: at the start, then every `look` steps."""
     top = lesson.Top(np.array([ACROSS, ACROSS, ALONG]), MGL)
     q = np.array([np.cos(0.5 * tilt), np.sin(0.5 * tilt), 0.0, 0.0])
     L = ALONG * spin * np.array([0.0, -np.sin(tilt), np.cos(tilt)])
@@ -322,13 +326,13 @@ def fallen(lesson, spin):
 
 
 def lowest_cosine(spin):
-    """Return cos θ where a top that falls from upright turns back."""
+    """Return cos θ at which a top that falls from upright turns back."""
     return (ALONG * spin) ** 2 / (2.0 * ACROSS * MGL) - 1.0
 
 
 @case("sleeping-top", "A sleeping top")
 def sleeping_top(lesson, check):
-    """A sleeping top stands if and only if ω₃² > 4I₁Mgl/I₃²: 20 rad/s here.
+    """Check that a sleeping top stands if and only if ω₃² > 4I₁Mgl/I₃²: 20 rad/s here.
 
     Near the vertical ξ = θ e^(iφ) obeys  I₁ξ̈ − iI₃ω₃ξ̇ − Mgl ξ = 0.  With a = I₃ω₃/2I₁ and λ² = Mgl/I₁ − a²
         |ξ/ξ₀|² = cosh² λt + (a/λ)² sinh² λt                  from rest,
@@ -336,12 +340,12 @@ def sleeping_top(lesson, check):
     below the edge.  A top that falls from upright falls as far as  cos θ = I₃²ω₃²/2I₁Mgl − 1.
     """
     measured = 2.0 * STANDS - bisect(lambda slower: falls(lesson, 2.0 * STANDS - slower), 0.8 * STANDS, 1.2 * STANDS)
-    check("A top stands upright while ω₃² > 4 I₁Mgl/I₃².", "least spin at which it stands [rad/s]",
+    check("A top stands upright if ω₃² > 4 I₁Mgl/I₃².", "least spin at which it stands [rad/s]",
           law=STANDS, found=measured, within=STANDS * (5e-6 + 1.2 * EDGE),
           saw=f"The top falls below {measured:.4f} rad/s, and stands above.")
     flips = falls(lesson, 0.999 * STANDS) and not falls(lesson, 1.001 * STANDS)
     check("The edge flips within ±0.1 %.", "edges that flip [of 1]", law=1, found=flips, within=0.0,
-          saw="A thousandth below the edge it "
+          saw="A thousandth below the edge the top "
               f"{'falls, a thousandth above it stands' if flips else 'does not behave as above it'}.")
     tilt_of_a_top(lesson, check)
     spins, fine = np.linspace(12.0, 24.0, 13), np.linspace(12.0, 24.0, 121)
@@ -383,13 +387,13 @@ TRIED = 25                   # random bodies [-]
 
 
 def turned_by(phi):
-    """Return R (3, 3) of a turn by |φ| about φ."""
+    """Return R (3, 3) of a rotation by |φ| about φ."""
     angle = np.sqrt(phi @ phi)
     return about(phi / angle, angle)
 
 
 def cayley(phi):
-    """Return R (3, 3) of a turn by 2 atan ½|φ| about φ: what q + ½ (0, φ) q is when it has the length 1."""
+    """Return R (3, 3) of a rotation by 2 atan ½|φ| about φ: the normalised quaternion q + ½ (0, φ) q."""
     angle = np.sqrt(phi @ phi)
     return about(phi / angle, 2.0 * np.arctan(0.5 * angle))
 
@@ -407,7 +411,8 @@ def random_turn(rng):
     return q, quaternion_matrix(*q)
 
 
-@random_law("A load is what does the same work on every rigid motion.", "power: largest relative error [-]", 1e-12)
+@random_law("A load does the same work as its forces on every rigid motion.", "power: largest relative error [-]",
+            1e-12)
 def load(lesson, rng):
     x, points, forces = rng.normal(size=3), rng.normal(size=(5, 3)), rng.normal(size=(5, 3))
     F, tau = lesson.total_load(x, points, forces)
@@ -439,7 +444,7 @@ def growth(lesson, rng):
 
 @case("loads-and-derivatives", "Loads, derivatives, and the tennis racket", compiled=False)
 def loads_and_derivatives(lesson, check):
-    """Forces do the same work as their sum and torque on every rigid motion: Σ f · (V + ω × r) = F · V + τ · ω.
+    """Compare loads with their power on every rigid motion: Σ f · (V + ω × r) = F · V + τ · ω.
 
     Ṡ is compared with P/M, F, τ and ω × each axis, ω from a linear solve.  The growth rate of a disturbance is the
     largest real part of the eigenvalues of Euler's equations, linearised by differences that are exact for them,
@@ -468,7 +473,7 @@ SECOND_WRITING = {           # step of the lesson: the same in the reference, an
 
 
 def random_motion(lesson, rng):
-    """Return a free body with unlike moments under a torque (t, q, L, body) of time and orientation, and a step of it.
+    """Return a free body with unequal moments under a torque (t, q, L, body) of time and orientation, and a step of it.
 
     Its fields are body, q, R, L, t, dt, torque, and tau(t, R) [N m], which has a part at rest in the world and one at
     rest in the body.
@@ -481,7 +486,7 @@ def random_motion(lesson, rng):
 
 
 def written_again(method, on, n=1):
-    """Return [(R, L)] before and after each of n steps of a motion by the reference, which knows no time.
+    """Return [(R, L)] before and after each of n steps of a motion by the reference, which does not depend on time.
 
     So its k-th torque of a step is that of the k-th time in SECOND_WRITING.
     """
@@ -496,13 +501,13 @@ def written_again(method, on, n=1):
 
 
 def one_step_of(method, lesson, rng):
-    """Compare one step of a method with its second writing."""
+    """Compare one step of a method with its independent form."""
     on = random_motion(lesson, rng)
     q, L = getattr(lesson, method)(on.torque, on.t, on.q, on.L, on.dt, on.body)
     return (quaternion_matrix(*q), L), written_again(method, on)[-1]
 
 
-@random_law("Each update turns by its own law: forwards, backwards, and slowly.",
+@random_law("Each update rotates by its own law: forwards, backwards, and slowly.",
             "largest error of the orientation [-]", 1e-12)
 def updates(lesson, rng):
     (q, R), omega, dt = random_turn(rng), rng.normal(size=3), rng.uniform(0.05, 0.3)
@@ -517,7 +522,7 @@ def updates(lesson, rng):
 @random_law("Splitting is exact for a symmetric body.",
             "largest error of the orientation of a symmetric body [-]", 1e-12)
 def symmetric_bodies(lesson, rng):
-    """Turn the body about L and about its axis, both at once."""
+    """Rotate the body about L and about its axis, both at once."""
     (q, R), L, dt, k = random_turn(rng), rng.normal(size=3), rng.uniform(0.05, 0.3), int(rng.integers(3))
     across, along = rng.uniform(1.0, 1.9, 2)
     I = np.where(np.arange(3) == k, along, across)
@@ -550,7 +555,8 @@ def energy_of_rotation(lesson, rng):
     return lesson.kinetic_energy(q, L, I), 0.5 * L @ np.linalg.solve(R @ np.diag(I) @ R.T, L)
 
 
-@random_law("Gravity turns a top about its pivot with l𝐞 × (−Mg ẑ).", "largest error of the torque [N m]", 1e-12)
+@random_law("The torque of gravity on a top about its pivot is l𝐞 × (−Mg ẑ).", "largest error of the torque [N m]",
+            1e-12)
 def torque_of_a_top(lesson, rng):
     (q, R), L, I = random_turn(rng), rng.normal(size=3), rng.uniform(1.0, 1.9, 3)
     return lesson.heavy_top_torque(0.0, q, L, lesson.Top(I, 2.5)), np.cross(R[:, 2], [0.0, 0.0, -2.5])
@@ -564,11 +570,12 @@ def velocities(lesson, rng):
 
 @case("one-step", "One step of each rotation", compiled=False)
 def one_step(lesson, check):
-    """A step is its second writing by complex numbers, for unlike moments, any orientation, and a torque that changes.
+    """Compare each step with an independent form by complex numbers.
 
-    The torque depends on time and orientation.  All other laws are written with matrices.
+    The moments are unequal, the orientation is random, and the torque depends on time and orientation.  All other
+    laws are written with matrices.
     """
-    steps = [Law(f"One step of {LABEL[name]} is what a second writing by complex numbers gives.",
+    steps = [Law(f"One step of {LABEL[name]} agrees with an independent form in complex numbers.",
                  f"{LABEL[name]}: largest error of a step [-, kg m²/s]", 1e-11, partial(one_step_of, name))
              for name in LABEL]
     check.laws(lesson, (*steps, updates, symmetric_bodies, histories, products, energy_of_rotation, torque_of_a_top,
@@ -577,7 +584,7 @@ def one_step(lesson, check):
 
 # ---------------------------------------------------------------------------------------------- the lecture's loop
 
-@random_law("The loop takes new velocities for positions, and Euler's equation for ω.",
+@random_law("The loop uses new velocities for positions, and Euler's equation for ω.",
             "loop: largest error of the state [m, m/s, -, rad/s]", 1e-10)
 def loop(lesson, rng):
     """Take one step and two under the force f cos t and the torque a sin t."""
@@ -606,9 +613,9 @@ def random_ball(lesson, rng):
 
 
 def rolled(lesson, rng, least, most):
-    """Return a ball's step whose slip is between `least` and `most` times what friction can stop in it.
+    """Return a ball's step whose slip is between `least` and `most` times the slip that friction can stop in it.
 
-    Its fields: ball, begin (t, x, q, v, ω) and dt; the levers r and the slip before, without friction; the greatest
+    Its fields: ball, begin (t, x, q, v, ω) and dt; the lever arms r and the slip before, without friction; the largest
     impulse of friction `limit`; the new velocities v and ω, and the impulse J of friction.
     """
     ball, m, (t, x, q, v, omega) = random_ball(lesson, rng)
@@ -632,7 +639,7 @@ def means(lesson, rng):
     return (new_x, quaternion_matrix(*new_q), *rates), (x + 0.5 * on.dt * (v + on.v), R, on.v, on.omega)
 
 
-@random_law("A floor takes what presses on it, and does not hold what is lifted.",
+@random_law("A floor supports a ball that presses on it, and does not hold a ball that is lifted.",
             "support: largest error of the force [N]", 1e-10)
 def support(lesson, rng):
     ball, m, state = random_ball(lesson, rng)
@@ -644,19 +651,20 @@ def support(lesson, rng):
     return np.array(forces), np.array(truth)
 
 
-@random_law("Friction turns the ball by r × J.", "impulse: largest error of the angular momentum [kg m²/s]", 1e-10)
+@random_law("Friction changes the angular momentum of the ball by r × J.",
+            "impulse: largest error of the angular momentum [kg m²/s]", 1e-10)
 def turn_of_friction(lesson, rng):
     on = rolled(lesson, rng, 0.0, 3.0)
     return on.ball.I_body * (on.omega - on.begin[-1]), np.cross(on.r, on.J)
 
 
-@random_law("A fast slip has the friction μ N against it.", "cone: largest error of the impulse [N s]", 1e-10)
+@random_law("Against a fast slip acts the friction μ N.", "cone: largest error of the impulse [N s]", 1e-10)
 def fast_slip(lesson, rng):
     on = rolled(lesson, rng, 1.01, 5.0)
     return on.J, -on.limit * on.before / np.linalg.norm(on.before)
 
 
-@random_law("A slow slip is stopped in the step.", "slip: largest error of the slip that is left [m/s]", 1e-10)
+@random_law("A slow slip is stopped within the step.", "slip: largest error of the slip that is left [m/s]", 1e-10)
 def slow_slip(lesson, rng):
     on = rolled(lesson, rng, 0.0, 0.99)
     return (on.v + np.cross(on.omega, on.r))[:2], np.zeros(2)
@@ -664,7 +672,7 @@ def slow_slip(lesson, rng):
 
 @case("one-step-of-the-loop", "One step of the lecture's loop, and of a rolling ball", compiled=False)
 def one_step_of_the_loop(lesson, check):
-    """A body under a force and a torque of time; a ball of any size whose friction stops its slip within the cone."""
+    """Check steps of a body under a force and a torque of time, and of a ball with friction in the cone."""
     check.laws(lesson, (loop, means, support, turn_of_friction, fast_slip, slow_slip), seed=57, times=TRIED)
 
 
@@ -692,11 +700,11 @@ def drifts(lesson, n, tops):
 
 @case("a-million-steps", "A million steps of a top")
 def a_million_steps(lesson, check):
-    """Gravity has no torque about the vertical, nor about the axis of a symmetric top: L_z and L₃ stay.
+    """Check that L_z and L₃ of a top are constant: gravity has no torque about the vertical, nor about a symmetry axis.
 
-    The splitting keeps both, so that rounding alone changes them.  The torque is computed with a vertical component of
-    exactly 0, so that L_z keeps every bit.  Each step divides q by its length, which is rounded: that is the same
-    deviation again and again, and L₃ drifts by n times it, at most n ε.
+    The splitting keeps both, so rounding alone changes them.  The torque is computed with a vertical component of
+    exactly 0, so L_z keeps every bit.  Each step divides q by its length, which is rounded.  That is the same
+    deviation in every step, and L₃ drifts by n times it, at most n ε.
     """
     rng, longest = np.random.default_rng(7), LONG_RUN if hasattr(lesson.splitting_step, "py_func") else SHORT_RUN
     places, spins = rng.normal(size=(THROWN, 4)), 10.0 * rng.normal(size=(THROWN, 3))
@@ -711,4 +719,5 @@ def a_million_steps(lesson, check):
         "The angular momentum of a top about its axis", "log₁₀ of the steps [-]", "log₁₀ of its change over |L| [-]",
         [log_series("ε per step", counts, EPS * counts, LINE),
          log_series("measured", counts, np.sqrt(np.mean(axial**2, axis=1)), DOTS)],
-        "Rounding adds up, because every step rounds in the same way. After a million steps eleven digits are left.")
+        "Rounding errors add up, because every step rounds in the same way. After a million steps eleven digits are "
+        "left.")

@@ -33,13 +33,13 @@ def round_bodies(lesson, x, r, m, inertia, gravity, mu, sweeps, margin=0.01, ang
 
 
 def advanced(lesson, shape, state, p, dt, steps, load=None, step=None):
-    """Return the PileState after so many steps of advance_contact."""
+    """Return the PileState after this number of steps of advance_contact."""
     usual, bounds, contacts = (getattr(lesson, name) for name in shape)
     return lesson.advance_contact(step or usual, load or lesson.weight, bounds, contacts, 0.0, state, dt, steps, p)
 
 
 def stepped(lesson, shape, state, p, dt, steps):
-    """Return the PileState after so many steps, without the checks of advance_contact."""
+    """Return the PileState after this number of steps, without the checks of advance_contact."""
     step, bounds, contacts = (getattr(lesson, name) for name in shape)
     for n in range(steps):
         state = step(lesson.weight, bounds, contacts, n * dt, state, dt, p)
@@ -54,7 +54,7 @@ def largest(*differences):
 # ---------------------------------------------------------------------------------------------- speeds
 
 def deepest(lesson, speed, margin, dt):
-    """Return the greatest depth [m] of a disc of 10 cm, over sixteen places at which a step may find it; no gravity."""
+    """Return the largest depth [m] of a disc of 10 cm, over sixteen phases of a step, without gravity."""
     depths = []
     for k in range(16):
         height = 0.1 + (margin + (k + 0.5) / 16.0 * speed * dt)
@@ -66,28 +66,29 @@ def deepest(lesson, speed, margin, dt):
 
 @case("margin-and-speed", "The fastest body that a margin stops", compiled=False)
 def margin_and_speed(lesson, check):
-    """A contact is found when its gap is at most the margin, and a body moves by v dt in a step.
+    """Compare the speed at which a disc first penetrates, and its depth, with theory.
 
-    So it is found before it touches if v dt is at most the margin.  Faster, it may be v dt − margin deep when it is
-    found, and it stops there: of sixteen places in the step the worst lacks 1/32 of v dt.
+    A contact is detected when its gap is at most the margin, and a body moves by v dt in a step.  So contact is
+    detected before the bodies touch if v dt is at most the margin.  A faster body may be v dt − margin deep when it
+    is detected, and it stops there.  The worst of sixteen phases of the step is 1/32 of v dt below that bound.
     """
     dt, margins, edges = 0.01, (0.01, 0.02, 0.05), []
     for margin in margins:
         sinks = lambda v, margin=margin: deepest(lesson, v, margin, dt) > 1e-9
         edges.append(bisect(sinks, 0.5 * margin / dt, 4.0 * margin / dt))
-        check("A body touches in time if its way in a step is at most the margin.",
+        check("Contact is detected in time if the displacement in a step is at most the margin.",
               f"speed at which a disc first sinks in, margin {margin:g} m, dt 0.01 s [m/s]",
               law=margin / dt * 32.0 / 31.0, found=edges[-1], within=1e-4 * margin / dt,
-              saw=f"With a margin of {margin:g} m the disc sinks in from {edges[-1]:.2f} m/s on.")
+              saw=f"With a margin of {margin:g} m the disc penetrates from {edges[-1]:.2f} m/s on.")
     for speed in (5.0, 8.0):
         deep = deepest(lesson, speed, 0.02, dt)
-        check("A faster body is up to v dt − margin inside when it is found, and stays there.",
+        check("A faster body is up to v dt − margin inside when it is detected, and stays there.",
               f"greatest depth at {speed:g} m/s, margin 0.02 m [m]",
               law=speed * dt - 0.02 - speed * dt / 32.0, found=deep, within=ROUND_OFF,
               saw=f"At {speed:g} m/s the disc is up to {1e3 * deep:.1f} mm deep.")
     return Picture("Which speeds are safe", "margin [m]", "speed at which a disc sinks in [m/s]", [
         series("theory, margin/dt", margins, np.array(margins) / dt, LINE), series("measured", margins, edges, DOTS)],
-        "A contact that is found a step ahead stops a body on the surface; what comes faster is stopped inside.")
+        "A contact that is detected a step ahead stops a body on the surface; a faster body stops inside.")
 
 
 # ---------------------------------------------------------------------------------------------- a turntable
@@ -99,14 +100,14 @@ OMEGA_0 = np.cross((0.0, 0.0, -RADIUS), np.cross(TABLE, PLACE_0) - V_0) / RADIUS
 
 
 def speed_in_the_loop(lesson, dt, steps):
-    """Return the speed [m/s] of the ball after so many steps of the whole loop."""
+    """Return the speed [m/s] of the ball after this number of steps of the whole loop."""
     state, p = round_bodies(lesson, [PLACE_0], RADIUS, 1.0, MOMENT, (0.0, 0.0, -G), 10.0, 40, 0.02)
     state = state._replace(v=np.array([V_0, np.zeros(3)]), omega=np.array([OMEGA_0, TABLE]))
     return np.linalg.norm(stepped(lesson, BALL, state, p, dt, steps).v[0])
 
 
 def speed_ahead(lesson, dt, steps):
-    """Return the speed [m/s] of the ball if the floor is that of the end of the step."""
+    """Return the speed [m/s] of the ball if the floor's velocity is that at the end of the step."""
     still = lambda t, x, q, v, omega, ball: (np.zeros(3), np.zeros(3))
     ball = lesson.CarriedBall(1.0, np.full(3, MOMENT), RADIUS, 10.0, np.array((0.0, 0.0, -G)), np.zeros(3), np.zeros(3),
                               TABLE)
@@ -118,27 +119,28 @@ def speed_ahead(lesson, dt, steps):
 
 @case("growth-on-a-turntable", "The spiral of a ball on a turntable", compiled=False)
 def growth_on_a_turntable(lesson, check):
-    """A rolling ball has v̇ = w n × v with w = 2/7 Ω.
+    """Compare the growth of the speed of a rolling ball, v̇ = w n × v with w = 2/7 Ω, with theory.
 
-    The whole loop takes the floor where the ball was: v ← v + w dt n × v of the step before, whose size grows by the
-    root that is near 1 of  z² = z + i w dt:  |z|² = 1 + (w dt)² + O((w dt)⁴), so that the logarithm of |v| grows by
-    ½ w² dt per second.  One step ahead it is  z = 1 + i w dt (3/2 − 1/(2z)), with |z| = 1 + ¼ (w dt)⁴.
-    The next order is a relative (w dt)² in the first, which is 2 % here at most.  A sweep halves the slip of a ball, so
-    that 40 leave nothing of it.
+    The whole loop takes the floor's velocity at the old position: v ← v + w dt n × v of the step before, whose size
+    grows by the root that is near 1 of  z² = z + i w dt:  |z|² = 1 + (w dt)² + O((w dt)⁴), so the logarithm of |v|
+    grows by ½ w² dt per second.  One step ahead it is  z = 1 + i w dt (3/2 − 1/(2z)), with |z| = 1 + ¼ (w dt)⁴.
+    The next order is a relative (w dt)² in the first, which is at most 2 % here.  A sweep halves the slip of a
+    ball, so 40 sweeps leave nothing of it.
     """
     w, dts = 2.0 / 7.0 * TABLE[2], (0.02, 0.05, 0.1, 0.2)
     ratio = lambda speed, dt: np.divide(*(speed(lesson, dt, round(t / dt)) for t in (12.0, 2.0)))
     grown = [np.log(ratio(speed_in_the_loop, dt)) / 10.0 for dt in dts]
     for dt, growth in zip(dts, grown, strict=True):
-        check("With the floor's velocity where the ball was, its speed grows by the share ½ (2Ω/7)² dt per second.",
+        check("With the floor's velocity at the ball's old position, its speed grows by the fraction ½ (2Ω/7)² dt per "
+              "second.",
               f"growth of ln |v| per second, dt = {dt:g} s, Ω = 2 rad/s [1/s]",
               law=0.5 * w * w * dt, found=growth, within=0.5 * w * w * dt * 2.0 * (w * dt) ** 2 + 1e-9,
               saw=f"With dt = {dt:g} s the speed grows by {100.0 * np.expm1(10.0 * growth):.2f} % in 10 s.")
     dt, ahead = dts[-1], ratio(speed_ahead, dts[-1])
-    check("With the floor's velocity where the ball will be, the growth is of the fourth order.",
+    check("With the floor's velocity at the ball's new position, the growth is of the fourth order.",
           "growth of ln |v| per second, dt = 0.2 s, floor ahead [1/s]",
           law=0.25 * (w * dt) ** 4 / dt, found=np.log(ahead) / 10.0, within=0.1 * (w * dt) ** 4 / dt,
-          saw=f"With dt = 0.2 s and the floor ahead it grows by {100.0 * (ahead - 1.0):.4f} % in 10 s.")
+          saw=f"With dt = 0.2 s and the floor's velocity ahead it grows by {100.0 * (ahead - 1.0):.4f} % in 10 s.")
     fine = np.linspace(0.01, 0.2, 40)
     return Picture("A ball on a turntable", "dt [s]", "growth of ln |v| per second [1/s]", [
         series("theory, ½ (2Ω/7)² dt", fine, 0.5 * w * w * fine, LINE), series("the whole loop", dts, grown, DOTS)],
@@ -161,7 +163,7 @@ def changes_of_corner(lesson, b, h, lean, T):
 
 @case("rocking-to-the-end", "The impacts of a rocking block", compiled=False)
 def rocking_to_the_end(lesson, check):
-    """The n-th impact comes when theory says, for slender and stout blocks; a block that does not lean stays.
+    """Compare the times of all impacts of slender and stout blocks with theory; a block without lean stays at rest.
 
     Housner's ratio e = 1 − 1.5 sin²α per impact; the times are those of a pendulum about each corner, by DOP853.
     Runge–Kutta 4 with dt = 0.01 s leaves (P dt)⁴ P t/120 ≈ 1e-7 of the rate, and the time of a slow impact multiplies
@@ -178,7 +180,7 @@ def rocking_to_the_end(lesson, check):
               saw=f"A block of half sizes {b:g} m and {h:g} m changes its corner {len(times)} times in {T:g} s.")
     block = lesson.RockingBlock(1.0, 0.1, 0.5, 0.26 / 3.0, G)
     x, v = lesson.advance_rocking(lesson.rk4_step, 0.0, np.zeros(1), np.zeros(1), 0.01, 100, block)
-    check("A block that stands stays.", "lean and rate after 1 s [rad, rad/s]", law=0.0, found=largest(x, v),
+    check("An upright block does not move.", "lean and rate after 1 s [rad, rad/s]", law=0.0, found=largest(x, v),
           within=ROUND_OFF, saw=f"It leans by {abs(x[0]):.0e} rad.")
     refusals(lesson, check)
     widths = np.linspace(0.01, 0.4, 40)
@@ -188,11 +190,11 @@ def rocking_to_the_end(lesson, check):
                    "rate after over before [-]", [
                        series("theory, 1 − 1.5 sin²α", widths, 1.0 - 1.5 * np.sin(np.arctan(widths / 0.5)) ** 2, LINE),
                        series("corner_impact", widths[::4], ratios, DOTS)],
-                   "A slender block loses next to nothing at each impact and rocks for long; a cube stops at once.")
+                   "A slender block loses very little at each impact and rocks for a long time; a cube stops at once.")
 
 
 def refusals(lesson, check):
-    """Ask for bodies and steps that are none."""
+    """Make calls with invalid bodies and steps."""
     def made(**more):
         given = {"x": [(0.0, 0.5)], "q": [0.0], "m": 1.0, "inertia": 0.1, "half": [(0.5, 0.5)], "planes": [UP],
                  "gravity": (0.0, -G), "mu": 0.3, "sweeps": 10, "margin": 0.02, **more}
@@ -206,7 +208,8 @@ def refusals(lesson, check):
              (lambda: made(mu=-0.3), "-0.3"), (lambda: made(sweeps=0), "0"), (lambda: made(margin=0.0), "0.0"),
              (lambda: made(x=[(np.inf, 0.5)]), "inf"), (lambda: moved(0.0), "0.0"), (lambda: moved(-0.01), "-0.01"),
              (lambda: moved(0.01, v=np.full((2, 2), np.nan)), "nan"), (lambda: moved(0.01, v=np.zeros((3, 2))), "3"))
-    check.count("Masses, sizes, margins and steps of zero, normals without a length, and what is no number are "
+    check.count("Masses, sizes, margins and steps of zero, normals without a length, and values that are not numbers "
+                "are "
                 "refused, with their value.", "calls that name the value in their error",
                 sum(refuses(call, (), value) for call, value in asked), len(asked),
                 "such calls end in a sentence that names the value.")
@@ -219,7 +222,7 @@ V_FLYER = np.array([(1.0, 2.0, -0.5)])                   # of one body in space 
 
 
 def flown(lesson, step, state, p, v, omega, dt, T=FLIGHT):
-    """Return (x, q, v, ω) after a flight under the weight."""
+    """Return (x, q, v, ω) after a flight under gravity."""
     return lesson.advance_free(step, lesson.weight, 0.0, state.x, state.q, v, omega, dt, round(T / dt), p)
 
 
@@ -231,11 +234,11 @@ def flyer(lesson):
 
 @case("flight-and-its-invariants", "Invariants of a flight", compiled=False)
 def flight_and_its_invariants(lesson, check):
-    """Bodies that fly: parabolas that are late by half a step, momenta that stay, and energy that only a source raises.
+    """Check bodies in flight: parabolas that lag by half a step, constant momenta, energy that only a source raises.
 
-    Symplectic Euler falls ½ g T (T + dt).  A free body that turns about a principal axis by 2 atan(½ ω dt) per step
+    Symplectic Euler falls ½ g T (T + dt).  A free body that rotates about a principal axis by 2 atan(½ ω dt) per step
     keeps ω.  L of a tumbling body drifts by O(dt): half the step leaves half of it, up to a few per cent.
-    A ball of 2 kg that jumps from nothing by 0.3 m gains 2 g · 0.3 J, whatever it loses before.
+    A ball of 2 kg that jumps by 0.3 m without a cause gains 2 g · 0.3 J, independent of earlier losses.
     """
     dts = (0.1, 0.05, 0.025)
     falls = [thrown(lesson, check, dt) for dt in dts]
@@ -246,11 +249,11 @@ def flight_and_its_invariants(lesson, check):
     return Picture("How far a body falls in 1.2 s", "dt [s]", "fall [m]", [
         series("theory, ½ g T (T + dt)", dts, 0.5 * G * FLIGHT * (FLIGHT + np.array(dts)), LINE),
         series("measured", dts, falls, DOTS)],
-        "Moving with the new velocity makes a fall too deep by ½ g T dt: exactly, whatever the step is.")
+        "Moving with the new velocity makes a fall too deep by exactly ½ g T dt, for any step.")
 
 
 def thrown(lesson, check, dt):
-    """Throw two bodies in the plane; return how far they fall below the straight line [m]."""
+    """Throw two bodies in the plane; return their distance below the straight line [m]."""
     state, p = lesson.make_bodies_2d([(0.0, 1.0), (1.0, 2.0)], [0.1, 0.2], [1.0, 3.0], 0.2, np.full((2, 2), 0.1),
                                      np.zeros((0, 3)), (0.0, -G), 0.0, 1, 0.01)
     v, omega = np.array([(1.0, 2.0), (-2.0, 0.5)]), np.array([3.0, -2.0])
@@ -264,7 +267,7 @@ def thrown(lesson, check, dt):
 
 
 def invariants_of_one_body(lesson, check):
-    """Compare energy and momenta of a body with those by hand."""
+    """Compare energy and momenta of a body with those computed by hand."""
     state, p = flyer(lesson)
     spin = np.array([(0.0, 0.0, 1.5)])
     energy = 0.5 * 2.0 * 5.25 + 0.5 * 3.0 * 2.25 + 2.0 * G * 0.3
@@ -302,9 +305,9 @@ def spin_about_a_principal_axis(lesson, check):
 
 
 def gains_and_comparisons(lesson, check):
-    """Look for a jump from nothing in the energies of a ball, and compare two runs by a clock that is set."""
+    """Look for a jump without a cause in the energies of a ball, and compare two runs by a clock that is set."""
     heights, now = np.array([1.0, 0.8, 0.5, 0.8, 0.6, 0.7]), [0.0]
-    check.agree("A jump from nothing is found, and work explains it.", "error of the gains [J]",
+    check.agree("A jump without a cause is detected, and work explains it.", "error of the gains [J]",
                 largest(lesson.gain_without_source(2.0 * G * heights, np.zeros(6)) - 0.6 * G,
                         lesson.gain_without_source(2.0 * G * heights, 2.0 * G * heights)), ROUND_OFF)
 
@@ -359,7 +362,7 @@ def loaded_in_the_plane(lesson, rng):
     return state, p, load, np.append(1.0 / m, 0.0)[:, None] * F, np.append(1.0 / inertia, 0.0) * tau
 
 
-@random_law("In the plane v changes by F/m and ω by τ/I, and positions by the new ones.",
+@random_law("In the plane v changes by F/m and ω by τ/I, and positions use the new velocities.",
             "plane: largest error of the state [m, m/s, rad/s]", 1e-9)
 def step_in_the_plane(lesson, rng):
     state, p, load, a, alpha = loaded_in_the_plane(lesson, rng)
@@ -369,7 +372,7 @@ def step_in_the_plane(lesson, rng):
     return got, (state.x + dt * v, state.q + dt * omega, v, omega)
 
 
-@random_law("Each step takes the load of its own time.",
+@random_law("Each step uses the load at its own time.",
             "times: largest error of the velocity after five steps [m/s]", 1e-9)
 def times_of_loads(lesson, rng):
     state, p, load, a, _ = loaded_in_the_plane(lesson, rng)
@@ -384,9 +387,9 @@ def times_of_loads(lesson, rng):
 
 
 def tumbling(lesson, rng):
-    """Return (PileState, Bodies, inverse masses, tensors in the world, who turns) of two bodies and a floor in space.
+    """Return (PileState, Bodies, inverse masses, world tensors, bodies that rotate) of two bodies and a floor in space.
 
-    The second body is free, on an axle, which no force moves, or cannot be turned.
+    The second body is free, on an axle, which no force moves, or cannot be rotated.
     """
     m, moments, q = rng.uniform(0.5, 2.0, 2), rng.uniform(1.0, 1.9, (2, 3)), random_quaternions(rng, 2)
     state, p = lesson.make_bodies(rng.normal(size=(2, 3)), q, m, moments, np.full((2, 3), 0.1), [(0.0, *UP)],
@@ -400,7 +403,7 @@ def tumbling(lesson, rng):
 
 
 def step_in_space(lesson, rng):
-    """Return (start, state after a step, that by Euler's equation for each body but for its rotations, dt)."""
+    """Return (start, state after a step, the same by Euler's equation for each body without the rotations, dt)."""
     state, p, w, tensors, turns = tumbling(lesson, rng)
     t, dt = random_times(rng)
     F, tau = rng.normal(size=(2, 3, 3))
@@ -419,14 +422,15 @@ def velocities_in_space(lesson, rng):
     return (x, v, omega), truth
 
 
-@random_law("A body turns by 2 atan(½ |ω| dt) about its own new ω.", "turn: largest error of the orientation [-]", 1e-9)
+@random_law("A body rotates by 2 atan(½ |ω| dt) about its own new ω.", "turn: largest error of the orientation [-]",
+            1e-9)
 def rotations_in_space(lesson, rng):
     start, end, (_, _, omega), dt = step_in_space(lesson, rng)
     return (tuple(matrix_of(end[1][i]) for i in range(2)),
             tuple(turned_by(omega[i], dt) @ matrix_of(start.q[i]) for i in range(2)))
 
 
-@random_law("Energy and momenta equal those by matrices; bodies that cannot move do not count.",
+@random_law("Energy and momenta equal those by matrices, without the immovable bodies.",
             "invariants: largest error of the invariants [J, kg m²/s]", 1e-9)
 def invariants(lesson, rng):
     state, p, w, tensors, turns = tumbling(lesson, rng)
@@ -439,7 +443,8 @@ def invariants(lesson, rng):
     return tuple(one / size for one in got), (energy / size, P / size, L / size)
 
 
-@random_law("A gain counts from any time on, without the work that was done; a difference counts either way.",
+@random_law("A gain is counted from any time on, without the work of supports; a difference is counted in both "
+            "directions.",
             "gain: largest error of the gain and difference [J]", 1e-9)
 def gains_and_differences(lesson, rng):
     energies, work = rng.normal(size=(2, 6))
@@ -455,7 +460,7 @@ def gains_and_differences(lesson, rng):
     return (lesson.gain_without_source(energies, work), *lesson.compare(run, run, 3, now.item)), (gain, 1.5, 3.0)
 
 
-@random_law("Contacts are found up to the margin, and may close in one step.",
+@random_law("Contacts are detected up to the margin, and may close in one step.",
             "found: largest error of the contacts and speeds [-, m/s]", 1e-9)
 def contacts_at_the_margin(lesson, rng):
     counts, n, dt = [], rng.choice(SIDES), rng.uniform(0.01, 0.1)
@@ -470,7 +475,10 @@ def contacts_at_the_margin(lesson, rng):
 
 
 def tilted_box(rng, d):
-    """Return (orientation, axes, half sizes, lever arm of the lowest corner) of a box; the next one is 2 cm higher."""
+    """Return (orientation, axes, half sizes, lever arm of the lowest corner) of a box.
+
+    The next corner is 2 cm higher.
+    """
     half = np.array([0.3, 0.2, 0.1][:d])
     corners = np.stack(np.meshgrid(*[(-1.0, 1.0)] * d), axis=-1).reshape(-1, d) * half
     while True:
@@ -483,8 +491,9 @@ def tilted_box(rng, d):
 
 
 def landing(lesson, rng, d):
-    """Return the state of a box after it has come down on a corner, which stops at the floor or closes its gap, and
-    that by the impulse at this corner.
+    """Return the state of a box that has landed on a corner, and the same by the impulse at this corner.
+
+    The corner stops at the floor or closes its gap.
     """
     q, axes, half, lowest = tilted_box(rng, d)
     m, moments, dt = rng.uniform(0.5, 2.0), rng.uniform(0.3, 0.5, 2 * d - 3), rng.uniform(0.01, 0.1)
@@ -505,14 +514,14 @@ def landing(lesson, rng, d):
     return (end.x[0], got, end.v[0], end.omega[0], end.J), (place + dt * v, turned, v, spin, j * n)
 
 
-@random_law("The corner on which a box comes down stops there, or closes its gap.",
+@random_law("The corner on which a box lands stops there, or closes its gap.",
             "corner of a box: largest error of the state and impulse [m, m/s, rad/s, N s]", 1e-9)
 def landings(lesson, rng):
     flat, spatial = landing(lesson, rng, 2), landing(lesson, rng, 3)
     return flat[0] + spatial[0], flat[1] + spatial[1]
 
 
-@random_law("A corner that stops keeps the angular momentum about it.",
+@random_law("The stop of a corner conserves the angular momentum about it.",
             "corner: largest error of the velocity and momentum [m/s, kg m²/s]", 1e-9)
 def corner_that_stops(lesson, rng):
     v, r = rng.normal(size=(2, 2))
@@ -534,13 +543,13 @@ def slipping(lesson, rng, slope):
     return ball, v, omega, np.linalg.norm((v + np.cross(omega, r))[:2]) / slows if slows > 0.0 else np.inf
 
 
-@random_law("A slip ends when friction and gravity have used it up.", "slip: largest error of the time [s]", 1e-9)
+@random_law("A slip ends when friction and gravity have stopped it.", "slip: largest error of the time [s]", 1e-9)
 def end_of_slip(lesson, rng):
     ball, v, omega, end = slipping(lesson, rng, rng.choice((60.0, rng.uniform(-0.5, 0.5))))
     return lesson.slip_time(v, omega, ball), end
 
 
-@random_law("A ball rolls from when its slip has ended: loads are those of both times.",
+@random_law("A ball rolls as soon as its slip has ended: loads are those of both times.",
             "parts: largest error of the times of loads [s]", 1e-9)
 def loads_of_a_slip(lesson, rng):
     ball, v, omega, end = slipping(lesson, rng, rng.uniform(-0.5, 0.5))
@@ -563,10 +572,11 @@ def moving_floor(lesson, rng):
 
 @case("loop-by-parts", "The parts of the loop", compiled=False)
 def loop_by_parts(lesson, check):
-    """Two unlike bodies and an immovable one, turned and tumbling, under loads with torques that depend on time.
+    """Check steps of two unequal bodies and an immovable one, rotated and tumbling, under loads that depend on time.
 
-    In space the second body is free, on an axle, which no force moves, or cannot be turned, by turns.
-    Euler's equation in world coordinates, ω̇ = I⁻¹ (τ − ω × I ω), with I = R diag Rᵀ as matrices.
+    The loads have torques.  In space the second body is alternately free, on an axle, which no force moves, or
+    cannot be rotated.  Euler's equation in world coordinates is ω̇ = I⁻¹ (τ − ω × I ω), with I = R diag Rᵀ as
+    matrices.
     """
     check.laws(lesson, (step_in_the_plane, velocities_in_space, rotations_in_space, times_of_loads, invariants,
                         gains_and_differences, contacts_at_the_margin, landings, corner_that_stops, end_of_slip,
@@ -588,8 +598,9 @@ def on_a_slope(lesson, d, mu):
 
 
 def column_at_rest(lesson, d, n, steps):
-    """Return (impulses of the contacts in rising order, greatest velocity), over those of g dt, of n round bodies on
-    each other, with one sweep per step.
+    """Return (impulses of the contacts in rising order, largest velocity) over those of g dt, for stacked round bodies.
+
+    There is one sweep per step.
     """
     heights, dt = R * (1.0 + 2.0 * np.arange(n)), 1e-4
     state, p = round_bodies(lesson, heights[:, None] * np.eye(d)[-1], R, MASS, INERTIA, -G * np.eye(d)[-1], 0.0, 1)
@@ -599,23 +610,23 @@ def column_at_rest(lesson, d, n, steps):
 
 @case("rolling-by-contact", "One contact, step by step", compiled=False)
 def rolling_by_contact(lesson, check):
-    """A disc and a sphere roll down a slope: a = g sin θ/(1 + I/(m r²)), J_n = m g cos θ dt, J_t = −I a dt/r² per step.
+    """Compare a disc and a sphere that roll down a slope with a = g sin θ/(1 + I/(m r²)).
 
-    A round body decouples normal and tangent: in the plane one sweep is exact.  In space a sweep leaves half of the
-    slip, because it counts both tangents.  The steps are those of symplectic Euler: after k of them v = k a dt and
-    x = ½ k (k + 1) a dt².
+    J_n = m g cos θ dt and J_t = −I a dt/r² per step.  In a round body normal and tangent are decoupled: in the
+    plane one sweep is exact.  In space a sweep leaves half of the slip, because it counts both tangents.  The steps
+    are those of symplectic Euler: after k of them v = k a dt and x = ½ k (k + 1) a dt².
     """
     rolls(lesson, check)
     slips(lesson, check)
     carried, speed = column_at_rest(lesson, 2, 3, 400)
-    check.agree("Impulses that are kept carry a stack with one sweep per step: 1, 2 and 3 weights.",
+    check.agree("With kept impulses one sweep per step carries a stack: 1, 2 and 3 weights.",
                 "impulses under three discs over m g dt: largest error [-]", largest(carried - (1.0, 2.0, 3.0)), 1e-6)
     carried_in_space, speed_in_space = column_at_rest(lesson, 3, 2, 80)
-    check.agree("So they do in space, at rest.",
+    check.agree("The same holds in space, at rest.",
                 "impulses under two spheres, and their speed, over those of g dt: largest error [-]",
                 largest(carried_in_space - (1.0, 2.0), speed_in_space), 1e-6)
     turn_of_a_carried_ball(lesson, check)
-    check.agree("They carry it at rest.", "speed of three discs over g dt [-]", speed, 1e-6)
+    check.agree("The stack is at rest.", "speed of three discs over g dt [-]", speed, 1e-6)
 
 
 def rolls(lesson, check):
@@ -626,7 +637,7 @@ def rolls(lesson, check):
     v, omega = steps * a * dt, steps * a * dt / R
     end = on_a_slope(lesson, 2, 0.9)
     truth = way, R, 0.7 - way / R, v, 0.0, -omega, pull, push
-    check.agree("A disc rolls down a slope with g sin θ/(1 + I/(m r²)), by the impulses of theory.",
+    check.agree("A disc rolls down a slope at g sin θ/(1 + I/(m r²)), by the impulses of theory.",
                 "disc: largest error of its state and impulse [m, rad, m/s, rad/s, N s]",
                 largest(np.array((*end.x[0], end.q[0], *end.v[0], end.omega[0], *end.J[0])) - truth), ROUND_OFF)
     end = on_a_slope(lesson, 3, 0.9)
@@ -643,14 +654,14 @@ def slips(lesson, check):
     disc, sphere = on_a_slope(lesson, 2, mu), on_a_slope(lesson, 3, mu)
     push = mu * MASS * INTO * ROLLING_DT
     truth = t * (DOWN - mu * INTO), ROLLING * R * push / INERTIA, push
-    check.agree("With less friction both slip with g (sin θ − μ cos θ).",
+    check.agree("With less friction both slip at g (sin θ − μ cos θ).",
                 "slipping disc and sphere: largest error [m/s, rad/s, N s]",
                 largest(np.array((sphere.v[0, 0], sphere.omega[0, 1], -sphere.J[0, 0])) - truth,
                         np.array((disc.v[0, 0], -disc.omega[0], -disc.J[0, 0])) - truth), ROUND_OFF)
 
 
 def turn_of_a_carried_ball(lesson, check):
-    """Roll a carried ball on a tilted floor at rest: it turns by its way over its radius."""
+    """Roll a carried ball on a tilted floor at rest: it rotates by its displacement over its radius."""
     still = np.zeros(3)
     ball = lesson.CarriedBall(MASS, np.full(3, INERTIA), R, 0.9, np.array([DOWN, 0.0, -G]), still, still, still)
     now = np.array([0.0, 0.0, R]), np.array(UPRIGHT), np.zeros(3), np.zeros(3)
@@ -658,7 +669,8 @@ def turn_of_a_carried_ball(lesson, check):
         now = lesson.carried_step(lambda t, x, q, v, omega, p: (p.m * p.gravity, np.zeros(3)), k * ROLLING_DT, *now,
                                   ROLLING_DT, ball)
     half_turn = 0.5 * now[0][0] / R
-    check.agree("A carried ball turns by its way over its radius.", "quaternion after 12 steps: largest error [-]",
+    check.agree("A carried ball rotates by its displacement over its radius.",
+                "quaternion after 12 steps: largest error [-]",
                 largest(now[1] - (np.cos(half_turn), 0.0, np.sin(half_turn), 0.0)), ROUND_OFF)
 
 
@@ -680,7 +692,7 @@ def puck_on_a_ball(lesson, ahead):
 
 
 def box_on_a_spring(lesson, ahead):
-    """Return the same for a box on a platform on a spring, at rest at first; the spring is unstretched at 0."""
+    """Return the same for a box on a platform on a spring, initially at rest; the spring is unstretched at 0."""
     def load(t, x, q, v, omega, p):
         F, tau = lesson.weight(t, x, q, v, omega, p)
         F[0, 1] -= STIFFNESS * x[0, 1]
@@ -701,7 +713,7 @@ def pushed(lesson, step, scene, dt, ahead, seconds):
 
 
 class Held(NamedTuple):
-    """A body on a support that lets it go."""
+    """A body on a support that releases it."""
     what: str                # as a sentence without its full stop
     scene: Callable          # (lesson, ahead [s]) → load, shapes, PileState, Bodies
     rate: float              # of the motion [1/s]
@@ -736,13 +748,13 @@ def about_release(lesson, check, held):
     check("J/dt is the force of the support at the beginning of the step.",
           f"third force in the run in which {what} [N]", law=held.force(2.0 * dt), found=force,
           within=small[1] ** 2 * force, saw=f"The third force is {force:.4f} N.")
-    check("From the impulses of steps a release is found with order 2 if the run has a leapfrog start.",
+    check("The impulses of the steps give the time of release with order 2 if the run has a leapfrog start.",
           f"order of the time at which {what} [-]", law=2.0, found=order, within=1.5 * small[0],
           saw=f"The order is {order:.2f} where {what}.")
-    check("The support lets go where the force that holds the contact would begin to pull.",
+    check("The support releases the body where the force of the contact would begin to pull.",
           f"time at which {what}, from two steps [s]", law=T, found=best, within=small[0] ** 3 * T,
           saw=f"After {best:.6f} s {what}.")
-    check("With v at the time of x the loop starts too fast by ½ a dt.",
+    check("If v belongs to the time of x, the loop starts too fast by ½ a dt.",
           f"change of the time at which {what} by that start, dt = {1e3 * dt:.1f} ms [s]",
           law=held.time(0.5 * held.a * dt) - T, found=plain[2] - led[2], within=small[1] ** 2 * T,
           saw=f"So {what} {1e3 * (led[2] - plain[2]):.3f} ms early.")
@@ -754,12 +766,13 @@ def about_release(lesson, check, held):
 
 @case("release-from-a-support", "Release from a support", compiled=False)
 def release_from_a_support(lesson, check):
-    """The loop is the leapfrog method if v is half a step before x at the start, and J/dt is the force at x.
+    """Compare the time of release and the force of a support with theory.
 
-    So the release has order 2; the next order is a relative k dt, where k is the rate of the motion.  The best of two
-    steps, (4 t(½dt) − t(dt))/3, then errs by (k dt)³ of the time.  If v belongs to the time of x, the loop follows a
-    start with v + ½ a dt, to (k dt)² of the time.  On a round support the first two forces share their sum wrongly,
-    because the gap is 0 only at the start.
+    The loop is the leapfrog method if v is half a step before x at the start, and J/dt is the force at x.  So the
+    release has order 2; the next order is a relative k dt, where k is the rate of the motion.  The best of two
+    steps, (4 t(½dt) − t(dt))/3, then errs by (k dt)³ of the time.  If v belongs to the time of x, the loop follows
+    a start with v + ½ a dt, to (k dt)² of the time.  On a round support the first two forces share their sum
+    wrongly, because the gap is 0 only at the start.
     """
     curves = [curve for held in supports() for curve in about_release(lesson, check, held)]
     return Picture("Time of release from the impulses of steps", "dt [ms]", "error [ms]", curves,
@@ -771,10 +784,10 @@ def release_from_a_support(lesson, check):
 
 @case("sweeps-until-settled", "Sweeps until the impulses have settled", compiled=False)
 def sweeps_until_settled(lesson, check):
-    """Sweeps that end when they change little leave ρ/(1 − ρ) times the last change, with the contraction factor ρ.
+    """Compare the error of sweeps that end when they change little with ρ/(1 − ρ) times the last change.
 
-    For n discs on top of each other ρ = cos²(π/(2n)): the floor does not move, so the lowest contact has half the
-    inverse mass of the others.  The last change lies between ρ and 1 times the threshold.
+    ρ is the contraction factor.  For n stacked discs ρ = cos²(π/(2n)): the floor does not move, so the lowest
+    contact has half the inverse mass of the others.  The last change lies between ρ and 1 times the threshold.
     """
     n, dt, ts, settled = 6, 1e-3, (1, 2, 4, 8, 16, 32), lesson.settled_contact_step_2d
     make = lambda heights: round_bodies(lesson, [(0.0, y) for y in heights], R, MASS, INERTIA, (0.0, -G), 0.0, 1)
@@ -783,24 +796,26 @@ def sweeps_until_settled(lesson, check):
     left, alone = ([wrong(after(steps, step)) for steps in ts] for step in (settled, lesson.contact_step_2d))
     rho = np.cos(np.pi / (2 * n)) ** 2
     bound = lesson.SETTLED * rho / (1.0 - rho)
-    check("A first step, which knows no impulses, leaves as much as the threshold and the contraction say.",
+    check("A first step, without stored impulses, leaves the error that the threshold and the contraction predict.",
           "error of the forces under six discs over SETTLED ρ/(1 − ρ) [-]",
           law=0.5 * (1.0 + rho), found=left[0] / bound, within=0.5 * (1.0 - rho) + 0.01,
           saw=f"It leaves {left[0]:.1e} of the largest force.")
-    check.agree("Later steps, which know the impulses of the last one, leave less.",
+    check.agree("Later steps, which start from the last impulses, leave less.",
                 "largest error of the forces after 2 to 32 steps [-]", max(left[1:]), bound)
     check.agree("Then the discs rest.", "speed of the discs after 60 steps, over g dt [-]",
                 largest(after(60, settled).v) / (G * dt), bound)
     above, p = make([R + 0.005])
     falling = above._replace(v=np.array([(0.0, -0.1), (0.0, 0.0)]))
     fallen = above.x[0, 1] - advanced(lesson, DISC, falling, p, dt, 1, step=settled).x[0, 1]
-    check.agree("What is about to land is not stopped before.", "way of a falling disc, 5 mm above the floor: "
+    check.agree("A body that is about to land is not stopped before contact.",
+                "way of a falling disc, 5 mm above the floor: "
                 "largest error, relative [-]", fallen / (dt * (0.1 + G * dt)) - 1.0, ROUND_OFF)
     percent = lambda errors: 100.0 * np.array(errors)
     return Picture("Forces under six discs", "step", "error of the forces over the largest [%]", [
         series("sweeps until settled", ts, percent(left), DOTS),
         series("one sweep per step", ts, percent(alone), DOTS)],
-        "Sweeps that go on until little changes find the forces in the first step. With one sweep per step dozens of "
+        "Sweeps that continue until little changes find the forces in the first step. With one sweep per step dozens "
+        "of "
         "steps go by, in which the discs sink into each other.")
 
 
@@ -818,12 +833,12 @@ def slipping_ball(lesson, spin, mu, dt, steps):
 
 @case("turns-per-step", "A ball that turns many times per step", compiled=False)
 def turns_per_step(lesson, check):
-    """A ball put down with the spin Ω slips for 2RΩ/7μg with v = μ g t.  Then it rolls with v = 2RΩ/7, for any Ω dt.
+    """Compare a ball put down with the spin Ω, which slips for 2RΩ/7μg and then rolls with v = 2RΩ/7, with theory.
 
-    A ball looks the same from every side, so that the turn of a step changes neither the contact nor the impulse.
-    Friction is constant while it slips, and J_t < μ J_n in the step in which it stops slipping, which conserves the
-    angular momentum about the contact.  μ is chosen for a hundred steps of slip.
-    *Source:* Coriolis 1835, with I = 2/5 m R².
+    While it slips v = μ g t.  A ball looks the same from every side, so the rotation of a step changes neither the
+    contact nor the impulse: the result holds for any Ω dt.  Friction is constant while it slips, and J_t < μ J_n in
+    the step in which it stops slipping, which conserves the angular momentum about the contact.  μ is chosen for a
+    hundred steps of slip.  *Source:* Coriolis 1835, with I = 2/5 m R².
     """
     dt, R, ends = 0.01, RADIUS, []
     for turn in SPINS:
@@ -835,7 +850,7 @@ def turns_per_step(lesson, check):
                     f"{name}: error of v and R ω over R Ω [-]",
                     largest(half.v[0, 0] - mu * G * 50 * dt,
                             R * half.omega[0, 1] - R * spin + 2.5 * mu * G * 50 * dt) / (R * spin), ROUND_OFF)
-        check.agree("In the end it rolls with 2/7 of the speed of its surface.",
+        check.agree("Finally it rolls at 2/7 of the speed of its surface.",
                     f"{name}: error of v and R ω over R Ω in the end [-]",
                     largest(np.array((end.v[0, 0], R * end.omega[0, 1])) / (R * spin) - 2.0 / 7.0), ROUND_OFF)
     fine = np.logspace(-1.0, 2.0, 40)
@@ -843,7 +858,7 @@ def turns_per_step(lesson, check):
                    "log₁₀ of its speed in the end [m/s]", [
                        series("theory, 2/7 R Ω", np.log10(fine), np.log10(2.0 / 7.0 * R * fine / dt), LINE),
                        series("measured", np.log10(SPINS), np.log10(ends), DOTS)],
-                   "The speed is right at eight turns per step as at half a radian. The orientation is not: "
+                   "The speed is as accurate at eight turns per step as at half a radian. The orientation is not: "
                    "quaternion_update turns by 2 arctan(½ω dt), which is at most half a turn per step.")
 
 
@@ -855,7 +870,7 @@ THIN = 0.01                              # half thickness of two plates [m]
 
 
 def angle_found():
-    """Return the angle [rad] at which the bar comes within the margin of the wall's inner corner, at r:
+    """Return the angle [rad] at which the bar comes within the margin of the wall's inner corner, at r.
 
     r sin θ = w cos θ + b + margin,     half thicknesses b of the bar and w of the wall
     """
@@ -864,12 +879,12 @@ def angle_found():
 
 
 def one_that_moves(lesson, x, angle, half, margin):
-    """Make (PileState, Bodies) of two boxes, the second of which nothing moves; no gravity."""
+    """Make (PileState, Bodies) of two boxes, the second of which is immovable, without gravity."""
     return lesson.make_bodies_2d(x, [angle, 0.0], [1.0, np.inf], [0.3, np.inf], half, [], (0.0, 0.0), 0.0, 20, margin)
 
 
 def passes(lesson, state, p, dt, steps, passed):
-    """Return (1 if the boxes pass each other unseen, 1 if advance_contact then ends in an error)."""
+    """Return (1 if the boxes pass each other undetected, 1 if advance_contact then ends in an error)."""
     if not passed(stepped(lesson, BOX, state, p, dt, steps)):
         return 0, 0
     try:
@@ -880,7 +895,7 @@ def passes(lesson, state, p, dt, steps, passed):
 
 
 def turns_of_a_bar(lesson, omega, dt):
-    """Return (misses, errors) of 4 starts, just before the wall is near; a miss goes on as if there were no wall."""
+    """Return (misses, errors) of 4 starts, just before the wall is near; after a miss there is no wall."""
     ends, theta = [], angle_found()
     for k in range(4):
         start = -theta * (1.0 + 1e-9) - k / 4.0 * omega * dt
@@ -891,9 +906,9 @@ def turns_of_a_bar(lesson, omega, dt):
 
 
 def flights_of_a_plate(lesson, ways):
-    """Return (passes, errors) of a plate that flies towards another one, by these ways per step in half thicknesses.
+    """Return (passes, errors) of a plate that flies towards another one, at these half thicknesses per step.
 
-    It begins just outside the margin, a half of its half thickness.
+    It begins just outside the margin, at half of its half thickness.
     """
     ends, dt = [], 0.01
     for way in ways:
@@ -906,30 +921,31 @@ def flights_of_a_plate(lesson, ways):
 
 @case("turns-through-a-wall", "A bar that turns beside a thin wall", compiled=False)
 def turns_through_a_wall(lesson, check):
-    """A bar turns about its centre.  Its face meets the inner corner of a wall, which is parallel to it at θ = 0.
+    """Compare the longest safe step of a bar that rotates beside a thin wall with theory.
 
-    The loop finds the contact where the gap is at most the margin, which is for |θ| ≤ θ*:
+    The bar rotates about its centre.  Its face meets the inner corner of a wall, which is parallel to it at θ = 0.
+    The loop detects the contact if the gap is at most the margin, which is for |θ| ≤ θ*:
         r sin θ* = w cos θ* + b + margin
-    Found at θ < 0 it stops the bar; behind the middle it is found on the wrong side, and lets the bar go on.  So no
-    start misses the wall if ω dt ≤ θ*: dt = (w + b + margin)/(r ω) to first order, half of the thickness over the speed
-    of the tip.  Twice that step and more can miss it altogether.
+    Detected at θ < 0, the contact stops the bar.  Behind the middle it is detected on the wrong side, and does not
+    stop the bar.  So no start misses the wall if ω dt ≤ θ*: dt = (w + b + margin)/(r ω) to first order, half of the
+    thickness over the speed of the tip.  Twice that step and more can miss it altogether.
     """
     spins, edges, theta = (5.0, 80.0), [], angle_found()
     for omega in spins:
         edges.append(bisect(lambda dt, omega=omega: turns_of_a_bar(lesson, omega, dt)[0] > 0, 0.3 * theta / omega,
                             4.0 * theta / omega))
-        check("No start misses the wall if the bar turns by at most the angle at which it comes near, in a step.",
+        check("No start misses the wall if the bar rotates per step by at most the angle at which it comes near.",
               f"longest step that misses no wall, ω = {omega:g} rad/s [s]",
               law=theta / omega, found=edges[-1], within=1e-5 * theta / omega,
               saw=f"At {omega:g} rad/s the bar first passes at a step of {1e3 * edges[-1]:.3g} ms.")
     shares = (1.1, 1.5, 2.1, 5.0, 20.0)
     misses, errors = np.sum([turns_of_a_bar(lesson, 20.0, share * theta / 20.0) for share in shares], axis=0)
-    check("No bar passes in silence: advance_contact ends in an error where the loop would miss the wall.",
+    check("No bar passes undetected: advance_contact ends in an error if the loop would miss the wall.",
           f"errors of {misses:.0f} runs that miss the wall, with 1.1 to 20 times that step [-]",
           law=max(misses, 1), found=errors, within=0.0, saw=f"{errors:.0f} of {misses:.0f} such runs end in an error.")
     ways = np.linspace(2.05, 8.05, 13)
     passed, errors = flights_of_a_plate(lesson, ways)
-    check("A plate behind the middle of another one is let go on the far side, and this is an error, too.",
+    check("A plate beyond the middle of another one would leave on the far side, and this is an error, too.",
           f"plates that end in an error, of {ways.size} that fly 2 to 8 half thicknesses per step [-]",
           law=np.sum(ways > 2.51), found=errors, within=0.0,
           saw=f"{passed} of {ways.size} plates pass, and {errors} end in an error.")
@@ -937,7 +953,7 @@ def turns_through_a_wall(lesson, check):
     return Picture("A bar beside a thin wall", "log₁₀ of ω [rad/s]", "log₁₀ of the longest step [ms]", [
         series("theory, θ*/ω", np.log10(fine), np.log10(1e3 * theta / fine), LINE),
         series("measured", np.log10(spins), np.log10(1e3 * np.array(edges)), DOTS)],
-        "Above the line a bar can turn through the wall between two steps, and advance_contact says so.")
+        "Above the line a bar can rotate through the wall between two steps, and advance_contact raises an error.")
 
 
 # ---------------------------------------------------------------------------------------------- forces
@@ -948,7 +964,7 @@ LOAD = 100.0                             # on a table or a box [N]
 
 
 def tension(lesson, dt, steps):
-    """Return (angles [rad], forces [N] along the rod) of a pendulum of 2 kg, let go at SWING, after each step."""
+    """Return (angles [rad], forces [N] along the rod) of a pendulum of 2 kg, released at SWING, after each step."""
     place = CENTRE * np.array([np.sin(SWING), -np.cos(SWING)])
     state, p = lesson.make_bodies_2d([place, (0.0, 0.0)], [SWING, 0.0], [2.0, np.inf], [ROD, np.inf],
                                      np.full((2, 2), 0.1), [], (0.0, -G), 0.0, 1, 0.01)
@@ -988,10 +1004,10 @@ def feet(lesson, place, dt):
 
 @case("forces-of-supports", "Forces in a rod and under the legs of a table", compiled=False)
 def forces_of_supports(lesson, check):
-    """The rod of a pendulum bears m g cos θ + m l ω²; joint_step_2d leaves an error of order 2.
+    """Compare forces of supports with theory: the rod of a pendulum bears m g cos θ + m l ω².
 
-    Four legs are one more than the laws of equilibrium determine.  The shortest of all possible forces is that of
-    equally stiff legs, whose shares are linear in the place of the foot:
+    joint_step_2d leaves an error of order 2.  Four legs are one more than the laws of equilibrium determine.  The
+    forces of smallest norm are those of equally stiff legs, which are linear in the place of the foot:
         N_k = W (1/4 + x x_k/Σx² + y y_k/Σy²),      the load W at (x, y)
     Two feet on a floor are determined:  N = W (1/2 ± x/b),  b their distance.
     """
@@ -1005,14 +1021,14 @@ def forces_of_supports(lesson, check):
     check("The force has the order of the step.", "order of the force of a rod [-]", law=2.0, found=order,
           within=(rate * 0.02) ** 2, saw=f"The order is {order:.2f}.")
     shares = lambda place: LOAD * (0.25 + FEET @ (place / np.sum(FEET**2, axis=0)))
-    check.agree("Four legs share a load as four equal springs.", "error of the forces of four legs, 100 N [N]",
+    check.agree("Four legs share a load like four equal springs.", "error of the forces of four legs, 100 N [N]",
                 largest(*(legs(lesson, place) - shares(place)[:, None] * np.eye(3)[2]
                           for place in ((0.0, 0.0), (0.2, 0.0), (0.25, 0.15), (-0.1, 0.3)))), 100.0 * ROUND_OFF)
-    check.agree("Two feet share a load by their levers.", "error of the forces of two feet, 100 N [N]",
+    check.agree("Two feet share a load by the law of the lever.", "error of the forces of two feet, 100 N [N]",
                 largest(*(feet(lesson, x, 0.01) - LOAD * np.array((0.5 - x, 0.5 + x)) for x in (0.0, 0.2, 0.4))),
                 100.0 * ROUND_OFF)
     swing = np.linspace(-SWING, SWING)
     return Picture("The force in the rod of a pendulum", "angle [rad]", "force [N]", [
         series("theory, m g cos θ + m l ω²", swing, tension_at(swing), LINE),
         series("joint_forces_2d, dt = 20 ms", coarse, far, DOTS)],
-        "A pendulum that is let go at 69° pulls in its lowest position with twice its weight and more.")
+        "A pendulum that is released at 69° pulls at its lowest position with more than twice its weight.")

@@ -1,7 +1,7 @@
-"""Forces of lesson 2 that no scene runs, where each of their terms matters.
+"""Forces of lesson 2 that no scene runs, in cases where each of their terms matters.
 
 A force is compared with the derivative of its energy, taken by a step along the imaginary axis, which has no
-truncation error worth naming.  *Source:* Squire and Trapp 1998 for that derivative.
+noticeable truncation error.  *Source:* Squire and Trapp 1998 for that derivative.
 """
 
 import numpy as np
@@ -29,7 +29,10 @@ def length(r):
 
 @case("forces", "Forces are derivatives of energies", compiled=False)
 def forces(lesson, check):
-    """U = −G m_a m_b/r for gravity; U = ½k C² for a soft constraint, whose damper takes k_d Ċ² of power."""
+    """Compare forces with derivatives of energies: U = −G m_a m_b/r for gravity, U = ½k C² for a soft constraint.
+
+    The damper of the constraint takes k_d Ċ² of power.
+    """
     rng = np.random.default_rng(21)
     errors = {name: [] for name in ("gravity", "soft", "power", "contact", "free")}
     for _ in range(CASES):
@@ -69,8 +72,9 @@ def forces(lesson, check):
 
 @case("lecture-step", "The lecture's step of a mass-spring-damper system", compiled=False)
 def lecture_step(lesson, check):
-    """Two masses on a line and a fixed end, computed by hand: v += dt a,  x += dt (v_old + v_new)/2.
+    """Compare the lecture's step with a computation by hand: v += dt a,  x += dt (v_old + v_new)/2.
 
+    Two masses are on a line with a fixed end.
     a₁ = g + (wind − k_v v₁ − T₁ + T₂)/m₁,  a₂ = g + (wind − k_v v₂ − T₂)/m₂,  T = k (l − rest) + k_d l̇.
     """
     rng, worst = np.random.default_rng(22), 0.0
@@ -101,7 +105,10 @@ def angle_between(r_a, r_c):
 
 @case("angular-spring-forces", "An angular spring with unequal arms", compiled=False)
 def angular_spring(lesson, check):
-    """U = ½k(θ − rest)² for arms of any length, any angle and any rest angle; θ − rest within half a turn."""
+    """Compare an angular spring with U = ½k(θ − rest)² for arms of any length, any angle and any rest angle.
+
+    θ − rest is within half a turn.
+    """
     rng, worst, force, moment = np.random.default_rng(23), 0.0, 0.0, 0.0
     for _ in range(CASES):
         places, angle, k = rng.normal(size=6), rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 2.0)
@@ -120,15 +127,16 @@ def angular_spring(lesson, check):
             moment = np.maximum(moment, abs(np.sum(x[::2] * F[:, 1] - x[1::2] * F[:, 0])) / largest)
     check.agree("The forces on both ends and on the hinge are the derivative of ½k(θ − rest)².",
                 "forces: largest relative error [-]", worst, 1e-10)
-    check.agree("They add up to nothing.", "sum of the forces over the largest [-]", force, ROUNDED)
+    check.agree("They add up to zero.", "sum of the forces over the largest [-]", force, ROUNDED)
     check.agree("They have no moment.", "sum of the moments over the largest force [m]", moment, ROUNDED)
 
 
 @case("large-step", "The linearly implicit step of a mesh", compiled=False)
 def large_step(lesson, check):
-    """(M + h k_v − h ∂F/∂v − h² ∂F/∂x) Δv = h (M a + h ∂F/∂x v), solved densely, with derivatives of energies.
+    """Compare the large step with (M + h k_v − h ∂F/∂v − h² ∂F/∂x) Δv = h (M a + h ∂F/∂x v), solved densely.
 
-    ∂F/∂x of a compressed spring has a sideways push, which the method leaves out: it keeps the positive part of K.
+    The derivatives are those of energies.  ∂F/∂x of a compressed spring has a sideways push, which the method
+    leaves out: it keeps the positive part of K.
     """
     rng, stiffness, steps = np.random.default_rng(24), 0.0, 0.0
     pairs = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 4), (3, 4)])
@@ -171,7 +179,7 @@ def large_step(lesson, check):
 
 @case("grids", "Springs of a grid", compiled=False)
 def grids(lesson, check):
-    """Two nodes are joined if their rows and columns differ by an offset: counted over all pairs of nodes."""
+    """Count all pairs of nodes that are joined: their rows and columns differ by an offset."""
     wrong = 0
     for rows, cols in ((1, 1), (1, 4), (3, 2), (4, 5)):
         place = [divmod(k, cols) for k in range(rows * cols)]
@@ -187,7 +195,7 @@ def grids(lesson, check):
                 "grids with other pairs [of 20]", wrong, 0.0)
     check.agree("Threads are 1, diagonals √2 and every second node 2 apart.", "sum of the offsets: error [-]",
                 found, ROUNDED)
-    check.agree("A quantity that is drawn at random is spread evenly about its value.",
+    check.agree("A quantity that is drawn at random is uniformly distributed about its value.",
                 "least, middle and largest draw: error [N/m]", np.max(np.abs(drawn)), ROUNDED)
 
 
@@ -202,7 +210,7 @@ STRAIN, MASS = 0.01, 0.01    # of all threads at the start [-]; of a point [kg]
 def slid(lesson, step, k):
     """Return (x, v, strains) of a stretched cloth of 4 by 4 points after a second on a slope without friction.
 
-    y is the normal of the slope.  After each step the slope takes what is below it, and the velocity into it.
+    y is the normal of the slope.  After each step the slope pushes points below it out, and stops the velocity into it.
     """
     grid = 0.1 * np.stack((np.tile(np.arange(4.0), 4), np.zeros(16), np.repeat(np.arange(4.0), 4)), axis=1)
     pairs = lesson.grid_pairs(4, 4, lesson.STRUCTURAL + lesson.SHEAR)
@@ -228,25 +236,25 @@ def lengths(x, network):
 
 @case("stiff-cloth-on-a-slope", "A stiff cloth on a slope, in steps of a sixtieth of a second", compiled=False)
 def stiff_cloth_on_a_slope(lesson, check):
-    """A cloth slides by ½ g sin θ t (t + dt), however stiff its threads are, and loses their strain.
+    """Check that a cloth slides by ½ g sin θ t (t + dt) for any stiffness of its threads, and loses their strain.
 
-    A translation strains no thread, so that it moves as one point does by symplectic Euler.  Implicit Euler multiplies
-    an oscillation by (1 + (ω dt)²)^(−1/2) per step, and the slowest one has ω² = (2 − √2) k/m, that of four points in
-    a row.  Symplectic Euler is stable for ω dt < 2 only.  The fastest ω² is above (2 + √2) k/m, which is too fast for
-    all three cloths.  Conjugate gradients end at 1e-10 of the right-hand side.
+    A translation strains no thread, so the cloth moves as one point does by symplectic Euler.  Implicit Euler
+    multiplies an oscillation by (1 + (ω dt)²)^(−1/2) per step, and the slowest one has ω² = (2 − √2) k/m, that of
+    four points in a row.  Symplectic Euler is stable for ω dt < 2 only.  The fastest ω² is above (2 + √2) k/m,
+    which is too fast for all three cloths.  Conjugate gradients end at 1e-10 of the right-hand side.
     """
     t = FRAME * FRAMES
     way, exploded = 0.5 * G * np.sin(TILT) * t * (t + FRAME), 0
     for k in STIFF:
         x, _, strain = slid(lesson, lesson.implicit_spring_network_step, k)
         left = STRAIN * (1.0 + (2.0 - np.sqrt(2.0)) * k / MASS * FRAME**2) ** (-0.5 * FRAMES)
-        check.agree("A cloth slides like a point, however stiff it is.",
+        check.agree("A cloth slides like a point, for any stiffness.",
                     f"way of the centre in 1 s less ½ g sin θ t (t + dt), k = {k:g} N/m [m]",
                     abs(x[:, 0].mean() - way) + np.max(np.abs(x[:, 1])), 1e-10 * way)
-        check.agree("A large step takes the strain of stiff threads away.",
+        check.agree("A large step removes the strain of stiff threads.",
                     f"largest strain after 1 s, k = {k:g} N/m [-]", np.max(np.abs(strain)), left + ROUNDED)
         with np.errstate(all="ignore"):
             exploded += not np.max(np.abs(slid(lesson, explicit, k)[2])) < 1.0
-    check("An explicit step of this length tears every one of these cloths.",
+    check("With explicit steps of this length every one of these cloths diverges.",
           "cloths that symplectic Euler strains by more than 1 [of 3]", law=len(STIFF), found=exploded, within=0.0,
-          saw=f"It tears {exploded} of {len(STIFF)}.")
+          saw=f"{exploded} of {len(STIFF)} cloths diverge.")

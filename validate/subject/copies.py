@@ -1,4 +1,4 @@
-"""Which copy of the workbook is used, where there are several and one environment.
+"""Choice of the copy of the workbook if there are several in one environment.
 
 An environment is installed from one copy.  A notebook belongs to the copy in whose folder `notebooks` it lies, and uses
 that one.  A copy that stands on Python's path is used as it is.
@@ -21,16 +21,18 @@ def copy_around(place):
 
 
 def meant_here(of):
-    """The folder that a command means by `lessons`, where it is not that of this copy: that of the copy around the
-    working folder.  Everything else means what it says.
+    """Return the folder that a command means by `lessons` if it is not that of this copy.
+
+    It is that of the copy around the working folder.  Every other name is returned unchanged.
     """
     around = copy_around(Path.cwd())
     return str(around / "lessons") if of == "lessons" and around not in (None, ROOT) else of
 
 
 def doubtful(folder):
-    """The folder of some lessons, if one might take another for it: they are not those of the copy around the working
-    folder, and no option or variable names them.
+    """Return the folder of some lessons if it may be mistaken for another one, else "".
+
+    Such lessons are not those of the copy around the working folder, and no option or variable names them.
     """
     around = copy_around(Path.cwd())
     own = around and around == ROOT and Path(folder).resolve() == ROOT / "lessons"
@@ -38,7 +40,7 @@ def doubtful(folder):
 
 
 def use_the_one_of_this_notebook():
-    """Import `validate` once more, from the copy of the workbook whose folder of notebooks is the working folder."""
+    """Import `validate` again, from the copy of the workbook whose folder of notebooks is the working folder."""
     here = Path.cwd()
     other = copy_around(here)
     if here.name != "notebooks" or other is None or other in (ROOT, here):

@@ -1,4 +1,4 @@
-"""Make lessons/ from solutions/: the same modules with the answers taken out; and needs.json, which calls which.
+"""Generation of lessons/ from solutions/, the same modules without answers, and of needs.json, the calls in them.
 
 `python -m validate.subject.generate` writes them, `--check` only says whether they are what it would write.
 """
@@ -20,11 +20,10 @@ FUNCTION = re.compile(r"^def (\w+)", re.M)
 
 
 def stub(source, solved=(), elsewhere=None):
-    """The text of a lesson: every answer but the solved ones replaced by a NotImplementedError that names exercise
-    and function.
+    """Return the text of a lesson with every answer but the solved ones replaced by a NotImplementedError.
 
-    It imports the siblings named in `elsewhere` from solutions, and the others from beside it; without `elsewhere`,
-    all from solutions.
+    The error names exercise and function.  The text imports the siblings named in `elsewhere` from solutions, and the
+    others from beside it; without `elsewhere`, all from solutions.
     """
     def empty(match):
         function = FUNCTION.findall(source, 0, match.start())[-1]

@@ -1,4 +1,4 @@
-"""A subject's file that does not load, or that lacks a function: what is said about it, and what stands in for it.
+"""Files of a subject that do not load or lack a function: the message about them, and their stand-ins.
 
 A student's file may hold anything.  Every fault ends in an Unloadable that names file, line, reason and remedy.
 """
@@ -108,7 +108,10 @@ def lacks(file, name):
 
 
 def part(module, name):
-    """What a scene or a lesson takes from a lesson.  Raises Unloadable where the lesson's file has no such thing."""
+    """Return the object that a scene or a lesson takes from a lesson.
+
+    Raises Unloadable if the lesson's file lacks it.
+    """
     if name not in vars(module):
         file = Path(module.__file__)
         raise Unloadable(f"{file.parent.name}/{file.name}", f"it has no {name}", PUT_BACK)
@@ -124,7 +127,7 @@ def words_of(error):
 
 
 def _place(file, error):
-    """(file, "line 12") at which it happened.  Where bytes are no text Python may name no line, or a wrong one."""
+    """Return (file, "line 12") of an error.  If bytes are no text, Python may name no line, or a wrong one."""
     if isinstance(error, SyntaxError) and file.is_file():
         at_fault = Path(error.filename) if error.filename and Path(error.filename).is_file() else file
         line = _line_without_text(at_fault.read_bytes()) or error.lineno

@@ -1,4 +1,4 @@
-"""Load any lesson, plain or compiled, from a chosen subject, and bind scenes to it.
+"""Lessons of a chosen subject, plain or compiled, and the scenes bound to them.
 
 A *module set* is one consistent set of modules: the lessons of a subject (`solutions`, `lessons` or a folder) and the
 given modules that call them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh
@@ -23,9 +23,11 @@ import importlib
 import inspect
 import os
 import re
+import shutil
 import sys
 import traceback
 import types
+import uuid
 import warnings
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
@@ -35,7 +37,7 @@ from solutions.checks import BadInput
 
 from ..scene import Scene, field_names
 from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
-from .numba_twins import CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
+from .numba_twins import CACHE, CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
@@ -98,8 +100,9 @@ def original(name):
 
 
 def withheld(lesson, folder=SOLUTIONS):
-    """Functions of a lesson that still wait for their body:
-    in solutions/ none, but all in a copy of the workbook without worked answers.
+    """Return the functions of a lesson that still wait for their body.
+
+    In solutions/ there is none, but a copy of the workbook without worked answers has all of them.
     """
     text = (Path(folder) / f"{lesson}.py").read_text(encoding="utf-8", errors="replace")
     return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', text))
@@ -142,7 +145,7 @@ def written_scene(name):
 
 
 def called_by_scene(name):
-    """{(lesson, function)} of what a scene calls of lessons, in its file and in its `run`, if that is elsewhere."""
+    """Return {(lesson, function)} that a scene calls of lessons, in its file and in its `run`, if that is elsewhere."""
     texts = scene_files()[name].read_text(encoding="utf-8"), inspect.getsource(written_scene(name).run)
     return {call for text in texts for call in called_of_lessons(ast.parse(text))}
 
@@ -160,8 +163,9 @@ def load_lessons_of(name, scene, lessons):
 
 
 def called_of_lessons(tree):
-    """{(lesson, function)} of what source calls of `lessons`: lessons.friction.event_step, and friction.event_step
-    where the same function says  friction = lessons.friction.
+    """Return {(lesson, function)} of what source calls of `lessons`.
+
+    That is lessons.friction.event_step, and friction.event_step if the same function sets  friction = lessons.friction.
     """
     found = set()
     for function in tree.body:
@@ -191,7 +195,7 @@ def _lesson_named(node):
 
 
 def in_course_order(names):
-    """Scenes in the order of the course."""
+    """Return scenes in the order of the course."""
     lessons = lesson_names()
     return sorted(set(names), key=lambda name: (lessons.index(bind_scene(name).lesson), name))
 
@@ -209,7 +213,10 @@ def bind(lesson, of="solutions", compiled=False):
 
 
 def bind_scene(scene, of="solutions", compiled=False):
-    """The Scene of that name with its `lessons` and its `law`.  Raises BadInput if it or a lesson of it is broken."""
+    """Return the Scene of that name with its `lessons` and its `law`.
+
+    Raises BadInput if it or a lesson of it is broken.
+    """
     if scene not in scene_names():
         raise BadInput(f"scene {scene!r}", "unknown", "`validate list` names them all")
     try:
@@ -235,14 +242,14 @@ def module_set(of="solutions", compiled=False):
 
 
 def digest_of(folder):
-    """Fingerprint of every file that a module set of this subject is made of, and of the compiler."""
+    """Return a fingerprint of every file of which a module set of this subject consists, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
     ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
     return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.rglob("*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
 def fingerprint(files, more=""):
-    """Twelve digits that change with any of these files."""
+    """Return twelve digits that change with any of these files."""
     text = b"".join(str(path).encode() + path.read_bytes() for path in sorted(files) if path.is_file())
     return hashlib.sha256(text + more.encode()).hexdigest()[:12]
 
@@ -265,6 +272,27 @@ def _module_set(folder, compiled, digest):
     if compiled and not can_compile():
         raise BadInput("numba", "not installed", "install it, or use --plain")
     return CompiledModules(folder, digest) if compiled else ModuleSet(folder, digest)
+
+
+def compiled_twice(of="solutions"):
+    """Yield two compiled module sets of a subject, one after the other.
+
+    The first finds an empty cache, and the second what the first has left there.
+    """
+    digest = f"anew-{uuid.uuid4().hex[:12]}"
+    try:
+        for _ in range(2):
+            forget_modules(f"_compiled_{digest}")
+            yield CompiledModules(subject_folder(of), digest)
+    finally:
+        forget_modules(f"_compiled_{digest}")
+        shutil.rmtree(CACHE / digest, ignore_errors=True)
+
+
+def forget_modules(package):
+    """Forget that a package and what lies below it were imported."""
+    for name in [name for name in sys.modules if name == package or name.startswith(f"{package}.")]:
+        del sys.modules[name]
 
 
 def record_of(module, name):
@@ -330,7 +358,7 @@ def _siblings(file):
 
 
 def _meant_by_given_code(folder):
-    """The lessons that given code takes from a subject: all that its own files do not take from the worked ones."""
+    """Return the lessons that given code takes from a subject: all that its files do not take from the worked ones."""
     texts = [file.read_text(encoding="utf-8", errors="replace") for file in folder.glob("*.py") if file.is_file()]
     named = {name for text in texts for name in re.findall(r"^from solutions\.(\w+) import", text, re.M)}
     here = [name for name in lesson_names() if (folder / f"{name}.py").is_file()]
@@ -462,7 +490,7 @@ class ModuleSet(Binding):
 
     @cached_property
     def copied(self):
-        """Names of the given modules that call the subject's exercises, directly or through each other."""
+        """Return the names of the given modules that call the subject's exercises, directly or through each other."""
         imported = {name: {self._home(value)[1] for value in vars(original(name)).values()
                            if isinstance(value, types.FunctionType | types.ModuleType)} for name in given_modules()}
         found, before = set(), None
@@ -503,7 +531,7 @@ class ModuleSet(Binding):
         return (source, origin) if source in ("solutions", "subject") else ("", "")
 
     def _stays(self, origin):
-        """Whether something imported from there is what it should be: what a subject's file takes from a lesson is."""
+        """Return whether an object imported from there is already the right one, as from a lesson beside the file."""
         return origin not in self.copied
 
     def _redirected(self, package, module):
@@ -604,7 +632,10 @@ class CompiledModules(ModuleSet):
         return self._outside(name, self._with_companion(name, self.solution(name)), vars(PLAIN.lesson(name)))
 
     def _law(self, name, scene):
-        """The law of a scene: a lesson's or a given one is shared with others, and one of its own is compiled here."""
+        """Return the law of a scene: a lesson's or a given one is shared with others.
+
+        One of its own is compiled here.
+        """
         law = scene.acceleration and scene.acceleration(Lessons(self._inside))
         if law is None or hasattr(law, "py_func"):
             return law
@@ -622,7 +653,7 @@ class CompiledModules(ModuleSet):
 
 @cache
 def checks_of(file, digest):
-    """{function: the check of its record, as a plain function of the same arguments} of the functions in a file."""
+    """Return {function: the check of its record, as a plain function of the same arguments} of a file's functions."""
     found, space = {}, {CHECK: vars(original(RECORDS))[CHECK]}
     for function in ast.parse(Path(file).read_text(encoding="utf-8", errors="replace")).body:
         for line in function.body if isinstance(function, ast.FunctionDef) else ():

@@ -1,4 +1,4 @@
-"""Which exercise calls which others: read from the worked answers, and looked up where there are none.
+"""Calls between exercises: read from the worked answers, or looked up if there are none.
 
 `needs.json` has {exercise: its lesson, its function, whether it is a formula to find, the exercises that it calls}.
 An exercise also calls another one through a given function, or if it passes the other one on as an argument.
@@ -19,7 +19,7 @@ FIND = "*Find*"              # in the docstring of an exercise whose formula is 
 
 @lru_cache(maxsize=1)
 def table():
-    """{exercise: {"lesson", "function", "needs"}} in the order of the course; empty where the file is missing."""
+    """Return {exercise: {"lesson", "function", "needs"}} in the order of the course; empty if the file is missing."""
     return json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
 
 
@@ -34,7 +34,7 @@ def of_lesson(lesson):
 
 
 def needed(exercise, folder=None):
-    """All exercises that this one calls, those that they call included, in the order of the course.
+    """Return all exercises that this one calls, directly or indirectly, in the order of the course.
 
     folder: where the answers are.  A lesson there may import another lesson from solutions, where it is worked.
     Then nothing of that lesson is needed.
@@ -58,7 +58,7 @@ def siblings(folder, lesson):
 
 
 def states(outcomes):
-    """{exercise: passed, not yet or not attempted}, the worst of its tests, from (exercise, status) of each test."""
+    """Return {exercise: passed, not yet or not attempted}, the worst of (exercise, status) of its tests."""
     worst, found = ["passed", "not attempted", "not yet"], {}
     for number, status in outcomes:
         found[number] = max(found.get(number, "passed"), status, key=worst.index)

@@ -1,4 +1,4 @@
-"""How a plain function is compiled with numba: the compiled twins, their cache, and four changes to numba itself.
+"""Compilation of plain functions with numba: the compiled twins, their cache, and what is changed in numba itself.
 
 A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
 looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
@@ -49,23 +49,8 @@ def compiled(function, name, cache, inline="never"):
     from numba import config, njit
     config.CACHE_DIR = cache
     twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(function)
-    _forget_literals(twin)
     twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, name)))
     return twin
-
-
-def _forget_literals(twin):
-    """Let callers compile a twin once for all strings and whole numbers that they write down.
-
-    numba would compile it for each of them: every check of the input again for the name of each thing that it checks.
-    """
-    from numba.core.types import unliteral
-    fold = twin._compiler.fold_argument_types
-
-    def folded(arguments, keywords):
-        signature, kinds = fold(arguments, keywords)
-        return signature, tuple(map(unliteral, kinds))
-    twin._compiler.fold_argument_types = folded
 
 
 class CachedDispatch:
@@ -148,26 +133,6 @@ def _pass_checked_functions_on():
 
 
 @cache
-def _shorten_broadcast_error():
-    """Replace numba's detailed message for `rows[k] = row` by a short one:
-    compiling the detailed one dominates compile time.
-    """
-    from numba.extending import overload
-    from numba.np import arrayobj
-
-    def shapes_differ(src_shapes, index_shape):
-        """Stands in for numba's function of that purpose."""
-
-    @overload(shapes_differ)
-    def _(src_shapes, index_shape):
-        def say(src_shapes, index_shape):
-            raise ValueError("an array does not fit where it is assigned to")
-        return say
-    if hasattr(arrayobj, "raise_with_shape_context"):                # of numba 0.61 and later
-        arrayobj.raise_with_shape_context = shapes_differ
-
-
-@cache
 def _save_one_at_a_time():
     """Let one process at a time save to a cache, and let numba go on when it cannot: it then compiles again next time.
 
@@ -190,7 +155,6 @@ def use_cache(digest):
     from numba.core.config import _OptLevel
     _make_dispatcher_constants_cacheable()
     _pass_checked_functions_on()
-    _shorten_broadcast_error()
     _save_one_at_a_time()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all

@@ -167,7 +167,7 @@ def edges_of(low, high, label):
 
 
 def links_between(pairs, a, b):
-    """Links between the middles (n, d) of touching boxes."""
+    """Return links between the middles (n, d) of touching boxes."""
     i, j = np.asarray(pairs, dtype=float).reshape(-1, 2).astype(int).T
     return [Links(np.stack((a[i], b[j]), axis=1), f"{len(i)} pairs, joined at the middles of their boxes")
             if len(i) else Note("no pair")]
@@ -187,7 +187,7 @@ def linked_trees(pairs, a, b):
 
 
 def middles(tree):
-    """Middle of the box of each item, by the item's number."""
+    """Return the middle of the box of each item, by the item's number."""
     found = np.empty_like(tree.item_low)
     found[tree.order.astype(int)] = 0.5 * (tree.item_low + tree.item_high)
     return found
@@ -233,7 +233,7 @@ def rest_of_polygon(y, *_):
 
 
 def across_axes(results, a, b):
-    """Views in which a gap along the axes of the results is seen in full."""
+    """Return views in which a gap along the axes of the results is seen in full."""
     found = []
     for result, whose in zip(results, ("your", "the expected")):
         n = part(result, "n", 1)

@@ -26,7 +26,7 @@ def in_plane_of_cone(_, u, n, K, u_sep, mu):
 
 
 def cone(u, n, K, u_sep, mu):
-    """The tangent plane and the rim of the cone, on the scale of the impulse that would make the contact stick."""
+    """Return the tangent plane and the rim of the cone, on the scale of the impulse that would make it stick."""
     size, t = np.linalg.norm(np.linalg.solve(K, u_sep * n - u)), across(n, u)
     rims = [size * (n + side * mu * t) / np.hypot(1.0, mu) for side in BOTH_WAYS] if np.isfinite(mu) else []
     before = scaled(u, 0.6 * size)

@@ -25,7 +25,7 @@ def chain(x, *_):
 
 
 def columns(J, x, *_):
-    """Velocity of the end when each joint alone turns, for 1 rad/s."""
+    """Return the velocity of the end when each joint alone turns, for 1 rad/s."""
     J = array(J, len(np.asarray(J)), len(x) - 1)[:x.shape[1]]
     return [Arrow(x[-1], scaled(column, 0.5 * size_of(x), *J.T), "velocity of the end by each joint alone")
             for column in J.T]

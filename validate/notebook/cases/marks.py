@@ -1,4 +1,4 @@
-"""Marks in a plane or in space, and how views of them are drawn: what the pictures of failing checks consist of.
+"""Marks in a plane or in space, and views of them: the parts of the pictures of failing checks.
 
 A mark is data.  A view projects it at right angles onto two unit vectors.  What is given is filled and solid, the
 answer is dashed with crosses, and what the test expects has wide lines and rings: colours are not needed to tell them
@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 GIVEN = (("#0072B2", "s"), ("#8C6D31", "^"), ("#6A51A3", "D"), ("#5A5A5A", "v"))
 ANSWER, EXPECTED = ("#D55E00", "X"), ("#009E73", "o")
-FARTHEST = 3.0               # an answer is shown up to so many spans of the rest beyond it [-]
+FARTHEST = 3.0               # an answer is shown up to this many spans of the rest beyond it [-]
 
 
 class View(NamedTuple):
@@ -27,11 +27,11 @@ class View(NamedTuple):
     labels: tuple            # of both axes, with units
 
     def of(self, points):
-        """Points (n, d) as they are seen (n, 2)."""
+        """Return points (n, d) as they are seen (n, 2)."""
         return (np.atleast_2d(np.asarray(points, dtype=float)) - self.origin) @ self.basis.T
 
     def depth(self, points):
-        """Distances (n,) of points from the plane of the view through its origin."""
+        """Return distances (n,) of points from the plane of the view through its origin."""
         offset = np.atleast_2d(np.asarray(points, dtype=float)) - self.origin
         return np.linalg.norm(offset - offset @ self.basis.T @ self.basis, axis=1)
 

@@ -1,4 +1,4 @@
-"""What pictures of several exercises consist of, and how they are looked at."""
+"""Parts and views that the pictures of several exercises share."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -42,7 +42,10 @@ def in_space(*_):
 
 
 def axes_of(first, second):
-    """Two orthogonal unit vectors (2, d): along the first, and in the plane of both; any where they do not say."""
+    """Return two orthogonal unit vectors (2, d), along the first vector and in the plane of both.
+
+    Any if undetermined.
+    """
     found = []
     for vector in (first, second, *np.eye(len(first))):
         rest = np.asarray(vector, dtype=float) / (np.linalg.norm(vector) or 1.0)
@@ -81,7 +84,7 @@ def part(result, name, number):
 
 
 def contact(result, *_):
-    """Both points of a Contact, the gap between them, and its normal."""
+    """Return both points of a Contact, the gap between them, and its normal."""
     p_a, p_b, n, gap = (part(result, name, k) for k, name in enumerate(("p_a", "p_b", "n", "gap")))
     found = [Dots(np.array([p], dtype=float), name) for p, name in ((p_a, "p_a"), (p_b, "p_b")) if p is not None]
     size = f", gap {gap:.4g} m" if gap is not None else ""

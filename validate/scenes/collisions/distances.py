@@ -1,6 +1,6 @@
 """Distance, normal, and nearest or overlapping points of two bodies: every pair of shapes of the narrow phase.
 
-Most shapes are rounded hulls: some points, and a radius around their hull.  The reference solution is a least-squares
+Most shapes are rounded hulls: points, and a radius around their hull.  The reference solution is a least-squares
 problem with non-negative weights, or the hull of all differences.  The lesson has a formula for each pair, separating
 axes with clipping, and GJK for all.
 """
@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.collisions import Box, Plane
+from validate.check import Whose
 from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
 from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
@@ -39,7 +40,7 @@ MARGIN = 0.001               # of pybullet: the radius that rounds boxes, and su
 # ---------------------------------------------------------------------------------------------- the bodies
 
 def turn(x, y, z):
-    """Return R (3, 3), which rotates about x, then y, then z, by these angles [rad]."""
+    """Return R (3, 3) of a rotation about x, then y, then z, by these angles [rad]."""
     R = np.eye(3)
     for k, angle in enumerate((x, y, z)):
         c, s, part = np.cos(angle), np.sin(angle), np.eye(3)
@@ -163,7 +164,10 @@ MANY = ("box on a box", "rectangles (2D)")
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """Run the lesson's function for this pair; GJK on rounded hulls gives the points' own distance, less the radii."""
+    """Run the lesson's function for this pair.
+
+    For rounded hulls subtract the radii from GJK's distance of the points.
+    """
     collisions, (a, b) = lessons.collisions, SHAPES[p.pair]
     if p.pair == "flying disc (2D)":
         x_0, x_1 = (np.append(0.0, x) for x in np.array(a[1]))
@@ -213,15 +217,15 @@ def observe(state, p):
 # ---------------------------------------------------------------------------------------------- truth
 
 def truth(p, t):
-    """Return the reference solution.
+    """The reference solution depends on the pair.
 
-    separate bodies    nearest points of two hulls, by non-negative least squares, less the radii
+    separate bodies    nearest points of two hulls, by non-negative least squares, minus the radii
     overlapping        the hull of all differences
-    ball, plane        the height over the plane; for a box that of its lowest corner
+    ball, plane        the height above the plane; for a box the height of its lowest corner
     ball in a box      the nearest of six faces
-    box on a box       the rectangle that both cover: four points of contact
-    rectangles         the segment that both cover: two points
-    flying disc        the first root of the distance of the centres less r + R, by brentq
+    box on a box       the common rectangle: four points of contact
+    rectangles         the common segment: two points
+    flying disc        the first root of the distance of the centres minus r + R, by brentq
     Source: the definitions of distance and of the Minkowski difference.
     """
     a, b = SHAPES[p.pair]
@@ -255,20 +259,20 @@ def truth(p, t):
 
 
 def round_off(p, dt):
-    """A few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
+    """There are a few hundred operations on numbers below 3, and normals are known to round-off over a distance of 0.1.
+    Together that is 1e-12.
 
-    GJK stops when it knows the distance to 1e-14 of the size.  The points may be known only to the root of that, but
-    these bodies have corners, so the last step is exact.  pybullet's GJK is as exact for bodies that have corners when
-    their margins are taken away, because its last simplex spans the nearest features.  pymunk's results are closed
-    forms.
+    GJK stops when the distance is known to 1e-14 of the size.  In general the points are then known only to the square
+    root of that, but these bodies have corners, so the last step is exact.  For bodies with corners and zero margin,
+    pybullet's GJK is as exact, because its last simplex spans the nearest features.  pymunk's results are closed forms.
     """
     return 1e-12
 
 
 def polytope_limit(p, dt):
-    """pybullet has closed forms for some pairs (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm):
-    round-off.  A ball inside a box is round: the expanding polytope stops when the depth is known to 1e-12 m, which it
-    is where the normal is off by √(2 · 1e-12 m/r), and the point by that times r.
+    """For some pairs pybullet has closed forms, with round-off only (Bullet's btDefaultCollisionConfiguration and
+    btConvexConvexAlgorithm).  A ball inside a box is round: the expanding polytope stops when the depth is known to
+    1e-12 m.  The normal may then be off by √(2 · 1e-12 m/r), and the point by that times r.
     """
     turned = np.sqrt(2e-12 / p.r) * np.hypot(1.0, p.r) / np.linalg.norm(truth(p, T))
     return turned if p.pair == "ball in a box" else round_off(p, dt)
@@ -309,7 +313,7 @@ def quaternion(R):
 
 
 def bullet_make(p, dt):
-    """Use getClosestPoints within one metre: the points, their distance, and the normal from b to a."""
+    """Use getClosestPoints within one metre for the points, their distance, and the normal from b to a."""
     bullet = Bullet(1.0)
     a, b = (bullet_body(bullet, body, r, p) for body, r in zip(SHAPES[p.pair], (p.r, p.R)))
 
@@ -368,7 +372,7 @@ def snapped(x):
 
 
 def pymunk_make(p, dt):
-    """Use pymunk's queries: of a point, of two shapes, of a segment with a radius."""
+    """Use pymunk's queries of a point, of two shapes, and of a segment with a radius."""
     import pymunk
     space = pymunk.Space()
     a, b = SHAPES[p.pair]
@@ -394,16 +398,16 @@ def pymunk_make(p, dt):
 
 
 def only(*pairs):
-    """Return the field `supports` of a runner that does these pairs."""
+    """Return the field `supports` of a runner that supports these pairs."""
     return lambda p: p.pair in pairs
 
 
 GJK_STOPS = "it stops when it knows the distance to 1e-14 of the size, and the limit bounds what is left"
 WITH_CORNERS = "exact for bodies with corners: only round-off is left, and the limit bounds it"
 POLYTOPE_STOPS = "closed forms are exact; its expanding polytope stops at 1e-12 m, and the limit bounds what is left"
-ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm", with_margins)
+ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm", with_margins, Whose.LAW)
 OWN_GRID = Departure("it places the points of a hull on a grid of its own and surrounds them with a margin of 1 mm",
-                     with_margins)
+                     with_margins, Whose.LAW)
 EXACTLY = {"order": EXACT, "limit": round_off, "predicted": ONLY_ROUND_OFF}
 RUNNERS = (
     ours(NARROW, **EXACTLY,

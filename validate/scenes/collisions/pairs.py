@@ -1,8 +1,8 @@
-"""Pairs of n random boxes that touch: found by testing every pair, and by descending two trees together.
+"""Pairs of n random boxes that touch, found by testing every pair and by descending two trees together.
 
-Both must find the same pairs, all of them and no others.  The room grows with n, so each box keeps about as many
-neighbours.  The result then grows with n, the work of brute force with n², and that of the trees little faster than n
-(the benchmark measures it).
+Both must find the same pairs, all of them and no others.  The room grows with n, so each box keeps about the same
+number of neighbours.  The result then grows with n, the work of brute force with n², and the work of the trees only
+slightly faster than n (the benchmark measures it).
 """
 
 from functools import lru_cache, partial
@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.collisions import check_boxes
+from validate.check import Whose
 from validate.engines.collisions import bullet_closest_pairs, bullet_query_pairs
 from validate.methods import BRUTE_FORCE, TREES
 from validate.reference.collisions import all_touching
@@ -40,7 +41,7 @@ CASES = {
 
 @lru_cache(maxsize=8)
 def boxes(p):
-    """Return corners low, high (n, 3) [m]: edges from 0 to twice the mean, at random in a cube of n cubic metres."""
+    """Return corners low, high (n, 3) [m]; edges from 0 to twice the mean, at random in a cube of n cubic metres."""
     rng = np.random.default_rng(p.seed)
     low = rng.uniform(0.0, p.n ** (1.0 / 3.0), (p.n, 3))
     return low, low + rng.uniform(0.0, 2.0 * p.edge, (p.n, 3))
@@ -57,7 +58,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def judged(pairs, p):
-    """Return how many of the reference pairs are among these, and how many of these are wrong or doubled."""
+    """Return how many of the reference pairs are among these, and how many of these are wrong or duplicates."""
     right = len(set(map(tuple, np.asarray(pairs).tolist())) & true_pairs(p))
     return np.array([right, len(pairs) - right], dtype=float)
 
@@ -70,8 +71,8 @@ def observe(state, p):
 def true_pairs(p, wider=0.0):
     """Return the pairs as a set; with `wider`, one box of each pair is larger on every side.
 
-    Up to 1,000 boxes all are compared with all.  Beyond, boxes are sorted along x and compared with those that
-    begin before they end.
+    Up to 1,000 boxes, all pairs are compared.  For more, boxes are sorted along x, and each is compared with those that
+    begin before it ends.
     """
     low, high = boxes(p)
     if wider:
@@ -91,9 +92,9 @@ def true_pairs(p, wider=0.0):
 
 
 def truth(p, t):
-    """Two boxes touch if they do in every coordinate: low_a ≤ high_b and low_b ≤ high_a.
+    """Two boxes touch if they overlap in every coordinate: low_a ≤ high_b and low_b ≤ high_a.
 
-    Source: the definition; all compared with all by NumPy, or sorted along x.
+    Source: the definition; all pairs compared by NumPy, or boxes sorted along x.
     """
     return np.array([len(true_pairs(p)), 0.0])
 
@@ -113,7 +114,7 @@ def limit(p, dt):
 
 
 def up_to(n):
-    """Return the field `supports` of a runner that does at most n boxes."""
+    """Return the field `supports` of a runner that supports at most n boxes."""
     return lambda p: p.n <= n
 
 
@@ -132,7 +133,7 @@ RUNNERS = (
            "getOverlappingObjects with the corners of each box, after a step", **COUNTS,
            supports=up_to(MOST_BY_ENGINE),
            departure=Departure("its broad phase enlarges boxes by 2 cm on every side, to predict contacts",
-                               by_wider_boxes)),
+                               by_wider_boxes, Whose.DEFAULT)),
 )
 
 

@@ -1,14 +1,14 @@
 """Balls fly at an infinite cylinder, across its axis, at 1 to 10⁴ m/s: the discrete and the continuous test.
 
-This is the worked question of the second lecture deck.  The discrete test runs after each step.  It finds a ball up to
-v dt inside, or misses it, because a step longer than the path through the cylinder can pass it.  The continuous test
+This is the worked question of the second lecture deck.  The discrete test runs after each step.  It detects a ball up
+to v dt inside, or misses it, because a step can be longer than the path through the cylinder.  The continuous test
 solves for the first root and works with any step.
 """
 
 import numpy as np
 
 from validate.check import states
-from validate.engines.collisions import swept_radius
+from validate.engines.collisions import sweep
 from validate.reference import collisions as balls
 from validate.scene import EXACT, Scene
 from validate.scenes.collisions import _common as common
@@ -22,7 +22,7 @@ CASES = balls.at_speeds(R=0.5)
 
 
 def place(p):
-    """Return (x, v), each (COPIES, 3): balls that come down, tilted by 0.3 rad towards y, each with its own offset."""
+    """Return (x, v), each (COPIES, 3), of balls that come down, tilted by 0.3 rad towards y, at different offsets."""
     e, across = np.array([0.0, np.sin(0.3), -np.cos(0.3)]), np.array([0.0, np.cos(0.3), np.sin(0.3)])
     k = np.arange(balls.COPIES)
     beside = WIDEST * (p.R + p.r) * np.sin(1.0 + 2.0 * k)
@@ -56,32 +56,32 @@ per_ball, rounding = FLIGHT.per_ball, FLIGHT.rounding
 
 
 def nearest(p):
-    """Return the times (COPIES,) at which the balls would be nearest to the axis."""
+    """Return the times (COPIES,) at which the balls would be closest to the axis."""
     x, v = place(p)
     return -np.sum(x[:, 1:] * v[:, 1:], axis=1) / np.sum(v[:, 1:] ** 2, axis=1)
 
 
 def when(p, r):
-    """Return the times at which balls of radius r enter and leave the cylinder: never, if they pass beside it."""
+    """Return the times at which balls of radius r enter and leave the cylinder; balls that pass it never do."""
     (x, v), middle, gap = place(p), nearest(p), lambda y: np.hypot(y[1], y[2]) - p.R - r
     meets = gap((x + middle[:, None] * v).T) < 0.0
     enters = balls.moments(x, v, gap, np.where(meets, middle, 0.0))
     return enters, 2.0 * middle - enters
 
 
-def swept_band(p, dt):
+def swept_band(p, dt, share):
     """Return how far a swept ball may end from its prediction: as far as a ray does, by round-off without a sweep."""
-    return rounding(p, dt) if swept_radius(p, dt) is None else ray_limit(p, dt)
+    return rounding(p, dt) if sweep(p, dt, share) is None else ray_limit(p, dt)
 
 
 def limits(p, dt):
-    """Limits relative to the root of the sum of all squares.
+    """The limits are relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of itself at each step until the impact; for the path that passes
-    farthest from the axis, at b (R + r), the root is 1/√(1 − b²) times as uncertain as the position.  The time of
-    impact adds a dozen roundings of the whole way, here and in the truth.
-    discrete: detected at most one step late, at a moment that is predicted.  A step longer than the shortest path
-    through the cylinder, 2 √(1 − b²)(R + r), can pass it.
+    continuous: a position is rounded by half a spacing of floats at each step until the impact.  On the path that
+    passes farthest from the axis, at b (R + r), the root is 1/√(1 − b²) times as uncertain as the position.  The
+    time of impact adds a dozen rounding errors of the whole path, here and in the truth.
+    discrete: contact is detected at most one step late, at a predicted time.  A step longer than the shortest path
+    through the cylinder, 2 √(1 − b²)(R + r), can miss it.
     """
     late = per_ball(p, p.speed * dt) if p.speed * dt < 2.0 * STEEP * (p.R + p.r) else np.inf
     rounded = rounding(p, dt)
@@ -89,16 +89,17 @@ def limits(p, dt):
 
 
 def ray_limit(p, dt):
-    """A ray may end up to 1 cm in front of a round shape: where it ends is measured and not derived."""
+    """A ray may end up to 1 mm from a round shape, and along its path that is 1 mm over the cosine of the angle between
+    its path and the normal.
+    """
     return per_ball(p, common.RAY_ENDS / STEEP) + rounding(p, dt)
 
 
 RUNNERS = common.ball_runners(
     place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
     "GEOM_CYLINDER of radius R + r",
-    rays={"order": 0, "limit": ray_limit, "predicted": "where its rays end is measured and not derived"},
-    swept={"order": 0, "limit": FLIGHT.swept_limit,
-           "predicted": balls.detection_errors(T, place, when, swept_band, swept_radius)})
+    rays={"order": 0, "limit": ray_limit, "predicted": "where in this millimetre a ray ends depends on its search"},
+    swept=common.swept_runner(FLIGHT, when, swept_band))
 
 
 SIDES = 36                   # of the polygon that is drawn for the circle: it differs by 0.4 % of the radius

@@ -1,7 +1,7 @@
-"""A semicircular arch of loose stones: how thin may it be, and how smooth?
+"""A semicircular arch of loose stones: its smallest thickness and its smallest friction.
 
-An arch stands if *some* forces in its joints hold it.  A linear program searches for them; the lesson's sweeps find
-them, or accelerations where there are none.  The joints are redundant, so that the forces are not unique, but the edge
+An arch stands if *some* forces in its joints hold it.  A linear program searches for them.  The lesson's sweeps find
+them, or accelerations if there are none.  The joints are redundant, so the forces are not unique, but the edge
 between standing and falling is.
 """
 
@@ -26,9 +26,9 @@ G = 9.81                     # [m/s²]; no critical number depends on it
 AT_REST = 1e-6               # acceleration that counts as none [m/s², rad/s²]
 WIDTH = 1e-6                 # relative, at which bisection stops [-]
 UNCERTAINTY = 1e-8           # of the linear program
-WATCHED = 1.0                # an engine's arch [s]
-MOVED = 0.02                 # radii; what has moved less, stands: joints of engines close by up to 0.013
-OVERLAP = 1e-6               # with which pymunk's lowest stones begin [m]: it sees a contact when there is one
+WATCHED = 1.0                # duration of an engine's run [s]
+MOVED = 0.02                 # [R]; a stone that has moved less stands: joints of engines close by up to 0.013
+OVERLAP = 1e-6               # of pymunk's lowest stones at first [m]: it detects a contact only if bodies overlap
 DENSITY = 1000.0             # of the engines' stones, 1 m deep [kg/m²]
 
 
@@ -55,7 +55,7 @@ def start(p):
 
 
 def given(p, number):
-    """(t, μ) with the number that is searched for."""
+    """Return (t, μ), one of which is the number that is searched for."""
     return (number, p.mu) if p.kind == "thickness" else (p.t, number)
 
 
@@ -84,26 +84,27 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def truth(p, t):
-    """The least number with which a linear program finds forces that hold every stone: f_n ≥ 0 and |f_t| ≤ μ f_n at
-    both ends of each joint.
+    """The truth is the smallest number for which a linear program finds forces that hold every stone: f_n ≥ 0 and
+    |f_t| ≤ μ f_n at both ends of each joint.
 
-    Heyman's safe theorem says that such an arch stands.  The tests compare the thickness with moments about hinges,
-    by hand.
+    Heyman's safe theorem says that such an arch stands.  The sanity checks compare the thickness with moments about
+    hinges, by hand.
     Source: Couplet 1730, Milankovitch 1907, Heyman 1969; SciPy's linprog.
     """
     return np.array([least_thickness(p.n, p.mu) if p.kind == "thickness" else least_friction(p.n, p.t)])
 
 
 def limit(p, dt):
-    """An arch whose number is less than the critical one by a share δ falls with about 10 g δ: an acceleration of 1e-6
-    m/s² means δ = 1e-8.  The bisection stops at 1e-6.
+    """An arch whose number is below the critical one by the fraction δ falls with about 10 g δ.  An acceleration of
+    1e-6 m/s² means δ = 1e-8.  The bisection stops at 1e-6.
     """
     return AT_REST / G + WIDTH + UNCERTAINTY
 
 
 def unknown(p, dt):
-    """Any nudge brings down an arch near its least thickness.  Engines nudge it: gravity acts for a step before the
-    joints carry.  No theory says how much more thickness they need, so their errors are shown and not judged.
+    """Any disturbance brings down an arch near its smallest thickness.  Engines disturb it, because gravity acts for
+    a step before the joints carry.  No theory says how much more thickness they need, so their errors are shown and
+    not judged.
     """
     return np.inf
 
@@ -111,13 +112,13 @@ def unknown(p, dt):
 # ---------------------------------------------------------------------------------------------- engines
 
 def corners(stones, k):
-    """Corners of stone k from its centre of mass (4, 2)."""
+    """Return the corners (4, 2) of stone k, from its centre of mass."""
     ends = [(radius, stones.joints[j]) for radius, j in zip((*stones.radii, *stones.radii[::-1]), (k, k, k + 1, k + 1))]
     return np.array([(radius * np.cos(theta), radius * np.sin(theta)) for radius, theta in ends]) - stones.x[k]
 
 
 def pymunk_stands(p, number, dt, iterations, slop):
-    """Return whether all stones are within MOVED of their places after a while."""
+    """Return whether all stones are within MOVED of their positions after WATCHED."""
     import pymunk
     (t, mu), space, bodies = given(p, number), pymunk_space((0.0, -G)), []
     space.iterations, space.collision_slop = iterations, slop
@@ -138,7 +139,7 @@ def pymunk_stands(p, number, dt, iterations, slop):
 
 
 def pybullet_stands(p, number, dt, iterations, residual):
-    """Return whether all stones are within MOVED of their places after a while."""
+    """Return whether all stones are within MOVED of their positions after WATCHED."""
     (t, mu), bullet, bodies = given(p, number), Rigid(dt, (0.0, 0.0, -G), iterations), []
     pb = bullet.pb
     pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
@@ -152,6 +153,7 @@ def pybullet_stands(p, number, dt, iterations, residual):
         bodies.append(bullet.body(DENSITY * stones.m[k], (10.0 * moment, moment, 10.0 * moment),
                                   (stones.x[k, 0], 0.0, stones.x[k, 1]), (0.0,) * 3, True, R=UPRIGHT,
                                   shape=pb.createCollisionShape(pb.GEOM_MESH, vertices=hull), mu=np.sqrt(mu)))
+    bullet.begin()
     for _ in range(round(WATCHED / dt)):
         bullet.step()
     x = np.array([bullet.position(body) for body in bodies])[:, [0, 2]]
@@ -160,7 +162,7 @@ def pybullet_stands(p, number, dt, iterations, residual):
 
 
 def make(p, dt, holds):
-    """The EngineRun of an engine in which an arch holds or not: the bisection is one long reading."""
+    """Make the EngineRun of an engine in which an arch holds or falls: the bisection is one long reading."""
     def read():
         expected = truth(p, T)[0]
         return np.array([bisected(lambda number: holds(p, number), 0.5 * expected, 2.0 * expected, 1e-3)])
@@ -168,11 +170,11 @@ def make(p, dt, holds):
 
 
 def thick(p):
-    """Thin stones fall in the engines before they slide."""
+    """Return whether the stones are thick and few: in the engines thin stones fall before they slide."""
     return p.t >= 0.15 and p.n <= 10
 
 
-BISECTED = "its bisection and its sweeps stop at a width, and the limit bounds what is left"
+BISECTED = "its bisection and its sweeps stop at a given accuracy, and the limit bounds the remaining error"
 NUDGED = {"order": EXACT, "limit": unknown, "supports": thick,
           "predicted": "no theory says how much more thickness or friction a nudged arch needs"}
 RUNNERS = (
@@ -210,7 +212,7 @@ ARC = 6                      # points of each curved side of a stone in the pict
 
 
 def points(observed, p):
-    """Outlines of all stones, and the ground; where the friction is searched for, with the given thickness."""
+    """Draw the outlines of all stones, and the ground; if the friction is searched for, with the given thickness."""
     stones, outlines = arch(p.n, given(p, float(np.asarray(observed)[0]))[0]), []
     for k in range(p.n):
         theta = np.linspace(stones.joints[k], stones.joints[k + 1], ARC)
@@ -236,8 +238,8 @@ SCENE = Scene(
     published_states=((1.0, (0.100861,), 5e-7),),
     sanity_checks=sanity_checks,
     points=points, links=links,
-    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual vanishes"),
     full_loop="nothing moves here, so there is no loop",
-    ablations={"motion": "what stands does not move; what falls is not followed",
+    ablations={"motion": "a standing arch does not move; a falling one is not followed",
                "curved stones": "only the ends of the joints touch, and the centre of mass is that of a sector"},
 )

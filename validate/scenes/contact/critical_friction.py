@@ -1,6 +1,6 @@
 """Critical friction: a ladder, discs, a box and an overhang, at the edge between standing and falling.
 
-A scene stands where the contact solver finds no acceleration.  Its critical number is found by bisection: the least
+A scene stands if the contact solver finds no acceleration.  Its critical number is found by bisection: the smallest
 friction, the steepest slope or the longest overhang that stands.  An engine runs for a second instead, and bodies
 that have moved by less than a millimetre stand.
 """
@@ -25,9 +25,9 @@ G = 9.81                     # [m/s²]; no critical number depends on it
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: sweeps leave some 1e-10
 WIDTH = 1e-9                 # relative, at which bisection stops [-]
 UP, DOWN = (0.0, 1.0), np.array([0.0, -1.0])
-WATCHED = 1.0                # an engine's scene [s]
-MOVED = 1e-3                 # what has moved less, stands [m]
-OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: it sees a contact when there is one
+WATCHED = 1.0                # duration of an engine's run [s]
+MOVED = 1e-3                 # a body that has moved less stands [m]
+OVERLAP = 1e-6               # of pymunk's bodies at first [m]: it detects a contact only if they overlap
 THIN = 2e-4                  # thickness of pybullet's ladder, which is a board [m]
 HEIGHT = 0.2                 # of a block of the overhang, over its length [-]
 
@@ -60,7 +60,7 @@ def start(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def scene_of(p, number):
-    """(x, masses, moments, [(a, b, place, normal, friction)], direction of gravity); a mass of 0 is immovable."""
+    """Return (x, masses, moments, [(a, b, place, normal, friction)], direction of gravity); mass 0 means immovable."""
     if p.kind.startswith("discs"):                            # radius ½; the lower two do not quite touch
         x, (between, ground) = places_of(p, number), frictions_of(p, number)
         touch = [(1, 0, (-0.5, 0.0), UP, ground), (2, 0, (0.5, 0.0), UP, ground)]
@@ -83,35 +83,35 @@ def scene_of(p, number):
 
 
 def places_of(p, number):
-    """Centres [m] of all bodies; of the overhang from the top, with the table as the last."""
+    """Return the centres [m] of all bodies; those of the overhang from the top, with the table last."""
     if p.kind.startswith("discs"):
         return np.array([(0.0, -1.0), (-0.5, 0.5), (0.5, 0.5), (0.0, 0.5 + np.sqrt(0.75))])
     if p.kind == "ladder":
         return np.array([(0.0, -1.0), (0.0, 0.0)])
     if p.kind == "box":
         return np.array([(0.0, -1.0), (0.0, 0.5)])
-    reach = number / harmonic(p.blocks) / (2.0 * np.arange(1, p.blocks + 1))             # of each over the one below
+    reach = number / harmonic(p.blocks) / (2.0 * np.arange(1, p.blocks + 1))             # of each over the one below it
     heights = HEIGHT * (p.blocks - np.arange(p.blocks + 1) - 0.5)
     return np.stack((-np.cumsum(np.append(0.0, reach)), heights), axis=1)
 
 
 def frictions_of(p, number):
-    """(friction between the discs, friction at the ground)."""
+    """Return (friction between the discs, friction at the ground)."""
     return (number, p.mu) if p.kind.endswith("between") else (p.mu, number)
 
 
 def ladder_end(p):
-    """From the centre of the ladder to its upper end [m]."""
+    """Return the vector from the centre of the ladder to its upper end [m]."""
     return 0.5 * np.array([np.cos(np.radians(p.degrees)), np.sin(np.radians(p.degrees))])
 
 
 def leaning(slope):
-    """Direction of gravity where a slope lies flat."""
+    """Return the direction of gravity in coordinates in which the slope is horizontal."""
     return np.array([slope, -1.0]) / np.hypot(slope, 1.0)
 
 
 def harmonic(n):
-    """½ Σ 1/k of n blocks."""
+    """Return ½ Σ 1/k of n blocks."""
     return 0.5 * sum(1.0 / k for k in range(1, n + 1))
 
 
@@ -129,13 +129,13 @@ def stands(forces, p, number):
 
 
 def bracket(p):
-    """(a number with which it falls, one with which it stands)."""
+    """Return (a number with which it falls, one with which it stands)."""
     expected = truth(p, T)[0]
     return (2.0 * expected, 0.3 * expected) if p.kind in ("box", "overhang") else (0.3 * expected, 2.0 * expected)
 
 
 def edge(holds, p, width):
-    """Where what falls begins to stand, by bisection."""
+    """Return the number at which the scene begins to stand, by bisection."""
     falls, safe = bracket(p)
     while abs(safe - falls) > width * safe:
         middle = 0.5 * (falls + safe)
@@ -148,14 +148,14 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def truth(p, t):
-    """By the balance of forces and moments, at the edge:
+    """The balance of forces and moments gives the edge:
 
-    discs       the forces on a lower disc meet in its point on the ground.  The one from above is 15° off the normal
-                there: μ = tan 15° = 2 − √3.  The ground carries 1½ weights, an upper contact a third of that along
-                the vertical: μ = (2 − √3)/3.
+    discs       the forces on a lower disc meet in its contact point with the ground.  The force from above is 15° off
+                the normal there: μ = tan 15° = 2 − √3.  The ground carries 1½ weights, an upper contact a third of that
+                along the vertical: μ = (2 − √3)/3.
     ladder      moments about its foot: the wall pushes with m g/(2 tan θ), and the floor holds it: μ = 1/(2 tan θ)
-    box         it topples where its centre is above its lower edge, tan θ = w/h, and slides at tan θ = μ
-    overhang    the centre of what is above must be above the edge below: ½ Σ 1/k lengths
+    box         it topples when its centre is above its lower edge, tan θ = w/h, and slides at tan θ = μ
+    overhang    the centre of the blocks above must be above the edge below: ½ Σ 1/k lengths
     Source: any text of statics.
     """
     if p.kind.startswith("discs"):
@@ -166,33 +166,36 @@ def truth(p, t):
 
 
 def limit(p, dt):
-    """A number that is less than the critical one by a share δ leaves an acceleration of g δ times a lever.  With
-    levers of a tenth and more, 1e-8 m/s² means δ = 10 · 1e-8/g at most.  The bisection stops at 1e-9.
+    """A number below the critical one by the fraction δ leaves an acceleration of g δ times a lever arm.  With
+    lever arms of a tenth and more, 1e-8 m/s² means δ = 10 · 1e-8/g at most.  The bisection stops at 1e-9.
     """
     return 10.0 * AT_REST / G + WIDTH
 
 
 def moved_limit(p, dt):
-    """In an engine that acceleration has a second to move something by 1 mm: δ = 2 · 1e-3/(g · 1 s²) over the lever."""
+    """In an engine that acceleration moves a body by 1 mm in a second: δ = 2 · 1e-3/(g · 1 s²) over the lever arm."""
     return 10.0 * 2.0 * MOVED / (G * WATCHED**2)
 
 
 def pybullet_limit(p, dt):
-    """pybullet lets an overhanging stack sink and lean before it carries.  No theory says how much, so that is shown
-    and not judged.
+    """pybullet lets an overhanging stack sink and lean before it carries.  No theory says by how much, so this error is
+    shown and not judged.
     """
     return np.inf if p.kind == "overhang" else moved_limit(p, dt)
 
 
 def unknown(p, dt):
-    """Default settings are coarse.  No theory says how much, so these are shown and not judged."""
+    """Default settings are coarse.  No theory says how coarse, so these errors are shown and not judged."""
     return np.inf
 
 
 # ---------------------------------------------------------------------------------------------- engines
 
 def pymunk_world(p, number):
-    """(space, bodies) of a scene; friction is multiplied, and each begins OVERLAP inside what carries it."""
+    """Return (space, bodies) of a scene.
+
+    Friction coefficients multiply; each body begins OVERLAP inside its support.
+    """
     import pymunk
     space, bodies = pymunk_space(G * (leaning(number) if p.kind == "box" else DOWN)), []
 
@@ -214,13 +217,13 @@ def pymunk_world(p, number):
 
 
 def segment(start, end, thick):
-    """Return the function that gives a body of pymunk this shape."""
+    """Return the function that gives a pymunk body this shape."""
     import pymunk
     return lambda body: pymunk.Segment(body, tuple(map(float, start)), tuple(map(float, end)), thick)
 
 
 def pymunk_discs(p, number, x, static, movable):
-    """static(shape of a body, friction) and movable(centre, moment, shape of a body, friction) add to a world."""
+    """Add discs by static(shape of a body, friction) and movable(centre, moment, shape of a body, friction)."""
     import pymunk
     between, ground = frictions_of(p, number)
     static(segment((-20.0, -5.0), (20.0, -5.0), 5.0), ground)
@@ -256,7 +259,7 @@ def pymunk_overhang(p, number, x, static, movable):
 
 
 def pymunk_stands(p, number, dt, iterations, slop):
-    """Return whether no body has moved by a millimetre after a second."""
+    """Return whether no body has moved by a millimetre after one second."""
     space, bodies = pymunk_world(p, number)
     space.iterations, space.collision_slop = iterations, slop
     before = np.array([body.position for body in bodies])
@@ -266,7 +269,7 @@ def pymunk_stands(p, number, dt, iterations, slop):
 
 
 def pybullet_world(p, number, dt, iterations):
-    """(Rigid, bodies) of a ladder, a box or an overhang: boards and boxes on slabs, 1 m deep into the page."""
+    """Return (Rigid, bodies) of a ladder, a box or an overhang: boards and boxes on slabs, 1 m deep into the page."""
     g = G * (leaning(number) if p.kind == "box" else DOWN)
     bullet, x, bodies = Rigid(dt, (g[0], 0.0, g[1]), iterations), places_of(p, number), []
     pb = bullet.pb
@@ -296,11 +299,11 @@ def pybullet_world(p, number, dt, iterations):
         static((x[-1, 0] - 1.5, -2.0), (2.0, 2.0), 1.0)
         for k in range(p.blocks):
             movable(x[k], 1.0, HEIGHT, (1.0 + HEIGHT**2) / 12.0, p.mu)
-    return bullet, bodies
+    return bullet.begin(), bodies
 
 
 def pybullet_stands(p, number, dt, iterations, residual):
-    """Return whether no body has moved by a millimetre after a second."""
+    """Return whether no body has moved by a millimetre after one second."""
     bullet, bodies = pybullet_world(p, number, dt, iterations)
     bullet.pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
     before = np.array([bullet.position(body) for body in bodies])
@@ -312,23 +315,23 @@ def pybullet_stands(p, number, dt, iterations, residual):
 
 
 def make(p, dt, holds):
-    """The EngineRun of an engine in which a scene holds or not: the bisection is one long reading."""
+    """Make the EngineRun of an engine in which a scene holds or falls: the bisection is one long reading."""
     return one_reading(lambda: edge(lambda number: holds(p, number), p, 1e-4))
 
 
 def boards(p):
-    """pybullet has no discs, nor a plane in which they could stay."""
+    """Return whether there are no discs: pybullet has no discs, and no plane in which spheres would stay."""
     return not p.kind.startswith("discs")
 
 
 def low_boards(p):
-    """With its default settings five blocks fall at a third of the overhang, too."""
+    """Return whether it is low: by default pybullet's five blocks fall at a third of the overhang, too."""
     return boards(p) and (p.kind != "overhang" or p.blocks <= 3)
 
 
-BISECTED = "its bisection and its sweeps stop at a width, and the limit bounds what is left"
-WATCHING = "what moves by less than a millimetre in a second stands, and the limit bounds what that hides"
-LEANING = "what moves by less than a millimetre stands, and no theory says how far an overhang sinks before it carries"
+BISECTED = "its bisection and its sweeps stop at a given accuracy, and the limit bounds the remaining error"
+WATCHING = "a body that moves by less than a millimetre in a second stands, and the limit bounds the error of that"
+LEANING = "a body that moves by less than a millimetre stands, and no theory says how far an overhang sinks at first"
 COARSE = "no theory says how coarse its default settings are"
 RUNNERS = (
     ours(SWEEPS, limit=limit, predicted=BISECTED, order=EXACT),
@@ -354,7 +357,7 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """Return Findings: the same by other means."""
+    """Return Findings: the same numbers by other methods."""
     numbers = {name: truth(p, T)[0] for name, p in CASES.items()}
     return (states("friction between discs [-]", numbers[DISCS], np.tan(np.radians(15.0)), 1e-15),
             states("ladder at 60° [-]", numbers[LADDER], np.sqrt(3.0) / 6.0, 1e-15),
@@ -364,7 +367,7 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def shapes():
-    """[(corners (k, 2), closed)]: the discs, the ladder, the box on its slope and the overhang, side by side."""
+    """Return [(corners (k, 2), closed)]: the discs, the ladder, the box on its slope and the overhang, side by side."""
     drawn = [(x + 0.5 * circle(24), True) for x in places_of(CASES[DISCS], 1.0)[1:]]
     end = ladder_end(CASES[LADDER])
     foot = np.array([2.0 - end[0], 0.0])
@@ -410,8 +413,8 @@ SCENE = Scene(
     published_states=((1.0, (0.288675,), 5e-7),),
     sanity_checks=sanity_checks,
     points=points, links=links,
-    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual vanishes"),
     full_loop="forces of bodies at rest: nothing moves, so there is no loop",
-    ablations={"motion": "what stands does not move; what falls is not followed",
-               "the stiffness of the bodies": "it decides who carries what on four legs, and nothing here"},
+    ablations={"motion": "standing bodies do not move; falling ones are not followed",
+               "the stiffness of the bodies": "it decides how four legs share a load, and has no effect here"},
 )

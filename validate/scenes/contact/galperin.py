@@ -1,7 +1,7 @@
-"""A wall, a block of 1 kg and a block of 100^N kg: how often do they meet?  Three, 31, 314, 3141 times: digits of π.
+"""A wall, a block of 1 kg and a block of 100^N kg: the number of impacts is 3, 31, 314, 3141, the digits of π.
 
-No block ever sticks, no energy is lost, and each impact is one impulse.  The answer is a whole number, so that one
-impact that is lost or made up shows.
+No block ever sticks, no energy is lost, and each impact is one impulse.  The answer is a whole number, so a single
+missing or additional impact is visible.
 """
 
 from fractions import Fraction
@@ -21,8 +21,8 @@ from validate.scenes.drawing import outlines
 T = 1.0
 LIGHT = 1.0                  # mass of the block next to the wall [kg]
 FINEST = 2                   # digits after the first that an engine can count in reasonable time
-R, ROOM = 1.0, 0.5           # radius of the engines' blocks, and the free way between neighbours [m]
-OVER = 8.0                   # the heavy one is back where it began [s]
+R, ROOM = 1.0, 0.5           # radius of the engines' blocks, and the free distance between neighbours [m]
+OVER = 8.0                   # time at which the heavy block is back at its start [s]
 
 
 class Params(NamedTuple):
@@ -34,7 +34,7 @@ CASES = {f"{100**N:,} kg": Params(N) for N in (2, 0, 1, 3)}
 
 
 def countable(p):
-    """Up to two digits after the first: an engine needs a hundred times as many steps for each further one."""
+    """Return whether N is at most two: an engine needs a hundred times as many steps for each further digit."""
     return p.N <= FINEST
 
 
@@ -43,14 +43,14 @@ def heavy(p):
 
 
 def start(p):
-    """(number of impacts, velocities of the light and the heavy block)."""
+    """Return (number of impacts, velocities of the light and the heavy block)."""
     check_positive("V", p.V)
     check_not_negative("N", float(p.N))
     return 0, np.array([0.0, -p.V])
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """One impact after the other while anything approaches: the two blocks, then the light one and the wall."""
+    """Run one impact after the other while anything approaches: the two blocks, then the light one and the wall."""
     met, (v, V) = state
     m, M = LIGHT, heavy(p)
     while V < v or v < 0.0:
@@ -60,20 +60,20 @@ def run(lessons, step, acceleration, state, p, dt, steps):
         else:
             v += impulse(lessons, step, v, 1.0 / m) / m
         met += 1
-        if met > 10.0 * 4.0 * 10.0**p.N:                                 # a wrong impulse never ends it
+        if met > 10.0 * 4.0 * 10.0**p.N:                                 # with a wrong impulse the impacts never end
             break
     return met, np.array([v, V])
 
 
 def impulse(lessons, step, u, k):
-    """Elastic: twice what would stop the approach; a sweep with relaxation 2 gives it, too."""
+    """Return the elastic impulse, twice that which stops the approach; a sweep with relaxation 2 gives it, too."""
     if step is lessons.impulses.impulse_size:
         return step(u, k, 1.0)
     return step(np.array([[k]]), np.array([u]), np.zeros(1), 2.0)[0]
 
 
 def seen(met, v, V, p):
-    """Number of impacts; velocities of the light block, times √(m/M), and of the heavy one, over its first."""
+    """Return the number of impacts, and velocities over the first: the light block's times √(m/M), the heavy one's."""
     return np.array([met, v * np.sqrt(LIGHT / heavy(p)) / p.V, V / p.V])
 
 
@@ -82,22 +82,22 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """⌊10^N π⌋ impacts.  The point (√M V, √m v) stays on a circle, because energy is conserved.  An impact with the
-    wall and one of the pair reflect it about two lines with the angle θ = arctan √(m/M) between them.  So two impacts
-    turn it by 2θ; after ⌈π/θ⌉ − 1 impacts nothing approaches.
+    """There are ⌊10^N π⌋ impacts.  The point (√M V, √m v) stays on a circle, because energy is conserved.  An impact
+    with the wall and an impact of the pair reflect it about two lines with the angle θ = arctan √(m/M) between
+    them.  So two impacts rotate it by 2θ; after ⌈π/θ⌉ − 1 impacts nothing approaches.
 
     Source: Galperin 2003.
     """
     theta = np.arctan(np.sqrt(LIGHT / heavy(p)))
     impacts = np.floor(10.0**p.N * np.pi)
     turned = 2.0 * np.ceil(0.5 * impacts) * theta
-    last = 1.0 if impacts % 2 == 0 else -1.0                             # whether the wall was last
+    last = 1.0 if impacts % 2 == 0 else -1.0                             # the sign tells whether the wall was last
     return np.array([impacts, last * np.sin(turned), -np.cos(turned)])
 
 
 def limit(p, dt):
-    """One impact too many is 1/⌊10^N π⌋.  Each impact rounds velocities four times by 1.1e-16: relative to the number
-    of impacts that is 4.4e-16.  θ is rounded in the truth, too.  Engines do the same operations, if they see every
+    """One impact too many is 1/⌊10^N π⌋.  Each impact rounds velocities four times by 1.1e-16.  Relative to the number
+    of impacts that is 4.4e-16.  θ is rounded in the truth, too.  Engines do the same operations if they detect every
     impact.
     """
     return 1e-15
@@ -106,12 +106,12 @@ def limit(p, dt):
 # ---------------------------------------------------------------------------------------------- engines
 
 def engine_step(p):
-    """A step [s] in which the light block, 10^N V at most, goes as far as the heavy one lets it: about ROOM 10^−N."""
+    """Return a step [s] in which the light block, at most 10^N V fast, moves by its free distance: about ROOM 10^−N."""
     return ROOM / (p.V * 100.0**p.N) / (1.0 if p.N else 10.0)
 
 
 def count(advance, velocities, p):
-    """Run an engine, and count: the wall changes the sum of momenta, and the pair the heavy one's velocity."""
+    """Run an engine and count: the wall changes the total momentum, and the pair the heavy block's velocity."""
     dt, met = engine_step(p), 0
     v, V = velocities()
     for _ in range(round(OVER / p.V / dt)):
@@ -147,6 +147,7 @@ def pybullet_make(p, dt):
     bullet.ball(0.0, 1.0, R, (PLACES[0], 0.0, 0.0), still, still, 1.0, 0.0)
     light = bullet.ball(LIGHT, 1.0, R, (PLACES[1], 0.0, 0.0), still, still, 1.0, 0.0)
     large = bullet.ball(heavy(p), 1.0, R, (PLACES[2], 0.0, 0.0), (-p.V, 0.0, 0.0), still, 1.0, 0.0)
+    bullet.begin()
     velocities = lambda: (bullet.velocity(light)[0], bullet.velocity(large)[0])
     return EngineRun(lambda: None, lambda: count(bullet.step, velocities, p), bullet.close)
 
@@ -168,7 +169,7 @@ def quantity_names(p):
 
 
 def exact_count(N):
-    """The number of impacts in fractions, which are never rounded."""
+    """Return the number of impacts by exact fractions."""
     m, M, v, V, met = Fraction(1), Fraction(100**N), Fraction(0), Fraction(-1), 0
     while V < v or v < 0:
         if V < v:
@@ -180,7 +181,7 @@ def exact_count(N):
 
 
 def sanity_checks():
-    """Return Findings: the count in fractions, Galperin's angle, and the energy in the end."""
+    """Return Findings: the count in fractions, Galperin's angle, and the final energy."""
     cases = list(CASES.values())
     angles = [np.ceil(np.pi / np.arctan(10.0**-p.N)) - 1.0 for p in cases]
     ends = np.array([truth(p, T) for p in cases])
@@ -192,7 +193,7 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The wall, and both blocks as squares, the heavy one larger."""
+    """Draw the wall, and both blocks as squares, the heavy one larger."""
     square = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
     wall = np.array([(0.0, 0.0), (0.0, 1.5)])
     return np.concatenate((wall, np.array((0.6, 0.0)) + 0.3 * square, np.array((1.5, 0.0)) + square))
@@ -216,7 +217,7 @@ SCENE = Scene(
     points=points, links=links,
     uses=("one number for each velocity", "one impulse at a time"),
     full_loop="impacts are counted without places and times, so there is no loop",
-    ablations={"time and place": "who meets whom next follows from the velocities alone",
+    ablations={"time and place": "the next impact follows from the velocities alone",
                "restitution below 1": "the number of impacts then has nothing to do with π",
                "rotation": "impacts through the centres turn nothing"},
 )

@@ -1,8 +1,8 @@
 """A heavy box on a light one: 10, 100, 1,000 and a million times as heavy.
 
-A sweep leaves r/(1 + r) of the error, so that the number of sweeps grows with the mass ratio r.  Four answers are
-compared: the forces, the depth to which soft contacts sink, the number of sweeps, and whether anything stands at all.
-At a million the sweeps do not get there, and must say so.
+A sweep leaves r/(1 + r) of the error, so the number of sweeps grows with the mass ratio r.  Four results are
+compared: the forces, the depth to which soft contacts sink, the number of sweeps, and whether the boxes stand at all.
+At a ratio of a million the sweeps do not converge, and must report it.
 """
 
 from functools import partial
@@ -15,7 +15,7 @@ from solutions.contact import (
     make_contacts,
     make_pile_2d,
 )
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import CONTACT_ERP
 from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
@@ -38,12 +38,12 @@ from validate.scenes.drawing import outlines
 
 T = 1.0
 MU = 0.5                     # nothing slides
-SMALL = 1e-3                 # error of the forces until which sweeps are counted [-]
+SMALL = 1e-3                 # sweeps are counted until the forces have this error [-]
 DT = 1.0 / 240.0             # of the pile and of the engines [s]
 ZETA = 10.0                  # damping ratio of the pile's contacts [-]
-WAITING = 3.0                # of the engines [s]
-OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: they see a contact when there is one
-STANDS = 0.1                 # of a box: what has moved by less, stands [-]
+WAITING = 3.0                # duration of the engines' runs [s]
+OVERLAP = 1e-6               # of pymunk's bodies at first [m]: it detects a contact only if they overlap
+STANDS = 0.1                 # displacement over the size of a box below which it stands [-]
 WHOLE = 1e-15                # error of a whole number, which must be exact [-]
 ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
 FINE = {"iterations": 1000, "slop": 1e-4}                    # of pymunk; slop [m]
@@ -81,7 +81,10 @@ def masses(p):
 
 
 def start(p):
-    """(centres (3, 2), inverse masses, inverse moments, contacts from below, load); the last body is the ground."""
+    """Return (centres (3, 2), inverse masses, inverse moments, contacts from below, load).
+
+    The last body is the ground.
+    """
     check_positives(p, "r", "m", "size", "g")
     x = p.size * np.array([(0.0, 0.5), (0.0, 1.5), (0.0, -0.5)])
     inv_mass = np.append(1.0 / masses(p), 0.0)
@@ -106,21 +109,24 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def normals_only(lessons, state):
-    """(A, b) of both contacts without friction."""
+    """Return (A, b) of both contacts without friction."""
     contact, (x, inv_mass, inv_inertia, contacts, load) = lessons.contact, state
     G, w = contact.contact_rows(x, contacts)[::2], contact.inverse_masses(inv_mass, inv_inertia)
     return contact.delassus_matrix(G, w), G @ (w * load.ravel())
 
 
 def forces_of(lessons, step, state, p):
-    """Forces (2,) by a solver, one contact in the middle of each joint."""
+    """Return the forces (2,) by a solver, with one contact in the middle of each joint."""
     if step is lessons.contact.contact_forces:
         return step(*state, np.full(2, MU))[0][:, 0]
     return step(*normals_only(lessons, state))
 
 
 def count(lessons, step, state, p):
-    """Number of sweeps from zero until both forces are right to SMALL; a wrong sweep ends at ten times what is due."""
+    """Return the number of sweeps from zero until both forces are right to SMALL.
+
+    A wrong sweep ends at ten times the expected number.
+    """
     (A, b), lam = normals_only(lessons, state), np.zeros(2)
     forces, omega = weights(p), relaxation(lessons, p)
     most = 10.0 * sweeps_needed(p.r, best(p.r) if p.kind == "relaxed" else 1.0, SMALL)
@@ -131,13 +137,13 @@ def count(lessons, step, state, p):
 
 
 def relaxation(lessons, p):
-    """The lesson's best relaxation, or none."""
+    """Return the lesson's best relaxation, or none."""
     contact = lessons.contact
     return contact.best_relaxation(contact.mass_ratio_contraction(p.r))[0] if p.kind == "relaxed" else 1.0
 
 
 def refuses(lessons, step, state, p):
-    """1 if it ends in Diverged that names a residual, else 0."""
+    """Return 1 if it ends in Diverged with a residual, else 0."""
     try:
         settled(lessons, step, p) if step is lessons.contact.advance_pile_2d else forces_of(lessons, step, state, p)
     except Diverged as e:
@@ -146,7 +152,7 @@ def refuses(lessons, step, state, p):
 
 
 def settled(lessons, advance, p):
-    """(depths [m], forces [N]), both (2,) from below, of boxes that were put on each other as a pile."""
+    """Return (depths [m], forces [N]), both (2,) from below, of boxes stacked as a pile."""
     substeps, hertz, seconds = solver(p)
     half = np.full((2, 2), 0.5 * p.size)
     state, pile = make_pile_2d(start(p)[0][:2], np.zeros(2), masses(p), masses(p) * p.size**2 / 6.0, half,
@@ -165,20 +171,20 @@ def weights(p):
 
 
 def best(r):
-    """The relaxation at which both eigenvalues of a sweep are equal, z² + (2(ω − 1) − ω² ρ) z + (ω − 1)² = 0."""
+    """Return the relaxation at which both eigenvalues of a sweep are equal: z² + (2(ω − 1) − ω² ρ) z + (ω − 1)² = 0."""
     return 2.0 / (1.0 + 1.0 / np.sqrt(1.0 + r))
 
 
 def truth(p, t):
-    """Newton's second law for all that is above a contact: (1 + r) m g and r m g.
+    """Newton's second law for all bodies above a contact gives the forces: (1 + r) m g and r m g.
 
     overlap     A soft contact sinks by k_n F/(2π hertz)².  A box of mass M has k_n = 1/M + (w/2)²/I = 2.5/M at each of
-                two corners, of which each carries half: 1.25 (1 + r) g/(2π hertz)² under both boxes, because the
-                upper contact has k_n = 2.5 (1 + 1/r)/m and half of r m g.
-    sweeps      A sweep leaves ρ = r/(1 + r) of the error: ln(1/1000)/ln ρ of them.  The best relaxation has a double
+                two corners, and each corner carries half.  That gives 1.25 (1 + r) g/(2π hertz)² under both boxes,
+                because the upper contact has k_n = 2.5 (1 + 1/r)/m and half of r m g.
+    sweeps      A sweep leaves ρ = r/(1 + r) of the error: ln(1/1000)/ln ρ sweeps.  The best relaxation has a double
                 eigenvalue ω − 1; the recursion of its two errors is counted to the end.
-    stands      1: what should stand stands
-    refused     1: what sweeps cannot find they refuse
+    stands      1: both boxes stand
+    refused     1: the sweeps end in an error, because they cannot find the forces
     Source: Newton; Catto 2011 for soft contacts; Young 1971 for relaxation.
     """
     if p.kind == "overlap":
@@ -193,13 +199,13 @@ def sag(p):
 
 
 def count_limit(p, dt):
-    """Numbers of sweeps, and whether boxes stand or are refused, are whole numbers, which must be exact."""
+    """The number of sweeps is a whole number, and whether boxes stand or are refused is 0 or 1: all must be exact."""
     return WHOLE
 
 
 def swept_limit(p, dt):
-    """forces: sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual over
-    the least eigenvalue of A at most.
+    """forces: sweeps stop when the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is at most the
+    residual over the smallest eigenvalue of A.
     """
     if p.kind != "forces":
         return WHOLE
@@ -209,16 +215,17 @@ def swept_limit(p, dt):
 
 
 def solved_limit(p, dt):
-    """forces: Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations."""
+    """forces: Murty's method solves a linear system: 1.1e-16 times the condition of A, and ten for the operations."""
     values = np.linalg.eigvalsh(normal_matrix(p))
     return 10.0 * 1.1e-16 * values[-1] / values[0]
 
 
 def pile_limit(p, dt):
-    """forces: the pile still rocks a little when it is read.  The limit is three times what the recursion of its sweeps
-    says, because the phase of the rocking depends on the places of the corners, and the force of a rounded gap.
-    overlap: the upper box slides aside by no more than it sinks, and takes a corner along: a relative change of
-    2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; and a corner's sway, as for the forces.
+    """forces: the pile still rocks slightly when it is read.  The limit is three times the sway that the recursion
+    of its sweeps predicts, because the phase of the rocking depends on the places of the corners; the force of a
+    rounded gap is added.
+    overlap: the upper box slides aside by no more than it sinks, and shifts a corner: a relative change of
+    2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; the sway of a corner is added, as for the forces.
     """
     if p.kind == "overlap":
         return 2.4 * sag(p) / p.size + sway(p)
@@ -226,28 +233,28 @@ def pile_limit(p, dt):
 
 
 def pymunk_limit(p, dt):
-    """forces: pymunk rocks, too: its limit is three times what the recursion of its sweeps says, and the roundings of
-    Murty.
+    """forces: pymunk rocks, too.  Its limit is three times the sway that the recursion of its sweeps predicts, and the
+    rounding errors of Murty's method.
     """
     return 3.0 * unrest(p) + solved_limit(p, dt) if p.kind == "forces" else WHOLE
 
 
 def pybullet_limit(p, dt):
-    """forces: pybullet begins each step with the last impulses, and takes 8 % of an overlap back per step, so that only
-    the rounding of an overlap is left.
+    """forces: pybullet begins each step with the last impulses, and removes 8 % of an overlap per step.  So only the
+    rounding of an overlap remains.
     """
     return rounded_overlap(masses(p), p.size, p.g, CONTACT_ERP, DT) if p.kind == "forces" else WHOLE
 
 
 def mujoco_limit(p, dt):
-    """forces: MuJoCo's contacts are at rest, but for roundings.
-    overlap: MuJoCo's overlaps are differences of places, which are rounded.
+    """forces: MuJoCo's contacts are at rest, up to round-off.
+    overlap: MuJoCo's overlaps are differences of rounded positions.
     """
     return 10.0 * ROUND_OFF * p.size / sag(p) if p.kind == "overlap" else ROUNDED
 
 
 def normal_matrix(p):
-    """A of the normal impulses, one contact in the middle of each joint."""
+    """Return A of the normal impulses, with one contact in the middle of each joint."""
     light, heavy = 1.0 / masses(p)
     return np.array([(light, -light), (-light, light + heavy)])
 
@@ -269,7 +276,10 @@ def sway(p):
 # ---------------------------------------------------------------------------------------------- engines
 
 def answer(p, forces, bottoms):
-    """Return an engine's answer: forces, overlaps, or whether both boxes are still in place; it never refuses."""
+    """Return an engine's result: forces, overlaps, or whether both boxes are still in place.
+
+    An engine never refuses.
+    """
     if p.kind == "overlap":
         return -np.diff(bottoms, prepend=0.0)
     if p.kind == "forces":
@@ -297,36 +307,42 @@ def mujoco_make(p, dt):
 
 
 def softly(p, t):
-    """The overlap of MuJoCo's contacts, a quarter of F (1 − d) τ² (1/m + 1/m'): (1 + r) g (1 − d) τ²/4 in both."""
+    """Return the overlap of MuJoCo's contacts, F (1 − d) τ² (1/m + 1/m')/4: (1 + r) g (1 − d) τ²/4 in both."""
     if p.kind != "overlap":
         return truth(p, t)
     return np.array([mujoco_sag(load, m, below) for load, m, below in zip(weights(p), masses(p), (np.inf, p.m))])
 
 
 def too_few(sweeps):
-    """Say why so many sweeps per step do not carry the heavy box, and that no error reports it."""
+    """Return the reason why this number of sweeps per step does not carry the heavy box, and no error reports it."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
     return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
                      "box is inside the light one. It reports no residual, so that nothing warns of it",
-                     lambda p, t: np.zeros(1))
+                     lambda p, t: np.zeros(1), Whose.DEFAULT)
 
 
 def up_to(**most):
-    """Return the field `supports` of a runner that answers these kinds of questions up to these mass ratios.
+    """Return the field `supports` of a runner that supports these kinds of questions up to these mass ratios.
 
-    A million is left to Murty and to the question who refuses it.
+    Only Murty's method and the question of refusal run at a ratio of a million.
     """
     return lambda p: p.r <= most.get(p.kind, 0.0)
 
 
+def too_many(p):
+    """A million is too much for the sweeps."""
+    return "it would take 6.9 million sweeps, and ends in Diverged after 50,000" if p.r > 1e3 else ""
+
+
 ANY = np.inf
 SPRINGS = Departure("its contacts are springs with dampers, whose stiffness is not ours: the impedance "
-                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly)
+                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly, Whose.LAW)
 PHASE = "only the size of its rocking is known, because its phase depends on the exact places of the corners"
 RUNNERS = (
     ours(DIRECT, limit=solved_limit, order=EXACT, supports=up_to(forces=ANY),
          predicted="it solves a linear system: only round-off is left, and the limit bounds it"),
-    ours(SWEEPS, limit=swept_limit, order=EXACT, supports=up_to(forces=1e3, refused=ANY),
+    ours(SWEEPS, limit=swept_limit, order=EXACT, supports=up_to(forces=ANY, refused=ANY),
+         unfinished=lambda p: too_many(p) if p.kind == "forces" else "",
          predicted="its sweeps stop at a residual, and the limit bounds what is left"),
     ours(PILE, limit=pile_limit, order=EXACT, predicted=PHASE,
          supports=up_to(forces=1e3, overlap=ANY, stands=ANY, refused=ANY)),
@@ -364,7 +380,7 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """Return Findings: the truths by other means."""
+    """Return Findings: the truths by other methods."""
     light = 1.0 - 1.0 / 11.0
     by_hand = next(k for k in range(1, 1000) if light**k <= SMALL)
     omegas = np.linspace(1.5, 1.6, 1001)
@@ -377,7 +393,7 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """Both boxes from the side, and the ground; the heavy one is hatched."""
+    """Draw both boxes from the side, and the ground; the heavy box is hatched."""
     square = p.size * np.array([(-0.5, 0.0), (0.5, 0.0), (0.5, 1.0), (-0.5, 1.0)])
     hatching = p.size * np.array([(s, 1.0 + h) for s in (-0.25, 0.0, 0.25) for h in (0.0, 1.0)])
     upper, ground = square + np.array([0.0, p.size]), p.size * np.array([(-1.0, 0.0), (1.0, 0.0)])

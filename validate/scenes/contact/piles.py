@@ -1,8 +1,8 @@
-"""Bodies fall between walls and come to rest: discs, boxes, spheres and bricks, up to a thousand of them.
+"""Discs, boxes, spheres and bricks, up to a thousand of them, fall between walls and come to rest.
 
-Where each of them ends cannot be predicted.  The laws of a pile at rest are known: the floor carries the
-weight, the walls push with as much from all sides, nothing overlaps, no energy was made, and every contact keeps the
-laws of Signorini and Coulomb.
+The final place of each body cannot be predicted.  But the laws of a pile at rest are known.  The floor carries the
+weight, the walls push equally from all sides, nothing overlaps, no energy was created, and every contact satisfies
+the laws of Signorini and Coulomb.
 """
 
 from functools import partial
@@ -23,11 +23,11 @@ from validate.scenes._common import ANSWER, one_reading
 from validate.scenes.drawing import box, outlines, seen, sphere
 
 T = 1.0
-BLOCK = 10                   # steps from one look at the energy to the next
-QUIET = 1e-2                 # of the weight: what may be out of balance in a pile that has come to rest [-]
+BLOCK = 10                   # steps between two evaluations of the energy
+QUIET = 1e-2                 # largest imbalance of a pile at rest, over the weight [-]
 CREEPING = 2.0 * QUIET       # four numbers of 1 % each [-]
-CHAINS = 4.0                 # times the mean force in a column: the largest one in a pile [-]
-PYRAMID = np.sqrt(2.0)       # by which pybullet's friction exceeds μ along the diagonals of its pyramid [-]
+CHAINS = 4.0                 # largest force in a pile over the mean force in a column [-]
+PYRAMID = np.sqrt(2.0)       # factor by which pybullet's friction exceeds μ along the diagonals of its pyramid [-]
 FALL: dict = {}              # {p: [(x, q), …]} of our last run of a case, block by block, for the film
 
 
@@ -56,14 +56,14 @@ def kind_of(p):
 
 
 def start(p):
-    """(PileState, Pile) on a lattice."""
+    """Return (PileState, Pile) on a lattice."""
     if p.n < 1 or p.across < 1:
         raise BadInput("n or across", min(p.n, p.across), "give 1 or more")
     return fallen(kind_of(p), p.n)
 
 
 def geometry(lessons, p):
-    """(bounds, contacts) of a kind of pile: given functions of lesson 9, compiled ones for a compiled step."""
+    """Return (bounds, contacts) of a kind of pile: given functions of lesson 9, compiled ones for a compiled step."""
     contact = lessons.contact
     return {"discs": (contact.disc_bounds, contact.round_contacts),
             "boxes": (contact.box_bounds_2d, contact.box_contacts_2d),
@@ -72,7 +72,10 @@ def geometry(lessons, p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """The pile in blocks of BLOCK steps, and the largest rise of its energy from one to the next."""
+    """Run the pile in blocks of BLOCK steps.
+
+    Return its end and the largest rise of its energy from one block to the next.
+    """
     (pile_state, pile), shape, energies = state, geometry(lessons, p), []
     FALL[p] = [(pile_state.x, pile_state.q)]
     for _ in range(round(p.seconds / DT / BLOCK)):
@@ -83,7 +86,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """All numbers of a pile in the end; see quantity_names."""
+    """Return all observed numbers of the pile at the end; see quantity_names."""
     end, pile, energies = state
     c, h = end.contacts, DT / pile.substeps
     wall = np.sum(end.J[c.b >= p.n], axis=0) / h
@@ -96,7 +99,7 @@ def observe(state, p):
 
 
 def energy(pile, x, q, v, omega):
-    """Kinetic and potential energy [J]; x and v have rows for the planes, too."""
+    """Return the kinetic and potential energy [J]; x and v have rows for the planes, too."""
     n = len(pile.half)
     m, turned = 1.0 / pile.inv_mass[:n], omega[:n]
     moments = 1.0 / pile.inv_inertia[:n]
@@ -109,7 +112,7 @@ def energy(pile, x, q, v, omega):
 
 
 def numbers(p, pile, x, q, wall, energies, residual):
-    """Return the observed numbers, computed from places, forces, energies and the residual [m/s]."""
+    """Return the observed numbers, computed from positions, forces, energies and the residual [m/s]."""
     weight = G * np.sum(1.0 / pile.inv_mass[:p.n])
     rise = max(0.0, np.max(np.diff(energies))) / energies[0]
     bounds, contacts = geometry(solutions, p)
@@ -121,21 +124,22 @@ def numbers(p, pile, x, q, wall, energies, residual):
 
 
 def truth(p, t):
-    """At rest the floor carries all: Newton's second law for the sum of the bodies.  The walls balance each other.
-    Rigid bodies do not overlap, e = 0 makes no energy, and the natural map has no residual.
+    """At rest the floor carries the whole weight: Newton's second law for the sum of the bodies.  The forces of the
+    walls balance.  Rigid bodies do not overlap, e = 0 creates no energy, and the natural map has no residual.
 
     The residual is that of the impulses of the last step, ours or an engine's.  For boxes pymunk reports only the sum
-    of two points, so that these are not judged.  pybullet's friction is a pyramid, which reaches √2 μ along its
-    diagonals; it is judged with √2 μ here, and with μ in a stability case.
+    of two points, so these are not judged.  pybullet's friction is a pyramid, which reaches √2 μ along its
+    diagonals.  It is judged with √2 μ here, and with μ in a stability case.
     Source: Newton; Signorini and Coulomb.
     """
     return np.array([1.0, 0.0, 0.0, 0.0] + ([] if not p.judged else [0.0]))
 
 
 def limit(p, dt):
-    """A pile at rest still creeps: each number but the overlap may be off by 1 % of the weight, or of g dt.  The
-    overlap may be the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the least mass k_n = 2/m, and twice
-    that at corners.  F is 4 times the weight of a column of n/across bodies, because forces go in chains.
+    """A pile at rest still creeps.  Each number but the overlap may be off by 1 % of the weight, or of g dt.  The
+    overlap may be the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the smallest mass k_n = 2/m, and
+    twice that at corners.  F is 4 times the weight of a column of n/across bodies, because forces concentrate in
+    chains.
     """
     kind, corner = kind_of(p), 2.0 if p.kind in ("boxes", "bricks") else 1.0
     columns = p.across ** (kind.d - 1)
@@ -144,15 +148,15 @@ def limit(p, dt):
 
 
 def pymunk_limit(p, dt):
-    """pymunk lets bodies overlap by its slop, 1e-3 m, over the least half size of 0.08 m, and by as much again where
-    its iterations have not converged.
+    """pymunk lets bodies overlap by its slop, 1e-3 m, over the smallest half size of 0.08 m, and by the same amount
+    again where its iterations have not converged.
     """
     return CREEPING + 2.0 * 1e-3 / 0.08
 
 
 def unknown(p, dt):
     """pymunk's default slop is larger than the bodies.  pybullet's iterations leave more than its slop.  No theory says
-    how much, so these are shown and not judged.
+    how much, so these errors are shown and not judged.
     """
     return np.inf
 
@@ -160,7 +164,7 @@ def unknown(p, dt):
 # ---------------------------------------------------------------------------------------------- engines
 
 def make(p, dt, rival, wider=1.0):
-    """The EngineRun of an engine's pile: its whole run is one long reading."""
+    """Make the EngineRun of an engine's pile: its whole run is one long reading."""
     def read():
         state, pile = start(p)
         world, energies = rival(kind_of(p), state, pile), []
@@ -186,13 +190,11 @@ def solid(p):
 
 
 def few_in_space(p):
-    """Of many bodies pybullet's residual does not go away, so that it is judged with a few; and 1,000 take it a
-    minute.
-    """
+    """Return whether few bodies are in space: with many, pybullet's residual stays, and 1,000 take a minute."""
     return solid(p) and p.n <= (12 if p.judged else 200)
 
 
-CREEPS = "where each body ends is unknown, and so is how it creeps there: the limit bounds how much"
+CREEPS = "the final place of each body and its creep there are unknown; the limit bounds the creep"
 NO_LAW = "no theory says how much its iterations leave"
 RUNNERS = (
     ours(PILE_IN_SPACE, limit=limit, predicted=CREEPS, order=EXACT, supports=solid),
@@ -219,7 +221,7 @@ def quantity_names(p):
 
 
 def judge_of_one_ball(J, mu):
-    """Residual over g dt of a ball of 1 kg at rest on a floor, whose impulse is J times m g dt."""
+    """Return the residual over g dt of a ball of 1 kg at rest on a floor, whose impulse is J times m g dt."""
     bodies = (np.zeros((2, 3)), np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.0, 0.0]),
               np.array([np.eye(3) / (0.4 * 0.1**2), np.zeros((3, 3))]))
     contact = (np.array([0]), np.array([1]), np.array([(0.0, 0.0, 1.0)]), np.array([(0.0, 0.0, -0.1)]), np.zeros(1))
@@ -227,7 +229,7 @@ def judge_of_one_ball(J, mu):
 
 
 def sanity_checks():
-    """Return Findings: the judge finds what is wrong, and nothing else."""
+    """Return Findings: the residual detects wrong impulses, and accepts right ones."""
     right = [judge_of_one_ball(J, mu) for J, mu in (((0, 0, 1), 0.5), ((0.3, 0.4, 1), 0.5), ((9, 0, 1), np.inf))]
     # k_n = 1/m; k_t = 2/m + r²/I · 2 = 2 + 5 of a ball
     wrong = [judge_of_one_ball(J, mu) for J, mu in (((0, 0, -1), 0.5), ((0.6, 0.0, 1), 0.5))]
@@ -238,21 +240,21 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def our_film(p):
-    """[seconds, poses (n, 7) of every body at each frame] of our last run; the start alone if there was none."""
+    """Return [seconds, poses (n, 7) of every body at each frame] of our last run; only the start if there was none."""
     state = start(p)[0]
     fall = FALL.get(p, [(state.x, state.q)])
     return (len(fall) - 1) * BLOCK * DT, [in_space(x[:p.n], q[:p.n]) for x, q in fall]
 
 
 def in_space(x, q):
-    """Poses (n, 7) of bodies; those of two dimensions stand upright in the plane x = 0."""
+    """Return poses (n, 7) of bodies; those of two dimensions stand upright in the plane x = 0."""
     if x.shape[1] == 2:
         x, q = np.insert(x, 0, 0.0, axis=1), np.stack((np.cos(0.5 * q), np.sin(0.5 * q), 0.0 * q, 0.0 * q), axis=1)
     return np.hstack((x, q))
 
 
 def bodies(p):
-    """Spheres and boxes; a disc is drawn as a sphere, and a box of two dimensions as thick as it is wide."""
+    """Return spheres and boxes; a disc is drawn as a sphere, and a box of two dimensions as thick as it is wide."""
     halves = start(p)[1].half
     if kind_of(p).shape == "round":
         return [sphere(half[0]) for half in halves]
@@ -260,7 +262,7 @@ def bodies(p):
 
 
 def walls(p):
-    """Edges of the container, as high as the bodies begin; in two dimensions its floor and two walls."""
+    """Return the edges of the container, as high as the initial lattice; in two dimensions its floor and two walls."""
     state, pile = start(p)
     wall, high = pile.planes[1, -1], np.max(state.x[:p.n, -1] + np.max(pile.half, axis=-1))
     if state.x.shape[1] == 2:
@@ -275,7 +277,7 @@ SIDES = 16                   # of a circle in the picture
 
 
 def points(poses, p):
-    """The outline of every sphere, seen obliquely from the front, and the floor: the first case is drawn."""
+    """Draw the first case: the outline of every sphere, seen obliquely from the front, and the floor."""
     pile, turn = start(p)[1], np.linspace(0.0, 2.0 * np.pi, SIDES + 1)[:-1]
     ring = np.stack((np.cos(turn), np.sin(turn)), axis=1)
     circles = [middle + half[0] * ring for middle, half in zip(seen(poses[:, :3]), pile.half)]

@@ -7,7 +7,7 @@ from validate.scenes._common import ONE_LINK, coordinates, measured
 
 
 def block_on(ground, start):
-    """Return the fields that the scenes of a block share; ground: "floor" or "slope", start: that of the scene."""
+    """Return the fields that the scenes of a block share; ground: "floor" or "slope", start: the start of the scene."""
     return {
         "lesson": "friction",
         "start": start,

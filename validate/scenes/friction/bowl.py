@@ -18,7 +18,7 @@ from validate.scenes._common import check_positives, coordinates
 
 T = 2.0                      # [s]: one oscillation; with friction it has come to rest
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
-AT_REST = 1e-6               # [m/s]: a slower particle has 1e-13 m to go until friction stops it
+AT_REST = 1e-6               # [m/s]: friction stops a slower particle within 1e-13 m
 
 
 class Params(NamedTuple):
@@ -64,14 +64,17 @@ def inward(x, p):
 
 
 def support(x, v, p):
-    """Return the normal force over mass [m/s²]: gravity, and v²/R for the curved path, v along a trough excluded."""
+    """Return the normal force over mass [m/s²]: gravity, and v²/R for the curved path, without v along a trough."""
     round_ = v[0] ** 2 + v[2] ** 2 + (0.0 if p.trough else v[1] ** 2)
     return round_ / p.radius + p.g * inward(x, p)[2]
 
 
 @cache
 def reference(p):
-    """Return [(begin, motion), …] and the rest position, or None: one piece for each start, by DOP853."""
+    """Return [(begin, motion), …] and the rest position, or None.
+
+    DOP853 solves one piece from each start.
+    """
     def law(t, y):
         x, v = y[:3], y[3:]
         n, N = inward(x, p), support(x, v, p)
@@ -93,7 +96,7 @@ def reference(p):
         piece = solve_ivp(law, (t, T), np.concatenate((x, v)), method="DOP853", rtol=1e-12, atol=1e-13,
                           dense_output=True, events=slow if p.mu else None)
         pieces.append((t, piece.sol))
-        # The root of `slow` may be rounded to a speed above AT_REST, so the event says that the mass has stopped.
+        # The root of `slow` may be rounded to a speed above AT_REST, so the event decides that the mass has stopped.
         t, x, v, stopped = piece.t[-1], piece.y[:3, -1], piece.y[3:, -1], piece.status == 1
     return pieces, None
 
@@ -111,20 +114,22 @@ def truth(p, t):
 
 
 def fastest(p):
-    """Return a bound of the speed [m/s]: all height converted into it."""
+    """Return a bound of the speed [m/s]: the whole height converted into kinetic energy."""
     return np.sqrt(p.v0**2 + 2.0 * p.g * (p.radius + place(p)[0][2]))
 
 
 def limits(p, dt):
-    """Nothing changes faster than the rate √(g/R) and the rotation v/R; pybullet is of order 1, like our steps."""
+    """The fastest rates are √(g/R) and the rotation v/R; pybullet is of order 1, like our steps."""
     return by_order(np.sqrt(p.g / p.radius) + fastest(p) / p.radius, T, dt)
 
 
 def in_steps(p, steps, nudge, gripping=False):
-    """Return x at T: fall, move with the new velocity, go back to the wall; stop what goes into it, and friction.
+    """Return x at T: fall, move with the new velocity, return to the wall.
 
-    Friction takes at most μ times what the wall stops of the velocity along it.  With `gripping` it takes at most μ
-    times the depth of the way along it, too, while the particle moves outwards.
+    Then remove the velocity into it, and friction.
+
+    Friction removes at most μ times the velocity that the wall stopped.  With `gripping` it also removes at most μ
+    times the depth from the displacement along the wall, while the particle moves outwards.
     """
     dt, (x, v) = T / steps, place(p)
     x, fall = x * (1.0 + nudge), np.array([0.0, 0.0, -p.g * T / steps])
@@ -154,9 +159,9 @@ def in_steps(p, steps, nudge, gripping=False):
 
 
 def in_bullet(p, steps, nudge):
-    """Return x at T of pybullet's ball on the tangent plane: the fall, the plane, its friction, then the way.
+    """Return x at T of pybullet's ball on the tangent plane: gravity, the plane, its friction, then the motion.
 
-    The plane lets the ball come as near as it is in one step, and drives a ball inside it out by a share of its depth.
+    The plane lets the ball approach by its gap in one step, and pushes a ball inside it out by a fraction of its depth.
     """
     dt, (x, v) = T / steps, place(p)
     x, fall = x * (1.0 + nudge), np.array([0.0, 0.0, -p.g * T / steps])
@@ -183,9 +188,9 @@ def errors_of(march):
         return ErrorLaw(partial(march, p), np.array(truth(p, T)), 1, T, 800)
 
     def predicted_error(p, dt):
-        """The error, with its sign, of the same rule in plain numbers: the fall, the way back to the wall, the
-        friction.  At the same step where that is coarse, else by its expansion in powers of dt.  pybullet's own step
-        likewise.
+        """The error, with its sign, of the same rule in plain numbers: gravity, the return to the wall, and
+        friction.  It is taken at the same step where that is coarse, else by its expansion in powers of dt.
+        pybullet's own step is treated in the same way.
         """
         return error_law(p).prediction(dt, 1e-10)
     return predicted_error

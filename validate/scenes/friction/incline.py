@@ -1,4 +1,4 @@
-"""A block on a slope of 30°: released on a rough and on a smoother slope, and launched up one that can hold it."""
+"""A block on a slope of 30°: released on a rough and on a smoother slope, and launched up a slope that can hold it."""
 
 from functools import partial
 from typing import Annotated, NamedTuple
@@ -7,7 +7,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
@@ -55,7 +55,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def truth(p, t):
-    """s(t) = v₀ t + ½ a t²,  a = g (sin θ ∓ μ cos θ) while it slides down or up; once at rest it stays if tan θ ≤ μ.
+    """s(t) = v₀ t + ½ a t²,  a = g (sin θ ∓ μ cos θ) while it slides down or up; after a stop it stays if tan θ ≤ μ.
 
     Otherwise it slides on.  Source: Coulomb 1785; two phases of constant acceleration.
     """
@@ -75,12 +75,13 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """The velocity is exact at every step.  Positions sum it at one end of each: off by at most ½ dt times its change.
+    """The velocity is exact at every step.  The position uses the velocity at one end of each step, so its error is
+    at most ½ dt times the change of velocity.
 
-    In a block that slides for the time T the velocity changes by a T.  In one that stops on the way it changes by v₀,
+    A block that slides for the time T changes its velocity by a T.  A block that stops on the way changes it by v₀,
     and the last, shorter step adds up to ⅛ a dt².  pybullet moves with the new velocity like our methods of order 1,
-    pymunk with the old one: the same bound.  On two or four contacts, a slab of 2 m settles within an engine's
-    iterations.  It begins with the overlap that the engine tolerates.
+    pymunk with the old one, which gives the same bound.  On two or four contacts, a slab of 2 m settles within an
+    engine's iterations.  It begins with the overlap that the engine tolerates.
     """
     along, across = tilted(p)
     size = abs(truth(p, T)[0])
@@ -90,7 +91,7 @@ def limits(p, dt):
 
 
 def new_velocity(p, dt, new=True):
-    """Velocities are exact at every step, but the block moves with the new one (pymunk: the old one) all step long.
+    """Velocities are exact at every step, but the block moves with the new one (pymunk: the old one) for a whole step.
 
     So it ends where the rectangle rule ends: too low on the slope with the new velocity, too high with the old one.
     """
@@ -106,8 +107,8 @@ old_velocity = partial(new_velocity, new=False)
 
 
 def hops(p, dt):
-    """MuJoCo's block hops on its contact: the same contact law, solved in closed form, predicts every hop.  Runs that
-    begin a nanometre apart show how far that can be trusted: the band is four times half of their range.
+    """MuJoCo's block hops on its contact.  The same contact law, solved in closed form, predicts every hop.  Runs
+    whose starts differ by a nanometre show how accurate that is: the band is four times half of their range.
     """
     middle, half = soft(p).hopping(p.v0, dt, round(T / dt))
     law = held(p, T)[0]
@@ -120,9 +121,11 @@ def soft(p):
 
 
 def held(p, t):
-    """As the truth says while it slides.  Where friction holds it, it creeps with (1 − d) τ/2 times g sin θ.
+    """While it slides, the block moves as the truth does.
 
-    d and τ are the impedance and the time constant of MuJoCo's contact.  Its last speed dies out within a few τ.
+    Where friction holds it, it creeps with (1 − d) τ/2 times g sin θ.
+
+    d and τ are the impedance and the time constant of MuJoCo's contact.  Its last speed decays within a few τ.
     """
     along, across = tilted(p)
     slides = p.v0 > 0.0 or along + p.mu * across > 0.0
@@ -153,7 +156,7 @@ RUNNERS = (
     engine(MUJOCO, "", mujoco_make, f"{TILTED}a ball that cannot turn; {SOFT}",
            order=1, limit=limits, predicted=hops,
            departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
-                               "slope that can hold it, a block creeps", held)),
+                               "slope that can hold it, a block creeps", held, Whose.LAW)),
 )
 
 

@@ -1,4 +1,4 @@
-"""A block under a periodic force slightly stronger than friction: it slips twice per period, and sticks in between."""
+"""A block under a periodic force slightly larger than friction: it slips twice per period, and sticks in between."""
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def push(p, d):
-    """t → force (d,) [N] on the engines' block, whose mass differs."""
+    """Return t → force (d,) [N] on the engines' block, whose mass differs."""
     still = (0.0,) * (d - 1)
     return lambda t: (MASS * p.force / p.m * float(np.cos(p.omega * t)), *still)
 
@@ -56,7 +56,7 @@ PUSHED = ", the force applied each step"
 RUNNERS = (
     ours(SLIDING, limit=slip_limits, predicted=slip_error),
     ours(EVENT, limit=slip_limits,
-         predicted="it cuts its steps where slips begin and end, so that its error is no smooth function of dt"),
+         predicted="it cuts its steps where slips begin and end, so its error is not a smooth function of dt"),
     engine(PYMUNK, "", pymunk_make, slab_on_line(after=PUSHED),
            order=1, limit=slip_limits, predicted=old_velocity_slip_error),
     engine(PYBULLET, "", pybullet_make, slab_on_box(after=PUSHED),
@@ -65,7 +65,7 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return Findings: times of the slips, and places after them."""
+    """Return Findings: the times of the slips, and the positions after them."""
     p = CASES["F = 8 cos t"]
     times = np.array([[begin, end] for begin, end, _, _ in slips(p)])
     known = np.array([[0.0, 0.338608], [2.946347, 3.532835]])
@@ -77,7 +77,7 @@ def sanity_checks():
 
 
 def points(observed, p):
-    """Draw the block, its displacement magnified fifty times, and its initial place."""
+    """Draw the block, its displacement magnified fifty times, and its initial position."""
     return np.array([[0.0, 0.0], [50.0 * observed[0], 0.3]])
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
@@ -54,7 +54,7 @@ def braked(v, t, a):
 
 
 def truth(p, t):
-    """s(t) = v₀ t − ½ μ g t²  until  t = v₀/μg,  straight on.
+    """s(t) = v₀ t − ½ μ g t²  until  t = v₀/μg,  in a straight line.
 
     Source: Coulomb 1785; ½ m v₀² = μ m g s.
     """
@@ -62,18 +62,20 @@ def truth(p, t):
 
 
 def pyramid(p, t):
-    """With a square for the disc each component is decelerated by μg until it stops, after v_x²/2μg and v_y²/2μg.
+    """Return the positions under a friction square, which decelerates each component of v by μg until it stops.
 
-    At 45° that is 1/√2 of the distance; at 22.5° the block turns towards the x axis and stops at 9.7°.
+    The components stop after v_x²/2μg and v_y²/2μg.  At 45° that is 1/√2 of the distance; at 22.5° the block turns
+    towards the x axis and stops at 9.7°.
     """
     return braked(thrown(p)[:2], t, p.mu * p.g)
 
 
 def limits(p, dt):
-    """The velocity is exact at every step until it is zero.  Positions sum it at the wrong end of each step: ½ v₀ dt.
+    """The velocity is exact at every step until it is zero.  The position uses the velocity at one end of each step,
+    so its error is ½ v₀ dt.
 
-    The last step is shorter, which adds up to ⅛ μg dt² (see the incline).  Where the stop is found, only round-off is
-    left.
+    The last step is shorter, which adds up to ⅛ μg dt² (see the incline).  If the method finds the time of the
+    stop, only round-off is left.
     """
     bias = (0.5 * p.v0 * dt + p.mu * p.g * dt * dt / 8.0) / np.linalg.norm(truth(p, T))
     return {1: bias + rounded(p, dt), EXACT: rounded(p, dt)}
@@ -100,7 +102,7 @@ def new_velocities(p, dt):
     return Prediction(summed(velocities, T, dt, True) - pyramid(p, T), rounded(p, dt))
 
 
-BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid)
+BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid, Whose.LAW)
 
 
 def pymunk_make(p, dt):

@@ -1,4 +1,4 @@
-"""Copies of impacts at different moments of a step: the runners that find them late, or in time."""
+"""Copies of impacts at different phases of a step: runners that detect them late, or at the right time."""
 
 from functools import partial
 
@@ -11,7 +11,7 @@ def impact_runners(methods, limits, late, in_pymunk, in_pybullet, pymunk_errs=No
     """Return the runners of a scene of impacts: our methods, pymunk and pybullet.
 
     methods        one that projects, and one that goes back to the moment of the impact
-    late           (p, dt, rule) → Prediction of what finds an impact at the end of a step
+    late           (p, dt, rule) → Prediction of a runner that detects an impact at the end of a step
     in_*           (make, settings) of an engine
     pymunk_errs    further arguments of `late` for pymunk
     pybullet       further fields of pybullet's runner

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.impulses import BouncingBall, check_restitution
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
@@ -44,7 +44,7 @@ CASES = {"plane": Params(), "space": Params(space=1.0), "comes to rest": Params(
 
 
 def fallen(p):
-    """Return the initial (height, speed) (COPIES,): each copy was released a moment earlier than the one before."""
+    """Return the initial (height, speed) (COPIES,): each copy was released slightly earlier than the one before."""
     before = delays(0.15)
     return p.h - 0.5 * p.g * before**2, -p.g * before
 
@@ -67,7 +67,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Return distance along the floor, height, and both velocities, of each copy."""
+    """Return the distance along the floor, the height, and both velocities, of each copy."""
     x, v, _ = state
     return np.stack((x[:, 0], x[:, -1], v[:, 0], v[:, -1]), axis=1).ravel()
 
@@ -93,12 +93,14 @@ def flight(p, t):
 
 
 def seen(p, t, each):
-    """Return the observed quantities of all copies; each(k) gives height and speed of one."""
+    """Return the observed quantities of all copies; each(k) gives the height and speed of one."""
     return np.array([(p.slip * t, *each(k)[:1], p.slip, *each(k)[1:]) for k in range(COPIES)]).ravel()
 
 
 def truth(p, t):
-    """Parabolas from impact to impact, eᵏ √(2gh) the speed after the k-th; at rest from  √(2h/g) (1 + e)/(1 − e)  on.
+    """Parabolas from impact to impact.
+
+    The speed after the k-th is eᵏ √(2gh).  From  √(2h/g) (1 + e)/(1 − e)  on it is at rest.
 
     Source: first lecture deck, coefficient of restitution; the geometric series.
     """
@@ -107,7 +109,7 @@ def truth(p, t):
 
 
 def soft(p, t):
-    """The same over a floor of springs and dampers, in closed form from arc to arc."""
+    """Return the same over a floor of springs and dampers, in closed form from arc to arc."""
     y, v = fallen(p)
     return seen(p, t, lambda k: soft_bounce(y[k], v[k], t, p.g, p.omega, p.damping()))
 
@@ -138,20 +140,20 @@ def limits(p, dt, kick=0.0):
 
 
 def soft_limit(p, dt):
-    """A soft floor is met as late as a hard one, and each impact costs some of the speed besides.  The penalty's spring
-    keeps  ½v² + ½ω²x² − ½ω² dt x v,  so entering and leaving at |x| ≤ v dt costs (ω dt)² of it, and its damper,
-    evaluated at one end of the step, ζω dt.
+    """An impact on a soft floor is detected as late as on a hard one, and it also costs some of the speed.  The
+    penalty's spring conserves  ½v² + ½ω²x² − ½ω² dt x v,  so entering and leaving at |x| ≤ v dt costs (ω dt)² of it,
+    and its damper, evaluated at one end of the step, costs ζω dt.
     """
     return limits(p, dt, kick=(p.omega * dt) ** 2 + p.damping() * p.omega * dt)[1]
 
 
 def late_impacts(p, dt, rule, far=1.0):
-    """Each ball is predicted on its own.  In flight the steps end on a parabola, whose velocity is ½ g dt off the true
-    one.  An impact is found at the first end of a step below the floor.  The lesson's step then sets the ball on the
-    floor; pybullet reverses it where it is; pymunk reverses it and then lifts it by a part of its depth per step.
-    Where round-off decides whether a step ends below the floor, both outcomes are right.
+    """Each ball is predicted on its own.  In flight the steps end on a parabola, whose velocity is off by ½ g dt.
+    An impact is detected at the first end of a step below the floor.  The lesson's step then sets the ball on the
+    floor.  pybullet reverses it in place.  pymunk reverses it and then lifts it by a fraction of its depth per step.
+    If round-off decides whether a step ends below the floor, both outcomes are right.
     """
-    # far [m]: places as large as this are rounded
+    # largest coordinate [m], for round-off
     law = truth(p, T)
     runs, size = all_dropped(rule, *fallen(p), p.g, p.e, dt, round(T / dt)), np.linalg.norm(law)
     if runs is None:
@@ -162,7 +164,7 @@ def late_impacts(p, dt, rule, far=1.0):
 
 
 def pushed_back(p, dt):
-    """A soft floor pushes by its force at the start of each step."""
+    """A soft floor pushes with its force at the start of each step."""
     law = soft(p, T)
     y, v = pushed(*fallen(p), p.g, p.omega**2, 2.0 * p.damping() * p.omega, dt, round(T / dt))
     return Prediction(seen(p, T, lambda k: (y[k], v[k])) - law,
@@ -170,7 +172,7 @@ def pushed_back(p, dt):
 
 
 def keeps_bouncing(p):
-    """Not a ball that comes to rest: it keeps oscillating inside the soft floor."""
+    """Return whether the ball keeps bouncing: at rest it would keep oscillating inside the soft floor."""
     return p.e >= 0.8
 
 
@@ -196,13 +198,13 @@ def pybullet_make(p, dt):
     def read():
         x, v = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity))
         return np.stack((x[:, 0], x[:, 2] - RADIUS, v[:, 0], v[:, 2]), axis=1).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = (
     ours(PENALTY, limit=soft_limit, predicted=pushed_back, supports=keeps_bouncing, most_in_quick=2500,
          departure=Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
-                             soft)),
+                             soft, Whose.LAW)),
     *impact_runners(
         (PROJECTING, BACKTRACKING), limits, late_impacts,
         (pymunk_make, "circles on a thick segment; collision_slop 1e-5"), (pybullet_make, "spheres on a GEOM_PLANE"),

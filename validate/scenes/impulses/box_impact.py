@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.impulses import BodyState3D, check_restitution
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
@@ -17,7 +17,7 @@ from validate.scenes._common import ANSWER, check_positives
 T = 1.0
 HALF = np.array([0.1, 0.2, 0.3])       # half sizes [m]
 TILT = {"corner": (0.5, 0.7), "edge": (0.5, 0.0), "face": (0.0, 0.0)}                 # about x, then about y [rad]
-OVERLAP = 1e-12              # of the engines' bodies [m], so that they find a contact
+OVERLAP = 1e-12              # of the engines' bodies [m], so that they detect a contact
 BRIEF = 1e-12                # their step [s]: nothing moves in it
 ROUGH = 1e6                  # sticking friction [-]: any cone is wide enough, and the engines do not accept infinity
 
@@ -88,10 +88,10 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Return v⁺ − v and ω⁺ − ω for which every point leaves with −e of its own normal velocity.
+    """The changes v⁺ − v and ω⁺ − ω are those with which every point leaves with −e of its own normal velocity.
 
-    A point that sticks also has no velocity along the floor.  One linear system for all impulses, solved by the
-    pseudo-inverse.
+    A point that sticks also has no velocity along the floor.  The pseudo-inverse solves one linear system for all
+    impulses.
     Source: Newton's restitution at every point; Mirtich and Canny 1995 for K.
     """
     y, n, r, inv_inertia = landing(p)
@@ -99,15 +99,16 @@ def truth(p, t):
 
 
 def in_turn(p, t):
-    """Return the same with the points in sequence, each once."""
+    """Return the same if the points act in sequence, each once."""
     y, n, r, inv_inertia = landing(p)
     return each_in_turn(p.m, inv_inertia, y, r, n, p.e, p.rough) - y
 
 
 def sweeps_left(p, dt):
-    """Sweeps stop when they change less than 1e-14 of 2 m/s; what remains is at most a hundred times that.
+    """Sweeps stop when they change less than 1e-14 of 2 m/s; the remaining error is at most a hundred times that.
 
-    For ω it is larger, as the box is smaller than a metre.  The limit is relative to a change of 2 m/s or more.
+    The error of ω is larger, because the box is smaller than a metre.  The limit is relative to a change of 2 m/s
+    or more.
     """
     return 100.0 * 1e-14 / HALF.min()
 
@@ -137,7 +138,7 @@ def pymunk_make(p, dt):
 
 
 def pybullet_make(p, dt):
-    """Its contacts are computed before anything moves: one step is the impact."""
+    """Make an EngineRun of one step, which is the impact: contacts are computed before anything moves."""
     bullet = Impacts(BRIEF)
     pb = bullet.pb
     bullet.pb.setPhysicsEngineParameter(numSolverIterations=2000)
@@ -147,7 +148,8 @@ def pybullet_make(p, dt):
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=HALF.tolist())
     centre = (0.0, 0.0, -r[0, 2] - OVERLAP)
     body = bullet.body(p.m, moments(p), shape, centre, y[:3], y[3:], p.e, ROUGH * p.rough, R=turned(p))
-    return EngineRun(bullet.step, lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y, bullet.close)
+    read = lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 def flat(p):
@@ -162,13 +164,13 @@ def several_points(p):
     return p.lands != "corner"
 
 
-UNTIL_SETTLED = "its sweeps stop at a change of 1e-14 of the speed, and the limit bounds what is left"
+UNTIL_SETTLED = "its sweeps stop at a change of 1e-14 of the speed, and the limit bounds the remaining error"
 SMALL_OVERLAP = "its error is what 2,000 iterations and an overlap of 1e-12 m leave, and the limit bounds it"
 RUNNERS = (
     ours(TOGETHER, limit=sweeps_left, predicted=UNTIL_SETTLED, order=EXACT),
     ours(IN_TURN, limit=sweeps_left, predicted=ONLY_ROUND_OFF, order=EXACT, supports=several_points,
          departure=Departure("each point sees the body as the previous one left it, so that the order of the points "
-                             "counts", in_turn)),
+                             "counts", in_turn, Whose.LAW)),
     engine(PYMUNK, "", pymunk_make, "a Poly on a thick Segment, 2,000 iterations",
            order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=flat),
     engine(PYBULLET, "", pybullet_make, "a box on a box; maximal coordinates; contactERP, contactSlop, "

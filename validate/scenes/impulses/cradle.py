@@ -1,4 +1,7 @@
-"""Newton's cradle, five equal balls: with gaps mechanics says how many leave; for touching balls it does not."""
+"""Newton's cradle of five equal balls: with gaps mechanics determines how many leave.
+
+For touching balls it does not.
+"""
 
 from typing import Annotated, NamedTuple
 
@@ -44,7 +47,10 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def seen(x, v, p):
-    """With gaps: position and velocity of each ball.  Touching: momentum and twice the energy of all, over the mass."""
+    """Return the observed quantities: with gaps, the position and velocity of each ball.
+
+    For touching balls they are the total momentum and twice the total energy, over the mass.
+    """
     if p.gap > 0.0:
         return np.concatenate((x, v), axis=1).ravel()
     return np.stack((np.sum(v, axis=1), np.sum(v**2, axis=1)), axis=1).ravel()
@@ -78,9 +84,9 @@ def truth(p, t):
 def limits(p, dt):
     """Each of four impacts is detected up to one step late; the last ball is off by up to 4 v dt.
 
-    Until its impact is detected, a ball goes v dt too far.  Separating overlapping balls moves each by that much once
-    more.  A step in which a ball crosses a whole gap merges two impacts into one; then there is no bound.  Touching
-    balls keep momentum and energy exactly, however they share them.
+    Until its impact is detected, a ball moves up to v dt too far.  The separation of overlapping balls moves each
+    by that distance once more.  A step in which a ball crosses a whole gap merges two impacts into one; then there
+    is no bound.  Touching balls keep momentum and energy exactly, however they share them.
     """
     exact = by_order(1.0 / T, T, dt)[EXACT]
     if p.gap == 0.0:
@@ -94,9 +100,9 @@ def limits(p, dt):
 
 
 def late_impacts(p, dt, rule):
-    """With gaps: each impact is found at the first end of a step with an overlap, and the next ball flies on from where
-    the lesson's step, or an engine, then puts it.  Where a gap is a whole number of steps, round-off decides in which
-    step the impact is found; both outcomes are right.
+    """With gaps, each impact is detected at the first end of a step with an overlap.  The lesson's step, or an
+    engine, then places the next ball, which flies on from there.  If a gap is a whole number of steps, round-off
+    decides in which step the impact is detected; both outcomes are right.
     """
     if p.gap == 0.0 or 2.0 * p.v * dt >= p.gap:
         return None
@@ -138,7 +144,7 @@ def pybullet_make(p, dt):
     def read():
         rows = np.array([(bullet.position(b)[0], bullet.velocity(b)[0]) for b in balls]).reshape(COPIES, BALLS, 2)
         return seen(rows[:, :, 0], rows[:, :, 1], p)
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = impact_runners(

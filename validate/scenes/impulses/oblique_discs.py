@@ -69,7 +69,7 @@ def after(p):
 
 
 def truth(p, t):
-    """Straight lines;  j = (1 + e) v cos θ/(1/m₁ + 1/m₂)  along the line of centres, sin θ = offset.
+    """The discs move in straight lines;  j = (1 + e) v cos θ/(1/m₁ + 1/m₂)  along the line of centres, sin θ = offset.
 
     Source: first lecture deck, "Computing impulse", without rotation.
     """
@@ -85,15 +85,15 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """Detected up to one step late, the discs overlap: the first is up to s = v dt too far.
+    """Contact is detected up to one step late.  The discs then overlap: the first is up to s = v dt too far.
 
-    The line of centres is then at atan(sin θ/(cos θ − s/D)).  The normal turns by that difference Δθ, and the impulse
+    The line of centres is then at atan(sin θ/(cos θ − s/D)).  The normal turns by the difference Δθ, and the impulse
     (1 + e) m v (n · x) n changes by at most that times Δθ.  The result is a wrong velocity and a growing distance.  In
     addition the first disc travels s too far, and both are separated by their overlap, at most s.
     """
     exact, s = by_order(1.0 / T, T, dt)[EXACT], p.v * dt / (2.0 * p.R)
     c = normal(p)[0]
-    # It may pass the other before the first test.
+    # The first disc may pass the other before the first test.
     if s >= c:
         return {1: np.inf, EXACT: exact}
     turned = np.arctan2(p.offset, c - s) - np.arctan2(p.offset, c)
@@ -106,10 +106,10 @@ def limits(p, dt):
 
 def late_impact(p, dt, rule, far=5.0):
     """Each pair is predicted on its own.  The impact happens at the first end of a step with an overlap, along the
-    line of centres at that moment.  A step that leads past the other disc finds no overlap.  The lesson's step moves
-    them apart at once, pybullet never, and pymunk by a part of the overlap per step.
+    line of centres at that moment.  A step that leads past the other disc detects no overlap.  The lesson's step moves
+    the discs apart at once, pybullet never, and pymunk by a fraction of the overlap per step.
     """
-    # far [m]: places as large as this are rounded
+    # largest coordinate [m], for round-off
     rest, reach, law = complex(*(2.0 * p.R * normal(p))), 2.0 * p.R, truth(p, T)
     ends = [struck(rule, complex(p.v * before - p.away), rest, complex(p.v), reach, p.m1, p.m2, p.e, dt,
                    round(T / dt)) for before in delays(WINDOW)]
@@ -137,7 +137,7 @@ def pybullet_make(p, dt):
         for i, m in enumerate((p.m1, p.m2))
     ]
     read = lambda: np.array([(*bullet.position(b)[:2], *bullet.velocity(b)[:2]) for b in balls]).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 RUNNERS = impact_runners(
@@ -163,7 +163,7 @@ def points(observed, p):
 
 
 def with_discs_that_miss(p):
-    """The same motion beside three more discs, at rest and far away: ten pairs in place of one."""
+    """Return the same motion beside three more discs, at rest and far away: ten pairs in place of one."""
     x, v, _ = start(p)
     rest = np.zeros((COPIES, 3, x.shape[2]))
     rest[:, :, 1] = -20.0 * p.R * np.arange(1.0, 4.0)

@@ -70,7 +70,7 @@ def observe(state, p):
 def after(p):
     """Return (v, Rω) after the impact.
 
-    The slip is v + Rω.  Friction gives at most μ m (1 + e) |v_n|, and no more than ends the slip.
+    The slip is v + Rω.  The impulse of friction is at most μ m (1 + e) |v_n|, and at most what stops the slip.
     """
     needed = (p.v + p.rim) / (1.0 + 1.0 / p.shape)
     given = min(p.mu * (1.0 + p.e) * p.fall, needed)
@@ -78,7 +78,7 @@ def after(p):
 
 
 def truth(p, t):
-    """Straight lines with an impact:  v_n⁺ = −e v_n,  v⁺ = v − J/m,  Rω⁺ = Rω − J R²/I.
+    """The ball moves in straight lines with an impact:  v_n⁺ = −e v_n,  v⁺ = v − J/m,  Rω⁺ = Rω − J R²/I.
 
     J = min(μ(1 + e) m |v_n|, m (v + Rω)/(1 + mR²/I)).
     Source: linear and angular momentum about the point of contact; the ball sticks if Coulomb's cone permits.
@@ -95,7 +95,7 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """The impact is detected up to one step late, and until then the ball goes on as before: it is off by (v⁺ − v) dt.
+    """The impact is detected up to one step late.  Until then the ball moves as before, so it is off by (v⁺ − v) dt.
 
     Placed on the floor, it lacks the e |v_n| dt by which it should have risen.  Velocities are exact, because they
     do not depend on the position.
@@ -107,11 +107,11 @@ def limits(p, dt):
 
 
 def late_impact(p, dt, rule, far=5.0):
-    """Each ball is predicted on its own.  An impact is found at the first end of a step below the floor; until then
-    the ball goes on as before.  The lesson's step then sets it on the floor; pybullet reverses it where it is; pymunk
-    reverses it and then lifts it by a part of its depth per step.
+    """Each ball is predicted on its own.  An impact is detected at the first end of a step below the floor; until then
+    the ball moves as before.  The lesson's step then sets it on the floor.  pybullet reverses it in place.  pymunk
+    reverses it and then lifts it by a fraction of its depth per step.
     """
-    # far [m]: places as large as this are rounded
+    # largest coordinate [m], for round-off
     before = delays(WINDOW)
     runs = all_dropped(rule, p.h - p.fall * before, np.full(COPIES, -p.fall), 0.0, p.e, dt, round(T / dt))
     if runs is None:
@@ -150,7 +150,7 @@ def pybullet_make(p, dt):
     def read():
         x, v, omega = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity, bullet.omega))
         return np.stack((x[:, 0], x[:, 2] - p.R, v[:, 0], v[:, 2], -p.R * omega[:, 1]), axis=1).ravel()
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 def is_sphere(p):

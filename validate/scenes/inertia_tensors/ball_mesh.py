@@ -1,10 +1,11 @@
-"""A ball made of triangles, or filled with points: the fineness at which its tensor becomes that of the ball."""
+"""A ball made of triangles, or filled with points: convergence of its tensor to that of the ball."""
 
 from functools import lru_cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from validate.check import Whose
 from validate.engines.bullet import Bullet
 from validate.methods import POINTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, EngineRun, Prediction, Scene, engine, ours
@@ -77,12 +78,14 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """A body that contains one ball and lies inside another has a moment between theirs, which grow with R⁵.
+    """A body that contains one ball and lies inside another has a moment between theirs.
+
+    The moment of a ball grows with R⁵.
 
     Triangles: on an octahedron, 1/√3 away, an equilateral triangle of edge √2/n has its corners √2/(n √3) from its
-    centre.  Moved onto the sphere, and seen from its middle, they are at most √3 times as far apart: within α = √2/n
-    of the direction of the triangle's centre.  So the triangle does not come nearer to the middle than R cos α:
-    0 ≤ error ≤ 1 − cos⁵α, of second order.
+    centre.  After projection onto the sphere, and seen from its middle, they are at most √3 times as far apart:
+    within α = √2/n of the direction of the triangle's centre.  So the triangle does not come closer to the middle
+    than R cos α: 0 ≤ error ≤ 1 − cos⁵α, of second order.
 
     Points: a cell that the sphere cuts is within its half diagonal, √3 R/n, of the sphere.  Each cell also lacks its
     own moment, m h²/6, h = 2R/n, compared with ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), at worst of first order.
@@ -93,15 +96,15 @@ def limits(p, dt):
 
 
 def round_off(p, dt):
-    """pybullet's own rule does not depend on n: round-off."""
+    """pybullet's own rule does not depend on n, so its limit is round-off."""
     return 1e-12
 
 
 def of_triangles(n, p):
     """Return the moment of inertia of the ball of triangles, 2 ρ ∫ x² dV = ⅔ ρ ∮ x³ n_x dA.
 
-    On a triangle x³ is a cubic, for which weights of 9/20 at the centre, 1/20 at each corner and 2/15 at each middle of
-    an edge are exact.  The eight faces are alike, so that all moments are equal.
+    On a triangle x³ is a cubic, for which weights of 9/20 at the centre, 1/20 at each corner and 2/15 at each
+    midpoint of an edge are exact.  The eight faces are alike, so all moments are equal.
     Source: Gauss's theorem; Zienkiewicz, Taylor 2000, volume 1: the cubic rule with seven points.
     """
     corners, faces = triangles(n, p.radius)
@@ -125,31 +128,33 @@ def of_points(n, p):
 
 
 def from_ball(moment, p, many):
-    """Return the Prediction of a body with this moment about each axis [kg m²], summed from so many terms."""
+    """Return the Prediction of a body with this moment about each axis [kg m²], summed from this number of terms."""
     return Prediction(np.ravel(moment * np.eye(3)) - truth(p, T), (many + 30) * ROUND_OFF)
 
 
 def triangles_from_ball(p, dt):
-    """The body of triangles is known exactly, by Gauss's theorem and a cubic rule.
+    """The moment of the body of triangles is known exactly, by Gauss's theorem and a cubic rule.
 
-    It has no products of inertia, because it has the symmetry of a cube.  What is left is a spacing of floats for each
-    triangle.
+    It has no products of inertia, because it has the symmetry of a cube.  Only round-off remains, a spacing of
+    floats for each triangle.
     """
     n = round(1.0 / dt)
     return from_ball(of_triangles(n, p), p, 8 * n**2)
 
 
 def points_from_ball(p, dt):
-    """The body of points is known exactly, too, by counting them in layers; it has the same symmetry.
+    """The moment of the body of points is known exactly, too, by counting them in layers; it has the same symmetry.
 
-    What is left is a spacing of floats for each point.
+    Only round-off remains, a spacing of floats for each point.
     """
     n = round(1.0 / dt)
     return from_ball(of_points(n, p), p, n**3)
 
 
 def by_fat_box(p, t):
-    """m (b² + c²)/12 of the cube around the ball, 6 mm wider: pybullet adds its margin of 1 mm thrice on each side.
+    """Return m (b² + c²)/12 of the cube around the ball, 6 mm wider.
+
+    pybullet adds its margin of 1 mm three times on each side.
 
     Source: Bullet, btPolyhedralConvexShape: recalcLocalAabb, getNonvirtualAabb and calculateLocalInertia each add it.
     """
@@ -158,7 +163,7 @@ def by_fat_box(p, t):
 
 
 def bullet_make(p, dt):
-    """Make the hull of the same corners, with the mass of the ball, in the first step; the others do nothing."""
+    """Make the hull of the same corners, with the mass of the ball, in the first step; the other steps do nothing."""
     bullet, made = Bullet(1.0), []
     x = triangles(round(1.0 / dt), p.radius)[0].tolist()
     m = 4.0 / 3.0 * np.pi * p.density * p.radius**3
@@ -180,7 +185,7 @@ RUNNERS = (
     engine(PYBULLET, "hull", bullet_make, "GEOM_MESH from corners, createMultiBody with the mass of the ball",
            order=EXACT, limit=round_off, predicted="it follows its own rule to round-off, and the limit bounds that",
            departure=Departure("it uses the cube around the hull in place of the hull, and makes that cube 6 mm larger",
-                               by_fat_box),
+                               by_fat_box, Whose.DEFAULT),
            most_steps=20),
 )
 

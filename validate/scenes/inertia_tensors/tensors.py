@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
@@ -129,7 +129,7 @@ def boxes_of_angle(p):
 
 
 def outline(p):
-    """Return the corners (k, 2) of a body that is a prism, counter-clockwise; all are visible from the first."""
+    """Return the corners (k, 2) of a body that is a prism, counter-clockwise; the first corner sees all others."""
     return np.array({
         "box": [(-0.5 * p.a, -0.5 * p.b), (0.5 * p.a, -0.5 * p.b), (0.5 * p.a, 0.5 * p.b), (-0.5 * p.a, 0.5 * p.b)],
         "triangle": [(0.0, 0.0), (p.a, 0.0), (0.0, p.b)],
@@ -261,7 +261,7 @@ def sanity_checks():
 
 
 def round_off(p, dt):
-    """A few dozen operations on numbers of one sign, each rounded by 1.1e-16: 1e-13, for us and for the engines."""
+    """A few dozen operations on numbers of one sign, each rounded by 1.1e-16, give 1e-13, for us and the engines."""
     return 1e-13
 
 
@@ -286,7 +286,7 @@ def extent(p):
 
 
 def by_bounding_box(p, t):
-    """m (b² + c²)/12 with the edges of the box around the shape; for a capsule with 0.08333333 for 1/12.
+    """Return m (b² + c²)/12 with the edges of the box around the shape; for a capsule 0.08333333 replaces 1/12.
 
     Source: Bullet, btCompoundShape::calculateLocalInertia ("approximation: take the inertia from the aabb for now"),
     btCapsuleShape.
@@ -295,7 +295,7 @@ def by_bounding_box(p, t):
 
 
 def by_fat_box(p, t):
-    """The same for a hull, whose margin of 1 mm is added three times on each side, and 0.08333333 for 1/12.
+    """Return the same for a hull, with its margin of 1 mm added three times on each side, and 0.08333333 for 1/12.
 
     Source: Bullet, btPolyhedralConvexShape: recalcLocalAabb, getNonvirtualAabb and calculateLocalInertia each add it.
     """
@@ -303,12 +303,12 @@ def by_fat_box(p, t):
 
 
 def by_nothing(p, t):
-    """Zero: Bullet gives triangle meshes no inertia, so no torque rotates them."""
+    """Return zero: Bullet gives triangle meshes no inertia, so no torque rotates them."""
     return np.zeros(6)
 
 
 def by_flat_box(p, t):
-    """m (l² + w²)/12 of the box around the bar.  Source: Chipmunk, cpMomentForSegment."""
+    """Return m (l² + w²)/12 of the box around the bar.  Source: Chipmunk, cpMomentForSegment."""
     return np.array([p.m * ((p.b + 2.0 * p.a) ** 2 + (2.0 * p.a) ** 2) / 12.0])
 
 
@@ -362,7 +362,7 @@ def bullet_make(p, dt, concave=False, told=False):
 
 
 def centre(p):
-    """Return the centre of mass [m] of the bodies for which pybullet must be given it."""
+    """Return the centre of mass [m] of the bodies for which a user of pybullet must set it."""
     if p.shape == "corner":
         return np.array([p.a, p.b, p.c]) / 4.0
     if p.shape == "angle":
@@ -408,7 +408,7 @@ def pymunk_make(p, dt):
 
 
 def only(*shapes):
-    """Return the field `supports` of a Runner that can do these bodies."""
+    """Return the field `supports` of a Runner that supports these bodies."""
     return lambda p: p.shape in shapes
 
 
@@ -423,15 +423,16 @@ RUNNERS = (
     ours(TRIANGLES, supports=only(*FLAT_FACES), **EXACTLY),
     engine(PYBULLET, "", bullet_make, "createMultiBody with the shape and a mass; read by getDynamicsInfo",
            supports=only("ball", "box", "cylinder"), **EXACTLY),
-    engine(PYBULLET, "automatic", bullet_make, "createMultiBody as it comes", supports=only(*BOXED), **EXACTLY,
+    engine(PYBULLET, "automatic", bullet_make, "createMultiBody with its defaults", supports=only(*BOXED), **EXACTLY,
            departure=Departure("it uses the box around the shape, along the axes of the shape, instead of the shape",
-                               by_bounding_box)),
+                               by_bounding_box, Whose.DEFAULT)),
     engine(PYBULLET, "hull", bullet_make, "GEOM_MESH from corners", supports=only("corner"), **EXACTLY,
            departure=Departure("it uses the box around the hull instead of the hull, and makes it 6 mm larger",
-                               by_fat_box)),
+                               by_fat_box, Whose.DEFAULT)),
     engine(PYBULLET, "concave mesh", partial(bullet_make, concave=True), "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH",
            supports=only("corner"), **EXACTLY,
-           departure=Departure("it gives triangle meshes no inertia, so that no torque rotates them", by_nothing)),
+           departure=Departure("it gives triangle meshes no inertia, so that no torque rotates them", by_nothing,
+                               Whose.DEFAULT)),
     engine(PYBULLET, "told", partial(bullet_make, told=True),
            "localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre "
            "and principal axes",
@@ -439,7 +440,7 @@ RUNNERS = (
     engine(PYMUNK, "", pymunk_make, "moment_for_circle, moment_for_poly, or shapes with a density",
            supports=only("ring", "triangle", "two discs"), **EXACTLY),
     engine(PYMUNK, "Segment", pymunk_make, "moment_for_segment", supports=only("round bar"), **EXACTLY,
-           departure=Departure("it uses the box around the bar instead of the bar", by_flat_box)),
+           departure=Departure("it uses the box around the bar instead of the bar", by_flat_box, Whose.LAW)),
 )
 
 

@@ -1,4 +1,4 @@
-"""Planets, and points in a field of forces: how they start and are drawn, and the runners that move them."""
+"""Planets, and points in a field of forces: initial states, drawings, and the runners that move them."""
 
 from collections.abc import Callable
 from functools import partial
@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from validate.engines import mujoco
 from validate.engines.integrators import bullet_point, pymunk_point
 from validate.methods import (
     BLANES_MOAN,
@@ -20,8 +21,10 @@ from validate.methods import (
 )
 from validate.reference.integrators import EVEN, FINEST, FINEST_RK4, early_limit, kepler_limits, perihelion
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_NEW_FORCE, OLD_VELOCITY_OLD_FORCE
-from validate.scene import LATE_LEAPFROG, PYBULLET, PYMUNK, engine, ours
+from validate.scene import LATE_LEAPFROG, MUJOCO, PYBULLET, PYMUNK, engine, ours
 from validate.scenes._common import check_positives
+
+MOST_OF_ORDER_4 = 20_000     # steps of an engine of order 4 around a sun; half of them in a quick run
 
 
 def integrator_runners(motion, limits, compiled=()):
@@ -57,7 +60,7 @@ class Point(NamedTuple):
         return start
 
     def in_space(self, p):
-        """The same motion with unused coordinates."""
+        """Return the same motion with unused coordinates."""
         return (np.zeros(3), np.array([*self.velocity(p), 0.0])), p
 
     def read(self, x):
@@ -65,12 +68,12 @@ class Point(NamedTuple):
         return np.array(x[:self.d])
 
     def pymunk(self, p, dt, **damping):
-        """Apply the force before each step, or let the space damp."""
+        """Make pymunk's world: apply the force before each step, or let the space damp."""
         push = {} if damping else {"force": self.force(p)}
         return pymunk_point(self.gravity(p), self.mass(p), self.velocity(p), self.read, dt, **push, **damping)
 
     def pybullet(self, p, dt, default=False, **damping):
-        """Apply the force before each step, or let the body damp."""
+        """Make pybullet's world: apply the force before each step, or let the body damp."""
         push = {} if damping else {"force": self.force(p)}
         return bullet_point((*self.gravity(p), 0.0), self.mass(p), (0.0,) * 3, (*self.velocity(p), 0.0), self.read,
                             dt, default=default, **push, **damping)
@@ -85,8 +88,21 @@ class Point(NamedTuple):
         return engine(PYBULLET, "", self.pybullet, "useMaximalCoordinates=1, no damping; force applied each step",
                       order=1, limit=limits, predicted=motion.predict(NEW_VELOCITY_OLD_FORCE))
 
+    def mujoco(self, p, dt, damping=None, wind=None):
+        """Call the force in every stage, or let the joints damp, damping(p) [N s/m], and a wind(p) [N] push."""
+        gravity, m = np.append(self.gravity(p), 0.0), self.mass(p)
+        own = {"force": self.force(p)} if damping is None else {"damping": damping(p)}
+        if wind is not None:
+            gravity[:2] += np.array(wind(p)) / m
+        return mujoco.points([m], np.zeros((1, 2)), [self.velocity(p)], dt, lambda x: self.read(x[0]), gravity, **own)
+
+    def in_mujoco(self, motion, limits, settings="force in mjcb_passive, in every stage", **own):
+        """Return the runner of MuJoCo; own: damping and wind of `mujoco`."""
+        return engine(MUJOCO, "", partial(self.mujoco, **own), f"slide joints, {settings}; Runge–Kutta 4",
+                      order=4, limit=limits, predicted=motion.predict(RK4.table))
+
     def in_default_pybullet(self, motion, limits, departure):
-        """Return the runner of pybullet's default body, which its own damping slows."""
+        """Return the runner of pybullet's default body, which is slowed by its own damping."""
         return engine(PYBULLET, "default", partial(self.pybullet, default=True),
                       "createMultiBody with its defaults; force applied each step",
                       order=1, limit=limits, departure=departure,
@@ -106,7 +122,7 @@ def as_pair(x, p):
 # ---------------------------------------------------------------------------------------------- planets
 
 def planet(p):
-    """Return (x, v) of the planet at its perihelion.  Raises BadInput for what is no ellipse."""
+    """Return (x, v) of the planet at its perihelion.  Raises BadInput if the path is not an ellipse."""
     check_positives(p, "mu", "a")
     if not 0.0 <= p.e < 1.0:
         raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
@@ -114,7 +130,7 @@ def planet(p):
 
 
 def planet_in_space(p):
-    """The same motion with an unused z coordinate."""
+    """Return the same motion with an unused z coordinate."""
     x, v = planet(p)
     return (np.append(x, 0.0), np.append(v, 0.0)), p
 
@@ -124,13 +140,13 @@ def sun_and_planet(observed, p):
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
-def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
+def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_steps):
     """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
 
     The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
     symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
-    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large
-    most_steps             of an engine
+    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large; MuJoCo's needs none
+    most_steps             of an engine of order 1
     """
     T, limits = motion.T, kepler_limits(motion.T)
     symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
@@ -147,4 +163,7 @@ def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
         engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
                order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
         engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
+        engine(MUJOCO, "", mujoco_make, "slide joints, attraction in mjcb_passive, in every stage; Runge–Kutta 4",
+               order=4, limit=limits, predicted=errors[RK4], most_steps=MOST_OF_ORDER_4,
+               most_in_quick=MOST_OF_ORDER_4 // 2),
     )

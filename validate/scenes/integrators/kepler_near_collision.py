@@ -1,7 +1,7 @@
-"""A comet on a long ellipse, 19 times as far from the sun as at its nearest, where nearly all of the error is made."""
+"""A comet on a long ellipse, at most 19 times as far from the sun as at its nearest point, where most error arises."""
 
 from solutions.support.orbits import attraction
-from validate.engines.integrators import bullet_planet, pymunk_planet
+from validate.engines.integrators import bullet_planet, mujoco_planet, pymunk_planet
 from validate.methods import ADAPTIVE, BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import (
     Planet,
@@ -22,7 +22,7 @@ CASES = {"e = 0.9": Planet(e=0.9)}
 
 
 def share(p, dt):
-    """Return dt times the mean rate of the motion [-]: an adaptive step is dt where the planet is as far as a."""
+    """Return dt times the mean rate of the motion [-]; an adaptive step is dt where the planet is at the distance a."""
     return dt * mean_rate(p)
 
 
@@ -34,15 +34,15 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def limit(p, dt):
-    """The rate at the nearest point, √(μ/r³), is 32 times the mean: equal steps are wasted far away.  An adaptive step
-    keeps the product of rate and dt the same everywhere.  This product is its share.
+    """The rate at the nearest point, √(μ/r³), is 32 times the mean, so equal steps are wasted far away.  An adaptive
+    step keeps the product of rate and dt the same everywhere.  This product is its share.
     """
     return adaptive_limit(p, T, share(p, dt))
 
 
 MOTION = kepler_motion(T)
 RUNNERS = (
-    *planet_runners(MOTION, (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
+    *planet_runners(MOTION, (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, mujoco_planet, 50_000),
     ours(ADAPTIVE, limit=limit, predicted=adaptive_errors(MOTION)),
 )
 

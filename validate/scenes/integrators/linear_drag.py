@@ -10,7 +10,7 @@ from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine
 from validate.scenes._common import coordinates, floor_of, measured
 from validate.scenes.integrators._common import Point, as_pair, integrator_runners, one_point
 
-T = 1.97599434               # [s]: at which it is back at the initial height
+T = 1.97599434               # [s]: the pellet is then back at the initial height
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
 
 
@@ -62,19 +62,19 @@ def limits(p, dt, damping=0.0):
     """Only the decaying term has an error.  Its length is |v₀ − v∞|/k, its rate is k, and x(T) is ten times shorter.
 
     Both engines are of first order and take drag at the beginning of a step, or multiply v by e^(−k dt): order 1
-    with rate k.  A first velocity half a step later would not help, because drag depends on it.
+    with rate k.  A first velocity from half a step later would not help, because drag depends on it.
     """
     scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
     return {k: scale * limit for k, limit in by_order(p.k + damping, T, dt).items()}
 
 
 def damped_limits(p, dt):
-    """The default damping has its fastest rate, 0.04 (1 + 2|v|), at the greater of the initial and terminal speed."""
+    """The default damping has its fastest rate, 0.04 (1 + 2|v|), at the larger of the initial and terminal speed."""
     return limits(p, dt, 0.04 * (1.0 + 2.0 * max(np.hypot(p.vx, p.vy), p.g / p.k)))
 
 
 def law(p):
-    """Return a(t, x, v) of a complex number x, apart from the scene's."""
+    """Return a(t, x, v) of a complex number x, independent of the scene's."""
     return lambda t, x, v: complex(0.0, -p.g) - p.k * v
 
 
@@ -83,7 +83,7 @@ def thrown(p):
 
 
 def own_damping(place):
-    """Return an engine's step with its own damping: the velocity times e^(−k dt), then gravity."""
+    """Return the step of an engine with its own damping: the velocity times e^(−k dt), then gravity."""
     def model(p):
         kept = lambda v, h: v * np.exp(-p.k * h) + h * complex(0.0, -p.g)
         return lambda law, t, x, v, h: (x + h * place(v, kept(v, h)), kept(v, h))
@@ -95,7 +95,7 @@ DAMPED = hidden_damping(acceleration, start)
 
 
 def with_damping(make):
-    """Return make(p, dt) of an engine that damps by itself."""
+    """Return make(p, dt) of an engine with its own damping."""
     return lambda p, dt: make(p, dt, damping=p.k)
 
 
@@ -109,6 +109,7 @@ RUNNERS = (
     engine(PYBULLET, "own damping", with_damping(POINT.pybullet),
            "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second",
            order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new))),
+    POINT.in_mujoco(MOTION, limits, "damping of the joints", damping=lambda p: p.k),
 )
 
 SCENE = Scene(

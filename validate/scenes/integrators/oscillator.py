@@ -9,9 +9,10 @@ from solutions.integrators import Oscillator, oscillator_acceleration
 from validate.engines.bullet import hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.engines.integrators import bullet_point
-from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.engines.mujoco import points as points_in_mujoco
+from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER, RK4
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
 from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import damped
 
@@ -76,12 +77,12 @@ def limits(p, dt):
 
 
 def leapfrog_limit(p, dt):
-    """An engine that starts half a step ahead errs like our methods of order 2 if no force depends on velocity."""
+    """An engine that starts half a step ahead errs like our methods of order 2 if no force depends on the velocity."""
     return limits(p, dt)[2 if p.c == 0.0 else 1]
 
 
 def law(p):
-    """Return a(t, x, v) of a number x, apart from the lesson's."""
+    """Return a(t, x, v) of a number x, independent of the lesson's."""
     return lambda t, x, v: -(p.k * x + p.c * v) / p.m
 
 
@@ -94,20 +95,20 @@ def seen(x, p):
 
 
 def spring_and_damper(p):
-    """Return pymunk's step: x at the old velocity, the spring's pull at the new x, then the damper as e^(−c dt/m)."""
+    """Return pymunk's step: move by the old velocity, apply the spring at the new x, then the damper as e^(−c dt/m)."""
     kept = lambda h: np.exp(-p.c * h / p.m)
     return lambda law, t, x, v, h: (x + h * v, (v - h * p.k / p.m * (x + h * v)) * kept(h))
 
 
 MOTION = Motion(T, law, released, seen, truth, floor_of(limits))
 DAMPED = hidden_damping(lambda t, x, v, p: oscillator_acceleration(t, x, v, oscillator(p)), start)
-IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # the most steps, of what is slow in plain Python
+IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # most steps of methods slow in plain Python
 
 
 def pymunk_make(p, dt, ahead=0.0):
     """Use a DampedSpring of rest length 2 m to a static point.
 
-    Its damper acts as e^(−c dt/m), its force at the new position.
+    Its damper acts as e^(−c dt/m), and its force is that at the new position.
     """
     import pymunk
     space = pymunk_space()
@@ -126,6 +127,10 @@ def pybullet_make(p, dt, ahead=0.0, default=False):
                         default=default)
 
 
+def mujoco_make(p, dt):
+    return points_in_mujoco([p.m], [[p.x0]], [[0.0]], dt, np.ravel, stiffness=p.k, damping=p.c)
+
+
 RUNNERS = (
     *(ours(m, limit=limits, predicted=MOTION.predict(m.table), compiled_in_quick=m in ONE_OF_EACH_ORDER,
            most_in_quick=IN_QUICK.get(m)) for m in INTEGRATORS),
@@ -134,7 +139,7 @@ RUNNERS = (
     engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5),
            "first velocity + ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
+    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
            order=1, limit=limits, departure=DAMPED,
            predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped(law), follows=DAMPED.own_law)),
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
@@ -142,6 +147,8 @@ RUNNERS = (
     engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5),
            "first velocity − ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
+    engine(MUJOCO, "", mujoco_make, "slide joint with stiffness and damping; Runge–Kutta 4",
+           order=4, limit=limits, predicted=MOTION.predict(RK4.table)),
 )
 
 
@@ -150,7 +157,7 @@ def points(observed, p):
 
 
 def in_space(p):
-    """The same motion with unused y and z coordinates."""
+    """Return the same motion with unused y and z coordinates."""
     return (np.array([p.x0, 0.0, 0.0]), np.zeros(3)), p
 
 

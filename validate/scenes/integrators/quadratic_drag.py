@@ -72,12 +72,12 @@ def limits(p, dt, damping=0.0):
 
 
 def damped_limits(p, dt):
-    """The default damping adds 0.04 (1 + 2v) to the rate; v∞ bounds the speed with it, too."""
+    """The default damping adds 0.04 (1 + 2v) to the rate; v∞ bounds the speed with damping, too."""
     return limits(p, dt, 0.04 * (1.0 + 2.0 * terminal_speed(p)))
 
 
 def law(p):
-    """Return a(t, x, v) of a number x, apart from the scene's."""
+    """Return a(t, x, v) of a number x, independent of the scene's."""
     return lambda t, x, v: p.g - p.c / p.m * v * abs(v)
 
 
@@ -98,6 +98,7 @@ RUNNERS = (
     POINT.in_pymunk(MOTION, limits),
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
+    POINT.in_mujoco(MOTION, limits),
 )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from validate.engines.bullet import hidden_damping
 from validate.engines.integrators import bullet_point, pymunk_point
+from validate.engines.mujoco import points as points_in_mujoco
 from validate.methods import (
     AVERAGE_VELOCITY,
     EULER,
@@ -18,7 +19,7 @@ from validate.methods import (
     VERLET,
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
-from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import coordinates, measured, round_off
 
 T = 10.0                     # [s]
@@ -67,22 +68,22 @@ def limits(p, dt):
     """The error of order 1 is exact: ½ g dt T ẑ upwards with the old velocity, downwards with the new.
 
     With the old velocity x ends at  Σ dt v(n dt) = x(T) + ½ g dt T ẑ.  pymunk moves with the old velocity and errs
-    upwards, pybullet with the new and errs downwards: their mean is exact.  Half a step of gravity in the first
+    upwards, pybullet with the new one and errs downwards: their mean is exact.  Half a step of gravity in the first
     velocity removes the error.
     """
     return {1: 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
 def damped_limit(p, dt):
-    """With damping the fastest rate is that of 0.04 v (1 + |v|) at the greater of the initial speed and the terminal
-    one, where 0.04 v (1 + v) = g.
+    """With damping the fastest rate is that of 0.04 v (1 + |v|) at the larger of the initial speed and the terminal
+    speed, where 0.04 v (1 + v) = g.
     """
     fastest = max(np.linalg.norm(start(p)[1]), 0.5 * (np.sqrt(1.0 + 100.0 * p.g) - 1.0))
     return by_order(0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
 
 
 def old_velocity(p, dt, side=1.0):
-    """+½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and zero for all others, to round-off."""
+    """The error is +½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and round-off for all others."""
     return Prediction(np.array([0.0, 0.0, 0.5 * side * p.g * dt * T]), rounded(p, dt))
 
 
@@ -106,28 +107,35 @@ def pymunk_make(p, dt, ahead=0.0):
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
-    """A free body under the engine's own gravity."""
+    """Make a free body under the engine's own gravity."""
     v = (p.vx, p.vy, p.vz + ahead * dt * p.g)
     return bullet_point((0.0, 0.0, -p.g), 1.0, (0.0, 0.0, 0.0), v, np.array, dt, default=default)
 
 
+def mujoco_make(p, dt):
+    return points_in_mujoco([1.0], np.zeros((1, 3)), [start(p)[1]], dt, lambda x: x[0], (0.0, 0.0, -p.g))
+
+
 EXACTLY = {"order": EXACT, "limit": limits, "predicted": mean_velocity}
+NEW_VELOCITY = engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
+                      order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(EULER, limit=limits, predicted=old_velocity),
     *(ours(m, **EXACTLY) for m in (MIDPOINT, RK4, AVERAGE_VELOCITY)),
     ours(SYMPLECTIC_EULER, limit=limits, predicted=new_velocity),
     ours(VERLET, **EXACTLY),
-    # the implicit ones take half of the scene's time to compile, and say nothing here
+    # the implicit methods take half of the scene's time to compile, and add no information here
     ours(IMPLICIT_EULER, limit=limits, predicted=new_velocity, in_quick=False),
     ours(IMPLICIT_MIDPOINT, in_quick=False, **EXACTLY),
     engine(PYMUNK, "", pymunk_make, "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
     engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
+    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
-           order=1, limit=limits, predicted=new_velocity),
+    NEW_VELOCITY,
+    in_substeps(NEW_VELOCITY, 10),
     engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
+    engine(MUJOCO, "", mujoco_make, "slide joints; Runge–Kutta 4", **EXACTLY),
 )
 
 

@@ -1,4 +1,4 @@
-"""A straight arm of three links, and how an arm and its target are drawn."""
+"""A straight arm of three links, and drawings of arms and targets."""
 
 import numpy as np
 

@@ -1,8 +1,8 @@
-"""Convergence near the target: each direction has its own factor, given by its singular value.
+"""Convergence near the target: the factor of each direction follows from its singular value.
 
-An arm of three links near its target, moved a little along one direction of its Jacobian: one iteration, and the ratio
-of the errors is 1 − ασ² for the transpose, λ²/(σ² + λ²) for the damped step, and 0 for the pseudo-inverse.  With
-λ² = ½ m² it is what pybullet does, step by step.
+An arm of three links near its target is displaced slightly along one direction of its Jacobian.  After one iteration
+the ratio of the errors is 1 − ασ² for the transpose, λ²/(σ² + λ²) for the damped step, and 0 for the pseudo-inverse.
+With λ² = ½ m² the damped step is that of pybullet.
 """
 
 from functools import partial
@@ -45,19 +45,19 @@ def lengths_of(p):
 
 
 def directions(p):
-    """(u (2, 2), σ (2,), v (2, 3)) of the arm at its target."""
+    """Return (u (2, 2), σ (2,), v (2, 3)) of the arm at its target."""
     return np.linalg.svd(jacobian_of(ANGLES, lengths_of(p)), full_matrices=False)
 
 
 def start(p):
-    """Angles beside those of the target: for each direction ahead and behind."""
+    """Return angles beside those of the target: ahead and behind along each direction."""
     check_positives(p, "l_1", "l_2", "l_3")
     v = directions(p)[2]
     return tuple(ANGLES + sign * MOVED * v[i] for i in (0, 1) for sign in (1.0, -1.0))
 
 
 def settings(p):
-    """(gain [1/m²], damping [m])."""
+    """Return (gain [1/m²], damping [m])."""
     if p.kind == "transpose":
         return p.setting / directions(p)[1][0] ** 2, 0.0
     return 0.0, np.sqrt(p.setting)
@@ -99,9 +99,9 @@ def truth(p, t):
 
 
 def limit(p, dt):
-    """A central difference is off by δ²/6 times a third derivative, over σ₂.  That of the end is at most 3√3 reach
-    along a direction of size 1, and that of the step at most (1 + reach/σ₂)² times as large.  A rounding of the end
-    over 2 δ σ₂ is added.
+    """A central difference is off by δ²/6 times a third derivative, over σ₂.  The third derivative of the end is at
+    most 3√3 reach along a direction of size 1, and that of the step is at most (1 + reach/σ₂)² times as large.  A
+    rounding error of the end over 2 δ σ₂ is added.
     """
     sigma, reach = directions(p)[1][1], p.l_1 + p.l_2 + p.l_3
     lost = 0.87 * reach / sigma * (MOVED * (1.0 + reach / sigma)) ** 2 + 2.0 * ROUND_OFF * reach / (MOVED * sigma)
@@ -109,7 +109,7 @@ def limit(p, dt):
 
 
 def formula_limit(p, dt):
-    """The closed form of the factors: a few roundings."""
+    """The closed form of the factors has a few rounding errors."""
     return 20.0 * ROUND_OFF / size(p)
 
 
@@ -119,7 +119,7 @@ def size(p):
 
 def our_error(p, dt, step):
     """The prediction takes the same difference of the same iteration, by complex numbers and other equations than the
-    lesson's.  What is left is a rounding of the end, in both, over 2 δ σ₂.
+    lesson's.  What is left is a rounding error of the end, in both, over 2 δ σ₂.
     """
     target, settled = end_of(ANGLES, lengths_of(p)), settings(p)
     return predicted([searched(step, theta, target, lengths_of(p), 0.0, 1, *settled)[0] for theta in start(p)], p)
@@ -149,18 +149,18 @@ def of_kind(kind):
 
 
 def has_factors(p):
-    """The closed form has the factors of the two methods that do not end after one iteration."""
+    """Return whether the case is one of the two methods that do not end after one iteration: only they have factors."""
     return p.kind != "pseudo-inverse"
 
 
 def as_pybullet(p):
-    """pybullet's damping is ½ m²."""
+    """Return whether the damping is that of pybullet, ½ m²."""
     return p.kind == "damped" and p.setting == 0.5
 
 
 RUNNERS = (
     ours(FACTORS, order=EXACT, limit=formula_limit, supports=has_factors,
-         predicted="a formula: it leaves nothing but roundings"),
+         predicted="a formula: only round-off is left"),
     *(ours(m, order=EXACT, limit=limit, supports=of_kind(kind), predicted=partial(our_error, step=m.table))
       for m, kind in ((TRANSPOSE, "transpose"), (DAMPED, "damped"), (PSEUDO_INVERSE, "pseudo-inverse"))),
     engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics, maxNumIterations 1",
@@ -174,7 +174,7 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """Return Findings: σ as half axes of the ellipse of velocities, by looking around it."""
+    """Return Findings: σ as half axes of the ellipse of velocities, found by sampling directions."""
     around = np.linspace(0.0, np.pi, 20001)
     found, expected = [], []
     for p in CASES.values():
@@ -187,7 +187,7 @@ def sanity_checks():
 # ---------------------------------------------------------------------------------------------- picture
 
 def points(observed, p):
-    """The arm, and the ellipse of velocities at its end, a quarter of its size."""
+    """Draw the arm, and the ellipse of velocities at its end, at a quarter of its size."""
     arm = joints_of(ANGLES, lengths_of(p))
     u, sigma, _ = directions(p)
     ring = arm[-1] + 0.25 * circle(40) * sigma @ u.T

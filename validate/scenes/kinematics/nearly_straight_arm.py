@@ -1,9 +1,9 @@
-"""The same straight arm, disturbed: bent by a millionth of a radian, it finds its way out.
+"""The same straight arm, bent by a millionth of a radian: the search escapes from the saddle.
 
 A straight arm is a saddle.  A small bend grows in each iteration by a factor above 1 until the arm is free; the
 stability case about straight arms predicts the factors.  CCD does not even need a bend if the target lies behind its
-last joint: it turns that joint by π, whose sine is 1.2e-16 in floats, and that breaks the symmetry.  pybullet gives up
-after 20 iterations by default, when its bend is still small; more iterations and less damping help.
+last joint: it turns that joint by π, whose sine is 1.2e-16 in floats, and that breaks the symmetry.  By default
+pybullet stops after 20 iterations, when its bend is still small.  More iterations and less damping help.
 """
 
 from functools import partial
@@ -13,6 +13,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
+from validate.check import Whose
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, end_of, search_errors, searched
@@ -66,21 +67,24 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """The distance that is left is zero: all these targets are within the ring that the arm reaches.
+    """The remaining distance is zero, because all these targets are within the ring that the arm reaches.
 
-    Source: the triangle's inequality; the longest link is shorter than the other two together.
+    Source: the triangle inequality; the longest link is shorter than the other two together.
     """
     return np.zeros(1)
 
 
 def limit(p, dt):
-    """A search ends at 1e-8 of the reach.  pybullet, cured, ends after the iteration that began with 1e-8 m."""
+    """A search ends at 1e-8 of the reach.
+
+    pybullet with adjusted settings ends after the iteration that began with 1e-8 m.
+    """
     return ENOUGH
 
 
 def default_limit(p, dt):
-    """By default pybullet follows its own law.  Twenty iterations round a few hundred times, which changes a bend of a
-    millionth by 1e-10 of itself.
+    """By default pybullet follows its own law.  Twenty iterations have a few hundred rounding errors, which change a
+    bend of a millionth by 1e-10 of itself.
     """
     return 1e-11
 
@@ -101,17 +105,17 @@ def our_searches(p, step):
 
 
 def cured_searches(p):
-    """Return the searches of pybullet with its cure."""
+    """Return the searches of pybullet with adjusted settings."""
     return searches(p, lambda theta: bullet_search(theta, target_of(p), LENGTHS, **CURE))
 
 
 def searches(p, search):
-    """Return the one search from a nudged start; none from exactly straight, where the rounding of π decides."""
+    """Return the search from a nudged start; none from an exactly straight arm, where the rounding of π decides."""
     return [lambda nudge: search(start(p)[0] + nudge)] if is_bent(p) else []
 
 
 def is_bent(p):
-    """Return whether methods other than CCD can move: a straight arm with its target on its axis is stuck."""
+    """Return whether the arm is bent: a straight arm with its target on its axis is stuck, except for CCD."""
     return p.bent > 0.0 or p.y > 0.0
 
 
@@ -126,11 +130,11 @@ RUNNERS = (
     engine(PYBULLET, "", cured, "jointDamping as our λ², at most 4,000 iterations, residualThreshold 1e-8",
            order=EXACT, limit=limit, supports=is_bent,
            predicted=search_errors(cured_searches, observe, truth, limit)),
-    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with its defaults",
            order=EXACT, limit=default_limit, supports=is_bent,
-           predicted="its own law is its search, which leaves nothing but roundings",
+           predicted="its own law is its search, which leaves only round-off",
            departure=Departure("its 20 iterations with a damping of ½ m² are too few for so small a bend",
-                               default_law)),
+                               default_law, Whose.DEFAULT)),
 )
 
 

@@ -1,8 +1,8 @@
-"""Two links and a target: there are two answers, elbow up and elbow down, and a search finds the one where it starts.
+"""Two links and a target: there are two answers, elbow up and elbow down, and a search finds the one on its side.
 
-The closed form gives both at once.  Every iterative method, started with its elbow bent to one side, comes to the
-answer on that side.  pybullet's default damping of ½ m² suits arms of a metre; an arm of 20 cm stays 16 % of its
-reach away from the target, and jointDamping cures it.
+The closed form gives both at once.  Every iterative method, started with its elbow bent to one side, finds the
+answer on that side.  pybullet's default damping of ½ m² suits arms of a metre.  An arm of 20 cm stays 16 % of its
+reach away from the target; a smaller jointDamping corrects this.
 """
 
 from functools import partial
@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
@@ -52,7 +52,7 @@ def target_of(p):
 
 
 def start(p):
-    """(angles with the elbow to one side, angles with it to the other)."""
+    """Return (angles with the elbow on one side, angles with the elbow on the other)."""
     check_positives(p, "l_1", "l_2")
     bearing = np.arctan2(p.y, p.x)
     return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND]) for side in (1.0, -1.0))
@@ -75,7 +75,7 @@ def arm_of(p):
 
 
 def truth(p, t):
-    """The triangle of base, elbow and target:  cos β = (r² + l₁² − l₂²)/(2 r l₁) at the base and
+    """In the triangle of base, elbow and target,  cos β = (r² + l₁² − l₂²)/(2 r l₁) at the base and
     cos γ = (l₁² + l₂² − r²)/(2 l₁ l₂) at the elbow.  θ₁ = bearing ∓ β,  θ₂ = ±(π − γ).
 
     Source: the law of cosines; Lynch and Park 2017, chapter 6.
@@ -87,32 +87,32 @@ def truth(p, t):
 
 
 def relative(way, p):
-    """Return a way [of the reach] over σ₂, the smaller singular value of J, relative to both answers' angles."""
+    """Return a distance [of the reach] over σ₂, the smaller singular value of J, relative to both answers' angles."""
     angles = truth(p, T)
     smallest = np.linalg.svd(jacobian_of(angles[:2], lengths_of(p)), compute_uv=False)[-1]
     return way * (p.l_1 + p.l_2) * np.sqrt(2.0) / smallest / np.linalg.norm(angles)
 
 
 def limit(p, dt):
-    """Angles are off by |e|/σ₂ at most, σ₂ the smaller singular value of J at the answer; both answers have the same.
-    A search ends at |e| ≤ 1e-10 of the reach.  The gain 0.7/reach² is below 2/σ₁², because σ₁² < 2 reach².
+    """Angles are off by at most |e|/σ₂, σ₂ the smaller singular value of J at the answer, which is the same for both
+    answers.  A search ends at |e| ≤ 1e-10 of the reach.  The gain 0.7/reach² is below 2/σ₁², because σ₁² < 2 reach².
     """
     return relative(1.1 * ENOUGH, p)
 
 
 def formula_limit(p, dt):
-    """The closed form: a few roundings of lengths, over σ₂, here as in the truth."""
+    """The closed form has a few rounding errors of lengths, over σ₂, here as in the truth."""
     return relative(20.0 * ROUND_OFF, p)
 
 
 def cured_limit(p, dt):
-    """pybullet, cured: its position error is 1e-9 of the reach before its last iteration."""
+    """pybullet with adjusted settings: its position error is 1e-9 of the reach before its last iteration."""
     return relative(1.1e-9, p)
 
 
 def default_limit(p, dt):
-    """By default pybullet follows its own law: its matrix is well conditioned, and twenty iterations round a few
-    hundred times.
+    """By default pybullet follows its own law.  Its matrix is well conditioned, and twenty iterations have a few
+    hundred rounding errors.
     """
     return 1e-13
 
@@ -140,7 +140,7 @@ def our_searches(p, step):
 
 
 def cured_searches(p):
-    """Return those of pybullet, cured."""
+    """Return those of pybullet with adjusted settings."""
     return [lambda nudge, theta=theta: bullet_search(theta + nudge[:2], target_of(p), lengths_of(p), **cure(p))
             for theta in start(p)]
 
@@ -153,14 +153,14 @@ def default_law(p, t):
     return observe([bullet_ik(theta, target_of(p), lengths_of(p)) for theta in start(p)], p)
 
 
-def far_from_the_hole(p):
+def jumps(p):
     """Near the hole σ₂ is small on the whole way, and the pseudo-inverse jumps about."""
-    return p != CASES["near the hole"]
+    return "σ₂ is small on the way to the hole, and it jumps about" if p == CASES["near the hole"] else ""
 
 
 RUNNERS = (
     ours(CLOSED_2R, order=EXACT, limit=formula_limit, predicted="a formula: it leaves nothing but roundings"),
-    *(ours(m, order=EXACT, limit=limit, supports=far_from_the_hole if m is PSEUDO_INVERSE else None,
+    *(ours(m, order=EXACT, limit=limit, unfinished=jumps if m is PSEUDO_INVERSE else None,
            predicted=search_errors(partial(our_searches, step=m.table), turned_by, truth, limit))
       for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)),
     engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 100 iterations, residualThreshold 1e-9 reach",
@@ -168,12 +168,12 @@ RUNNERS = (
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
            departure=Departure("its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or "
-                               "at 0.1 mm", default_law)),
+                               "at 0.1 mm", default_law, Whose.DEFAULT)),
 )
 
 
 def sanity_checks():
-    """Return Findings: both answers end at the target; the small arm's shortfall."""
+    """Return Findings: both answers end at the target; the small arm's remaining distance."""
     ends = [joints_of(angles, lengths_of(p))[-1] - target_of(p)
             for p in CASES.values() for angles in truth(p, T).reshape(2, 2)]
     small = CASES["10 cm each"]
@@ -192,13 +192,12 @@ def points(observed, p):
 SCENE = Scene(
     title="Two elbows", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
-    omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing, because σ₂ is "
-                    "small on the way there: it takes large jumps and does not arrive",
+    omitted_methods="pymunk has no inverse kinematics",
     quantity_names=constantly(["θ₁, elbow to the right [rad]", "θ₂ [rad]", "θ₁, elbow to the left [rad]", "θ₂ [rad]"]),
     published_states=((1.0, tuple(np.radians((30.0, 90.0, 120.0, -90.0))), 5e-4),),
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(2),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
-    ablations={"masses": "inverse kinematics asks where, not how fast",
+    ablations={"masses": "inverse kinematics asks for a position, not for a velocity",
                "limits of the joints": "they would choose one of the two answers, or none"},
 )

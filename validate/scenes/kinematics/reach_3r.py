@@ -1,8 +1,8 @@
-"""Three links, a place and a direction: as many conditions as joints, so that again there are two answers.
+"""Three links, a place and a direction: as many conditions as joints, so there are again two answers.
 
 The closed form puts the last joint where the direction requires it, and solves for the other two.  The damped step
-does the same by a Jacobian with a third row.  pybullet accepts a direction, too, but decides by the place alone whether
-it is done.
+does the same by a Jacobian with a third row.  pybullet accepts a direction, too, but the place alone decides when the
+search ends.
 """
 
 from functools import partial
@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
@@ -61,7 +61,7 @@ def target_of(p):
 
 
 def start(p):
-    """Angles with the elbow to one side and to the other; the hand along its direction."""
+    """Return angles with the elbow on one side and on the other, and the hand along its direction."""
     check_positives(p, "l_1", "l_2", "l_3")
     wrist = target_of(p)[:2] - end_of([np.radians(p.degrees)], [p.l_3])
     bearing = np.arctan2(wrist[1], wrist[0])
@@ -102,7 +102,7 @@ def truth(p, t):
 
 
 def smallest_singular_value(p):
-    """Of the Jacobian with its third row, at both answers the smaller one."""
+    """Return the smaller one, of both answers, of the smallest singular values of the Jacobian with its third row."""
     return min(np.linalg.svd(np.vstack((jacobian_of(angles, lengths_of(p)), np.ones(3))), compute_uv=False)[-1]
                for angles in truth(p, T).reshape(2, 3))
 
@@ -113,31 +113,31 @@ def relative(off, p):
 
 
 def limit(p, dt):
-    """Angles are off by |e|/σ₃ at most, σ₃ the smallest singular value of J at the answer.  A search ends at 1e-10.
+    """Angles are off by at most |e|/σ₃, σ₃ the smallest singular value of J at the answer.  A search ends at 1e-10.
     The gain is below 2/σ₁², because σ₁² < 3 reach² + 3 and α = 1/(2 reach² + 3).
     """
     return relative(1.1 * ENOUGH, p)
 
 
 def formula_limit(p, dt):
-    """The closed form: a few roundings of lengths and angles, over σ₃, here as in the truth."""
+    """The closed form has a few rounding errors of lengths and angles, over σ₃, here as in the truth."""
     return relative(20.0 * ROUND_OFF * (1.0 + p.l_1 + p.l_2 + p.l_3), p)
 
 
 def cured_limit(p, dt):
-    """pybullet, cured, sees no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad."""
+    """pybullet with adjusted settings detects no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad."""
     return relative(3e-8, p)
 
 
 def default_limit(p, dt):
-    """By default pybullet follows its own law.  Where its angle is not known well enough to tell to which 32-bit float
+    """By default pybullet follows its own law.  If its angle is not known well enough to decide to which 32-bit float
     it is rounded, that iteration may be off by the spacing of such floats.
     """
     return (1e-13 + single_doubt(p)) * np.sqrt(2.0) / np.linalg.norm(truth(p, T))
 
 
 def single_doubt(p):
-    """The larger of what is in doubt by floats of 32 bits at both answers [rad]."""
+    """Return the larger uncertainty [rad] by 32-bit floats of both answers."""
     x, y, direction = target_of(p)
     return max(single_rounding(theta, np.array([x, y]), lengths_of(p), direction) for theta in start(p))
 
@@ -170,7 +170,7 @@ def default_law(p, t):
 
 
 RUNNERS = (
-    ours(CLOSED_3R, order=EXACT, limit=formula_limit, predicted="a formula: it leaves nothing but roundings"),
+    ours(CLOSED_3R, order=EXACT, limit=formula_limit, predicted="a formula: only round-off is left"),
     *(ours(m, order=EXACT, limit=limit,
            predicted=search_errors(partial(searches, step=m.table), turned_by, truth, limit))
       for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
@@ -180,7 +180,7 @@ RUNNERS = (
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
            departure=Departure("it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and "
-                               "its damping is ½ whatever the size of the arm", default_law)),
+                               "its damping is ½ whatever the size of the arm", default_law, Whose.DEFAULT)),
 )
 
 
@@ -214,5 +214,5 @@ SCENE = Scene(
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, and of the direction: a row of ones"),
     ablations={"a fourth joint": "it would leave one freedom, and a whole curve of answers",
-               "masses": "inverse kinematics asks where, not how fast"},
+               "masses": "inverse kinematics asks for a position, not for a velocity"},
 )

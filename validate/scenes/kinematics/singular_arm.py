@@ -1,8 +1,8 @@
-"""A straight arm and a target on its axis: no method finds out how to bend.
+"""A straight arm and a target on its axis: no method finds a bend.
 
 The end cannot move along a straight arm: Jᵀe = 0, although e is not zero.  Every method that uses the Jacobian stays
-where it is, for ever.  Every joint points at the target already, so that CCD has nothing to do, and projections along
-the line stay on the line.  A millionth of a radian at the start saves them all: see the nearly straight arm.
+where it is.  Every joint already points at the target, so CCD has nothing to do, and projections along the line stay on
+the line.  A bend of a millionth of a radian at the start is enough for all methods: see the nearly straight arm.
 """
 
 from typing import Annotated, NamedTuple
@@ -11,7 +11,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d
-from validate.check import states
+from validate.check import Whose, states
 from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import end_of
@@ -53,20 +53,20 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """The distance that is left is zero: both targets are within the ring that the arm reaches.
+    """The remaining distance is zero, because both targets are within the ring that the arm reaches.
 
-    Source: the triangle's inequality; the longest link is shorter than the other two together.
+    Source: the triangle inequality; the longest link is shorter than the other two together.
     """
     return np.zeros(2)
 
 
 def stays(p, t):
-    """All of the way."""
+    """Return the whole initial distance."""
     return np.array([(REACH - p.x) / REACH, 0.0])
 
 
 def on_the_line(p, t):
-    """FABRIK on a line, with signs for directions: joints go to where their link puts them, ahead or behind."""
+    """Return FABRIK on a line, with signs for directions: a link puts each joint ahead or behind."""
     s = np.append(0.0, np.cumsum(LENGTHS))
     for _ in range(ITERATIONS):
         s[3] = p.x
@@ -79,8 +79,8 @@ def on_the_line(p, t):
 
 
 def limit(p, dt):
-    """On a line there are no sines and cosines but 0 and 1, and π is rounded once: what is left is the round-off of
-    three lengths.
+    """On a line the only sines and cosines are 0 and 1, and π is rounded once.  What is left is the round-off of three
+    lengths.
     """
     return 20.0 * ROUND_OFF
 
@@ -92,20 +92,24 @@ def pybullet_make(p, dt):
 
 
 def beyond_the_last_joint(p):
-    """Behind its last joint CCD folds and gets away: that is in the scene of the nearly straight arm."""
+    """Return whether the target is beyond the last joint.
+
+    Behind it CCD folds and escapes, see the nearly straight arm.
+    """
     return p.x > REACH - LENGTHS[-1]
 
 
-STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays)
-POINTING = Departure("every joint points at the target already", stays)
-ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line)
+STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays,
+                  Whose.LAW)
+POINTING = Departure("every joint points at the target already", stays, Whose.LAW)
+ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line, Whose.LAW)
 JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves nothing but roundings"}
 
 RUNNERS = (
     *(ours(m, departure=STUCK, **JUDGED) for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
     ours(CCD, departure=POINTING, supports=beyond_the_last_joint, **JUDGED),
     ours(FABRIK, departure=ON_THE_LINE, **JUDGED),
-    engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics as it is", departure=STUCK, **JUDGED),
+    engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics with its defaults", departure=STUCK, **JUDGED),
 )
 
 

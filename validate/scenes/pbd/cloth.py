@@ -1,4 +1,4 @@
-"""A cloth of 20 × 20 points is held at two corners and released flat; in a second case it should stay at rest."""
+"""A cloth of 20 × 20 points is held at two corners and released flat; in a second case it begins at rest."""
 
 from functools import cache
 from typing import Annotated, NamedTuple
@@ -38,7 +38,7 @@ def cloth(p):
 
 @cache
 def rest(p):
-    """Return (n², 3): the state of least energy found by SciPy, from a sheet with folds."""
+    """Return (n², 3): the state of minimum energy found by SciPy, from a folded sheet."""
     flat = cloth(p)
     across, down = flat.x[:, 0], flat.x[:, 1]
     folds = 0.02 * np.sin(7.0 * across) * down + 0.003 * np.sin(40.0 * across + 30.0 * down)
@@ -73,8 +73,8 @@ def observe(state, p):
 def truth(p, t):
     """Springs of stiffness 1/α, observed at every point.
 
-    Released flat: moved by DOP853 with separately coded forces.  At rest: the shape of least energy, by a sparse
-    Newton method; it does not move.
+    Released flat, they are moved by DOP853 with separately coded forces.  At rest, they have the shape of minimum
+    energy, found by a sparse Newton method, and do not move.
     """
     return rest(p).ravel() if p.hanging else reference(p).sol(t)[:3 * p.n**2]
 
@@ -83,7 +83,7 @@ def truth(p, t):
 def lag(p):
     """Return |∂x/∂dt| [m/s] at T of implicit Euler:  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² a(xₙ₊₁).
 
-    Forces are those of x + dt v, and the start uses the velocity ½dt later.
+    Forces are those of x + dt v, and the start uses the velocity of ½dt later.
     """
     dt = 1e-5                # [s]: of a finite difference; both values are known to 1e-9 at least
     moved = weave_motion(cloth(p), T, dt, 0.5 * dt, 1e-6).y[:3 * p.n**2, -1]
@@ -96,8 +96,8 @@ def limit(p, dt):
     With short steps, dt² < α m, the links of a cloth barely interact within a sweep.  XPBD then has the error of
     implicit Euler, its lag times dt.  The limit is twice that, because the next order is smaller where this one is
     below ½.  With longer steps a single sweep does not reach the end of the cloth.  A link is then too long by the
-    distance that its tension moves a point in one step.  At a corner that is g dt² for each of n²/2 points; n links
-    may hang on it.
+    distance that its tension moves a point in one step.  At a corner that is g dt² for each of n²/2 points, and up to n
+    links may hang on it.
     """
     floor, size = by_order(0.0, T, dt)[1] + UNCERTAINTY, np.linalg.norm(truth(p, T)) / p.n
     soft = 0.5 * p.n**3 * p.g * dt**2 / size
@@ -108,8 +108,8 @@ def limit(p, dt):
 # a file, so both diagonals need triangles), equal masses and held corners.  In free fall it is symplectic Euler.  Once
 # its springs pull, it does not converge to the reference solution: 5 × 5 points on 20 N/m are off by 1.2, 0.48 and
 # 0.37 % after 0.3 s with steps of 1/240, 1/1000 and 1/4000 s.  None of its settings reaches the rest state, and no law
-# explains its result, so there is nothing to compare it with.
-SWEPT = "one sweep stops before all links are in balance, and what it leaves is bounded, but not modelled"
+# explains its result, so it cannot be compared with anything.
+SWEPT = "one sweep stops before all links are in balance, and the remaining error is bounded, but not modelled"
 RUNNERS = (ours(XPBD, limit=limit, predicted=SWEPT, compiled_in_quick=True),)
 
 

@@ -8,13 +8,12 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.check import states
-from validate.engines.mujoco import chain as mujoco_chain
-from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
+from validate.engines import bullet, mujoco
+from validate.engines.pbd import pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
 from validate.reference.pbd import (
     Rope,
     RopeMotion,
-    bullet_bob,
     chipmunk_rope,
     composed_rope,
     onto_circle,
@@ -24,13 +23,12 @@ from validate.reference.pbd import (
     rattle_once,
 )
 from validate.reference.schemes import Motion
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import ONE_LINK, check_positives, floor_of
 from validate.scenes.pbd._common import in_space
 
-T = 1.5                      # [s]: once through the lowest point, and most of the way up
+T = 1.5                      # [s]: the bob has passed the lowest point and nearly reached its turning point
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-SMALL = 1e-14                # moment of MuJoCo's bob over mL², because it permits no bob without one [-]
 
 
 class Params(NamedTuple):
@@ -72,18 +70,13 @@ def truth(p, t):
     return place(pendulum_angle(np.radians(p.degrees), p.L, p.g, t), p)
 
 
-def with_inertia(p, t):
-    """A bob whose moment I about itself turns with the string falls as if gravity were g/(1 + I/mL²)."""
-    return place(pendulum_angle(np.radians(p.degrees), p.L, p.g / (1.0 + SHARE), t), p)
-
-
 def limits(p, dt):
-    """Nothing changes faster than the rate √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
+    """The fastest rates are √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
 
     With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
     order 2.  pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a step leaves.
-    pybullet does the same, with erp 1: both are of order 1, but pymunk moves the bob before it pulls.  The coordinate
-    of MuJoCo is the angle, which cannot leave a joint open: a table of coefficients, applied to it, predicts the error.
+    The coordinate of pybullet's hinge and of MuJoCo is the angle, which cannot leave a joint open: a table of
+    coefficients, applied to it, predicts the error.
     """
     return by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
 
@@ -101,30 +94,22 @@ BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor_of(limits))
 ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor_of(limits))
 
 
-def bullet_error(p, dt):
-    """pybullet's bob moves by symplectic Euler, and in each step its joint closes what the last step has opened.  The
-    prediction is this step, written out.  Sweeps and roundings leave 1e-15 of a velocity, which grows as a pendulum's
-    errors do.
-    """
-    bob = place(np.radians(p.degrees), p)
-    error = bullet_bob(bob, p.m, SHARE * p.m * p.L**2, p.g, dt, round(T / dt)) - with_inertia(p, T)
-    return Prediction(error, 1e-11) if np.linalg.norm(error) < 0.1 * p.L else None
-
-
 def pymunk_make(p, dt):
     return pymunk_rope([place(np.radians(p.degrees), p)], p.L, p.m, p.g, dt, lambda x: x[0], 1)
 
 
-def pybullet_make(p, dt):
-    return bullet_rope([place(np.radians(p.degrees), p)], p.m, p.g, SHARE * p.m * p.L**2, dt, lambda x: x[0])
-
-
-def mujoco_make(p, dt, integrator="RK4"):
+def hinged(p, dt, chain, **more):
+    """Make the EngineRun of a bob on a hinge; chain of validate/engines."""
     string = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
-    return mujoco_chain(string, p.m, SMALL * p.m * p.L**2, 1.0, p.g, dt,
-                        lambda angles: p.L * np.array([np.cos(angles[0]), np.sin(angles[0])]), integrator)
+    return chain(string, p.m, 0.0, 1.0, p.g, dt,
+                 lambda angles: p.L * np.array([np.cos(angles[0]), np.sin(angles[0])]), **more)
 
 
+mujoco_make = partial(hinged, chain=mujoco.chain)
+
+
+HINGE = engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
+               order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table))
 RUNNERS = (
     ours(PROJECTION, limit=limits, predicted=BOB.predict(onto_circle, 1), most_in_quick=2000),
     ours(PBD, limit=limits, predicted=BOB.predict(onto_circle, 1)),
@@ -134,13 +119,8 @@ RUNNERS = (
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
     engine(PYMUNK, "", pymunk_make, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
-    engine(PYBULLET, "", pybullet_make,
-           f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} "
-           "mL²; a step without gravity beforehand, after which moments count",
-           order=1, limit=limits, predicted=bullet_error,
-           departure=Departure(
-               f"its solver, which sweeps over three axes, needs a bob with a moment of inertia. It has {SHARE} mL² "
-               f"and turns with the string, so that it falls as if gravity were g/{1.0 + SHARE:g}", with_inertia)),
+    HINGE,
+    in_substeps(HINGE, 100),
     engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
     engine(MUJOCO, "default", partial(mujoco_make, integrator="Euler"), "hinge; the semi-implicit Euler step",

@@ -1,4 +1,4 @@
-"""A rope of points on strings is released horizontally; while it falls its end whips round."""
+"""A rope of points on strings is released horizontally; as it falls, its end whips round."""
 
 from functools import partial
 from typing import Annotated, NamedTuple
@@ -8,8 +8,9 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.check import states
-from validate.engines.pbd import FEWER, ITERATIONS, SHARE, bullet_rope, bullet_sweeps, pymunk_rope
-from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
+from validate.engines import bullet, mujoco
+from validate.engines.pbd import FEWER, ITERATIONS, pymunk_rope
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
 from validate.reference.pbd import (
     Rope,
     RopeMotion,
@@ -22,8 +23,10 @@ from validate.reference.pbd import (
     rope_motion,
     rope_places,
     rope_rates,
+    rope_slope,
 )
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, by_order, engine, ours
+from validate.reference.schemes import Motion
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, in_substeps, ours
 from validate.scenes._common import check_positives
 from validate.scenes.pbd._common import in_space
 
@@ -66,7 +69,7 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Every point, from the angles of the links, so that links keep their length exactly.
+    """Every point follows from the angles of the links, so links keep their length exactly.
 
     Tensions and angular accelerations follow from Newton's law, integrated by DOP853 at 1e-12.  Nothing is projected.
     """
@@ -74,17 +77,8 @@ def truth(p, t):
     return rope_places(theta, p.l).ravel()
 
 
-def of_bodies(p, t):
-    """Return the positions of points that have a moment of inertia and rotate with the link above.
-
-    Lagrange's equations are solved by DOP853.
-    """
-    theta = rope_motion(p.links, p.l, p.m, p.g, T, SHARE * p.m * p.l**2).sol(t)[:p.links]
-    return rope_places(theta, p.l).ravel()
-
-
 def of(p):
-    """Return what the functions of the reference take."""
+    """Return the arguments of the functions of the reference."""
     return p.links, p.l, p.m, p.g, T
 
 
@@ -93,12 +87,12 @@ def size(p):
 
 
 def beyond(p, dt):
-    """Return the part of the limits of order 1 and 2 that is of order 2."""
+    """Return the second-order part of the limits of order 1 and 2."""
     return rope_rates(*of(p))[1] * dt**2 + by_order(0.0, T, dt)[2]
 
 
 def limits(p, dt):
-    """First order by the modified equation, integrated by DOP853.
+    """The first order follows from the modified equation, integrated by DOP853.
 
     Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
     time.  For the fourth order it is dt⁴ ∫ρ⁵ dt.
@@ -110,9 +104,9 @@ def limits(p, dt):
 def unfinished_limit(p, dt):
     """PBD and XPBD stop their sweeps before all links have their length.
 
-    Even a single sweep leaves a link too long by at most the distance that its tension moves a point in one step,
-    T dt²/m (stability case stiffness-depends-on-dt has it exactly).  Over N links that adds up to N times as much in
-    position.  Links that are too long also change the forces, which adds ∫ρ dt times as much again.
+    Even a single sweep leaves a link too long by at most the distance that its tension moves a point in one step, T
+    dt²/m (the stability case stiffness-depends-on-dt gives it exactly).  Over N links the error of position is N
+    times as large.  Links that are too long also change the forces, which adds ∫ρ dt times the same error again.
     """
     one, _, _, pull = rope_rates(*of(p))
     return limits(p, dt)[1] + p.links**1.5 * pull / p.m * dt**2 * (1.0 + one) / size(p)
@@ -123,10 +117,15 @@ def pymunk_limit(p, dt):
     return rope_lag(*of(p), ahead=-0.5) / size(p) * dt + beyond(p, dt)
 
 
-def bodies_limit(p, dt):
-    """The modified equation of pybullet is that of bodies which turn with the link above."""
-    lag = rope_lag(*of(p), inertia=SHARE * p.m * p.l**2, ahead=0.5)
-    return lag / np.linalg.norm(of_bodies(p, T)) * dt + beyond(p, dt)
+def angles_limit(p, dt):
+    """The coordinates of pybullet's links and of MuJoCo's are their angles.
+
+    A step of order k errs by (ρ dt)ᵏ⁺¹ at most.  The sum is dt ∫ρ² dt for symplectic Euler, which is at most
+    dt √(∫ρ dt ∫ρ³ dt) by Schwarz's inequality, and dt⁴ ∫ρ⁵ dt for Runge–Kutta.
+    """
+    one, three, five, _ = rope_rates(*of(p))
+    floors = by_order(0.0, T, dt)
+    return {1: np.sqrt(one * three) * dt + floors[1], 4: five * dt**4 + floors[4]}
 
 
 def floor(p, dt):
@@ -138,11 +137,27 @@ def rope(p):
 
 
 MOTION = RopeMotion(T, rope, lambda x: x[1:].ravel(), truth, floor)
-BODIES = MOTION._replace(seen=np.ravel, truth=of_bodies)
+
+
+def hanging(p):
+    """Return θ̈(t, θ, ω) of all links, θ from straight down."""
+    slope = rope_slope(p.l, p.m, p.g)
+    return lambda t, theta, omega: slope(t, np.concatenate((theta, omega)))[p.links:]
+
+
+def released(p):
+    return np.full(p.links, 0.5 * np.pi), np.zeros(p.links)
+
+
+def ends_of(theta, p):
+    return rope_places(theta, p.l).ravel()
+
+
+ANGLES = Motion(T, hanging, released, ends_of, truth, floor)
 
 
 def short(p):
-    """Return whether the rope is short: the projection matrix is small, and few iterations do not explode."""
+    """Return whether the rope is short: then the projection matrix is small, and few iterations do not diverge."""
     return p.links <= 20
 
 
@@ -150,15 +165,20 @@ def pymunk_make(p, dt, sweeps=ITERATIONS):
     return pymunk_rope(straight(p), p.l, p.m, p.g, dt, np.ravel, sweeps * max(p.links, 10))
 
 
-def pybullet_make(p, dt):
-    return bullet_rope(straight(p), p.m, p.g, SHARE * p.m * p.l**2, dt, np.ravel)
+def hinged(p, dt, chain):
+    """Make the EngineRun of links on hinges; chain of validate/engines."""
+    ends = np.concatenate((np.zeros((1, 2)), straight(p)))
+    return chain(ends, p.m, 0.0, 1.0, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
 
 
-IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit has it"
-SWEPT = "its sweeps stop before all links have their length, and what they leave is bounded, but not modelled"
+IMPLICIT = "it solves for all links together: only the first order of its error is known, and the limit contains it"
+SWEPT = "its sweeps stop before all links have their length, and the remaining error is bounded, but not modelled"
 FINER = (10_000, 20_000, 50_000)
+HINGED = engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
+                order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), most_steps=5000,
+                finer_in_full=FINER[:1])
 RUNNERS = (
-    ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum has it
+    ours(PROJECTION, limit=limits, predicted=IMPLICIT, supports=short, in_quick=False),      # the pendulum shows it
     ours(PBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
     ours(XPBD, limit=unfinished_limit, predicted=SWEPT, compiled_in_quick=True),
     ours(RATTLE, limit=limits, predicted=MOTION.predict(rattle, 2)),
@@ -172,14 +192,10 @@ RUNNERS = (
            f"the same with {FEWER} iterations for each link: the fastest setting that errs no more",
            order=1, limit=pymunk_limit, predicted=MOTION.predict_unfinished(chipmunk_rope, 1), supports=short,
            most_steps=5000, finer_in_full=FINER),
-    engine(PYBULLET, "", pybullet_make,
-           f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with "
-           f"I = {SHARE} m l²; a step without gravity beforehand, after which moments count",
-           order=1, limit=bodies_limit, predicted=BODIES.predict_bullet(SHARE, bullet_sweeps), most_steps=5000,
-           departure=Departure(
-               "its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
-               f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly",
-               of_bodies)),
+    HINGED,
+    in_substeps(HINGED, 50),
+    engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
+           order=4, limit=angles_limit, predicted=ANGLES.predict(RK4.table), most_steps=5000),
 )
 
 

@@ -1,4 +1,4 @@
-"""Free bodies and rolling balls: how they start and are drawn, and the runners that turn them."""
+"""Free bodies and rolling balls: initial states, drawings, and the runners that rotate them."""
 
 from functools import partial
 from typing import Any
@@ -12,7 +12,7 @@ from validate.engines.rotation import free_body
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, free_limits
 from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
-from validate.scene import EXACT, MUJOCO, PYBULLET, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, engine, in_substeps, ours
 from validate.scenes._common import measured
 from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
 
@@ -20,7 +20,7 @@ from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
 def turn_runners(body, methods, limits, in_quick, exact=()):
     """Return the runners of our methods on a TurningBody.
 
-    in_quick: {method that a quick run has: its most steps there, or None};    exact: methods with nothing but round-off
+    in_quick: {method in a quick run: its largest number of steps there, or None};    exact: methods with round-off only
     """
     return tuple(ours(m, limit=limits, predicted=body.predict(m.table), order=EXACT if m in exact else m.order,
                       in_quick=m in in_quick, most_in_quick=in_quick.get(m)) for m in methods)
@@ -28,19 +28,21 @@ def turn_runners(body, methods, limits, in_quick, exact=()):
 
 def free_engines(body):
     """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a TurningBody that is free."""
+    maximal = engine(PYBULLET, "", partial(free_body, maximal=True), "useMaximalCoordinates=1, no damping",
+                     order=1, limit=free_limits(body.T, (IMPLICIT,)), predicted=body.predict(IMPLICIT_TERM))
     return (
         engine(PYBULLET, "reduced coordinates", free_body,
                "createMultiBody with its defaults, but no damping and no clamp of velocity",
                order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM)),
-        engine(PYBULLET, "", partial(free_body, maximal=True), "useMaximalCoordinates=1, no damping",
-               order=1, limit=free_limits(body.T, (IMPLICIT,)), predicted=body.predict(IMPLICIT_TERM)),
+        maximal,
+        in_substeps(maximal, 100),
         engine(MUJOCO, "", mujoco.free_body, "freejoint; Runge–Kutta 4",
                order=4, limit=free_limits(body.T), predicted=body.predict(MUNTHE_KAAS), most_steps=5000),
     )
 
 
 def mujoco_default(body):
-    """Return the runner of MuJoCo's own default on a TurningBody that is free."""
+    """Return the runner of MuJoCo's own default on a free TurningBody."""
     return engine(MUJOCO, "default", partial(mujoco.free_body, integrator="Euler"),
                   "freejoint; the semi-implicit Euler step",
                   order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM),
@@ -72,16 +74,13 @@ FREE_BODY: dict[str, Any] = {
 
 # ---------------------------------------------------------------------------------------------- rolling balls
 
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
-
-
 def ball_on_floor(p):
     """Return the RollingBall with I = shape m R² on a horizontal floor."""
     return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))
 
 
 def bowled(p, rim=0.0):
-    """Return (x, q, v, ω) of a ball that is bowled along x; rim: first speed of its rim [m/s]."""
+    """Return (x, q, v, ω) of a ball that is bowled along x; rim: initial speed of its rim [m/s]."""
     spin = np.array([0.0, rim / p.R, 0.0])
     return np.array([0.0, 0.0, p.R]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([p.v0, 0.0, 0.0]), spin
 
@@ -104,5 +103,5 @@ def rolled(p, t, rim=0.0):
 
 
 def rolling_circle(body, R):
-    """Return the read of pymunk's EngineRun of a circle that rolls: the same three."""
+    """Return the read function of pymunk's EngineRun of a rolling circle: the same three quantities."""
     return lambda: np.array([body.position.x, body.velocity.x, -R * body.angular_velocity])

@@ -59,7 +59,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 def truth(p, t):
     """ω by Jacobi's sn, cn, dn, and the rotation about L by Gauss's rule (FreeTop).
 
-    About L the body turns at |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²).  Where the moments are not in order, or L² < 2E I₂,
+    About L the body rotates at |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²).  If the moments are not in order, or L² < 2E I₂,
     DOP853 is used.
     Source: Landau and Lifshitz, Mechanics, § 37.
     """
@@ -75,7 +75,7 @@ RUNNERS = (*turn_runners(BODY, TURNS, free_limits(T), IN_QUICK), *free_engines(B
 
 
 def bodies(p):
-    """Draw a plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a, thicker than it is."""
+    """Draw a plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a; it is drawn thicker."""
     a = np.sqrt(1.5 * np.maximum(0.0, np.sum(p.moments()) - 2.0 * p.moments()))
     return [drawing.box(np.maximum(a, 0.05 * a.max()))]
 

@@ -63,7 +63,7 @@ def truth(p, t):
 UNCERTAINTY = 1e-14          # 54 radians about L, each rounded to 2e-16
 BODY = free_turning(T, truth, UNCERTAINTY)
 RUNNERS = (
-    # with two equal moments all but two turns of the splitting vanish, and these commute
+    # with two equal moments only two rotations of the splitting are left, and these commute
     *turn_runners(BODY, [m for m in TURNS if m is not MATRIX], free_limits(T, (L_KEPT, EXPLICIT, IMPLICIT)), IN_QUICK,
                   exact=(SPLITTING, COMPOSED_SPLITTING)),
     *free_engines(BODY),                                # MuJoCo's default would need 10⁵ steps here
@@ -90,7 +90,7 @@ def sanity_checks():
 
 
 def engines_energy(p, dt=1e-3, steps=10000):
-    """Return pybullet's exact gain and loss of energy as claims.
+    """Return Findings: pybullet's exact gain and loss of energy.
 
     ω_⊥² is multiplied by 1 + (Ω dt)² per step, or divided by it; Ω = (I₃/I₁ − 1) ω₃.
     """
@@ -100,6 +100,7 @@ def engines_energy(p, dt=1e-3, steps=10000):
     for sign, maximal, kind in ((1, False, "reduced"), (-1, True, "maximal")):
         bullet = Rigid(dt)
         body = bullet.body(1.0, I, np.zeros(3), w, maximal)
+        bullet.begin()
         for _ in range(steps):
             bullet.step()
         after = bullet.R(body).T @ bullet.omega(body)

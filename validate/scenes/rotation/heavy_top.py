@@ -15,7 +15,7 @@ from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_K
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
-from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine
+from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine, in_substeps
 from validate.scenes import drawing
 from validate.scenes._common import ONE_LINK, floor_of
 from validate.scenes.rotation._common import turn_runners
@@ -83,7 +83,7 @@ def limits(p, dt):
 
 def pybullet_limit(p, dt):
     """pybullet takes the gyroscopic term at the end of the step (maximal coordinates) or at its beginning (reduced),
-    about the centre of mass instead of the pivot: I = I₁ − ml².  In body coordinates its tip turns at
+    about the centre of mass instead of the pivot: I = I₁ − ml².  In body coordinates its tip rotates at
     Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by ½(Ω dt)² per step.
     """
     turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
@@ -116,7 +116,7 @@ def pybullet_make(p, dt, maximal=False):
     axis = R[:, 2]
     bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
     body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
-    bullet.pivot(body, (0.0, 0.0, -LENGTH), maximal)
+    bullet.begin().pivot(body, (0.0, 0.0, -LENGTH), maximal)
     return EngineRun(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
 
 
@@ -129,12 +129,14 @@ def mujoco_make(p, dt):
 BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor_of(limits, 1e-11))
 SWEPT = "its pivot is a constraint, and the sweeps that hold it are not modelled"
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
+MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), f"useMaximalCoordinates=1; {SETTINGS}",
+                 order=1, limit=pybullet_limit, predicted=SWEPT)
 RUNNERS = (
     *turn_runners(BODY, TURNS, limits, IN_QUICK),
     engine(PYBULLET, "reduced coordinates", pybullet_make, f"createMultiBody, no clamp of velocity; {SETTINGS}",
            order=1, limit=pybullet_limit, predicted=SWEPT),
-    engine(PYBULLET, "", partial(pybullet_make, maximal=True), f"useMaximalCoordinates=1; {SETTINGS}",
-           order=1, limit=pybullet_limit, predicted=SWEPT),
+    MAXIMAL,
+    in_substeps(MAXIMAL, 100),
     engine(MUJOCO, "", mujoco_make, "ball joint; Runge–Kutta 4",
            order=4, limit=limits, predicted=BODY.predict(MUNTHE_KAAS), most_steps=5000),
 )
@@ -145,13 +147,13 @@ def points(observed, p):
 
 
 def bodies(p):
-    """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line over the point."""
+    """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line above the point."""
     reach = np.sin(p.tilt)
     return [drawing.cylinder(0.03 * reach, reach), drawing.sphere(0.07 * reach), drawing.cylinder(0.01 * reach, reach)]
 
 
 def poses(observed, p):
-    """Rotate out of the vertical by the shortest turn: the spin of a round axle cannot be seen."""
+    """Return the poses rotated out of the vertical by the shortest rotation: the spin of a round axle is invisible."""
     x, y, z = tip = axis(observed)
     q = np.array([1.0 + z, -y, x, 0.0])
     q /= np.linalg.norm(q)
@@ -165,7 +167,7 @@ def axis(observed):
 
 
 def arrows(observed, p):
-    """Return ω, less the thousandth of it across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
+    """Return ω, without the thousandth of it across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
     x, y, _ = tip = axis(observed)
     return {"ω": (tip, tip + np.sin(p.tilt) * tip), "τ": (tip, tip + np.array([-y, x, 0.0]))}
 

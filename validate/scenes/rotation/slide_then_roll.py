@@ -11,7 +11,7 @@ from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, in_substeps, ours
 from validate.scenes import drawing
 from validate.scenes._common import check_positives, measured
 from validate.scenes.drawing import pose
@@ -45,9 +45,9 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def truth(p, t):
-    """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); from then on both are v₀/(1 + I/mR²).
+    """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); then both are v₀/(1 + I/mR²).
 
-    5/7 of the speed is left to a sphere, 2/3 to a disc.
+    A sphere keeps 5/7 of the speed, a disc 2/3.
     Source: Newton and Euler with f = μmg; first lecture deck, friction.
     """
     return balls.rolled(p, t)
@@ -58,7 +58,9 @@ def round_off(dt):
 
 
 def limits(p, dt):
-    """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
+    """While it slides, a step that moves with the new velocity loses ½ μg dt per second.
+
+    With the old one it gains the same.
 
     In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
     exact, though pymunk's friction may act for one step more or less: another μg dt².
@@ -69,13 +71,13 @@ def limits(p, dt):
     return {1: bias + round_off(dt), 2: 0.125 * brake * dt * dt / size + round_off(dt)}
 
 
-def new_velocity(p, dt, share=1.0, more=0.0):
+def new_velocity(p, dt, share=1.0):
     """Both velocities are exact at every step, but the ball moves with the new one, the old one or their mean.
 
     The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
     """
-    # share: of the new velocity in the way of a step; more: what the first step adds to v + I ω/mR [m/s]
-    rolling = (p.v0 + more) / (1.0 + p.shape)
+    # share: of the new velocity in the way of a step
+    rolling = p.v0 / (1.0 + p.shape)
     velocity = lambda t: np.maximum(p.v0 - p.mu * p.g * t, rolling)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
     reached = share * new + (1.0 - share) * old
@@ -83,13 +85,6 @@ def new_velocity(p, dt, share=1.0, more=0.0):
 
 
 old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velocity, share=0.5)
-
-
-def new_velocity_of_a_sphere(p, dt):
-    """In its first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on
-    the one that it is given.
-    """
-    return new_velocity(p, dt, more=p.mu * p.g * dt * (p.shape / balls.SPHERE - 1.0))
 
 
 def pymunk_make(p, dt):
@@ -109,6 +104,8 @@ def pybullet_make(p, dt, maximal=False):
     return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), np.zeros(3), maximal, dt)
 
 
+MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+                 order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
     ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
@@ -117,8 +114,8 @@ RUNNERS = (
     engine(PYBULLET, "reduced coordinates", pybullet_make,
            "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=limits, predicted=new_velocity),
-    engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
-           order=1, limit=limits, predicted=new_velocity_of_a_sphere),
+    MAXIMAL,
+    in_substeps(MAXIMAL, 60),
 )
 
 
@@ -140,7 +137,7 @@ def bodies(p):
 def poses(observed, p):
     """Return the rotation of the rim.
 
-    The rim moved ½ (Rω)²/(μg mR²/I) while the ball slid, and then the distance of the ball beyond (v₀² − v²)/2μg.
+    The rim moved ½ (Rω)²/(μg mR²/I) while the ball slid, and then the same distance as the ball after (v₀² − v²)/2μg.
     """
     x, v, rim = observed
     brake = p.mu * p.g

@@ -1,7 +1,7 @@
 """A billiard ball with backspin slides forwards, stops and rolls back.
 
-Both parts of the motion are known exactly.  A loop is wrong only in the step in which the ball ceases to slip, and by
-where it takes its velocities.  The third of our methods cuts its step at that event.
+Both parts of the motion are known exactly.  A loop errs only in the step in which the ball ceases to slip, and
+because it uses the velocity at one end of a step.  The third of our methods cuts its step at that event.
 """
 
 from functools import partial
@@ -54,7 +54,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def truth(p, t):
-    """v = v₀ − μgt and Rω = rim₀ + μgt mR²/I until they meet; from then on both stay as they are.
+    """v = v₀ − μgt and Rω = rim₀ + μgt mR²/I until they meet; from then on both are constant.
 
     In the end v = (v₀ + (I/mR²) rim₀)/(1 + I/mR²): backwards for a sphere whose rim is faster than 5/2 v₀.
     Source: Newton and Euler with f = μmg; deck A, friction.
@@ -67,7 +67,9 @@ def rounded(p, dt):
 
 
 def late_limit(p, dt, overlap=0.0):
-    """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
+    """While it slides, a step that moves with the new velocity loses ½ μg dt per second.
+
+    With the old one it gains the same.
 
     In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
     exact, though an engine's friction may act for one step more or less: another μg dt².
@@ -79,7 +81,7 @@ def late_limit(p, dt, overlap=0.0):
 
 def mean_limit(p, dt):
     """With mean velocities only the step in which it begins to roll is inexact: by ½ μg s (dt − s), where s is the
-    time in it at which rolling begins.  That is ⅛ μg dt² at most, but no fixed share of dt²: the order that a sweep
+    time in it at which rolling begins.  That is at most ⅛ μg dt², but no fixed fraction of dt²: the order that a sweep
     shows depends on s.
     """
     return 1.001 * 0.125 * p.mu * p.g * dt * dt / np.linalg.norm(truth(p, T)) + rounded(p, dt)
@@ -90,29 +92,20 @@ def cut_limit(p, dt):
     return rounded(p, dt)
 
 
-def error(p, dt, share, gain=0.0, overlap=0.0):
+def error(p, dt, share, overlap=0.0):
     """The rectangle rule with the new velocity, or the trapezoidal one: velocities are exact at every step.
 
-    pymunk moves with the old velocity.  The overlap with which both engines begin is their band.
+    pymunk moves with the old velocity.  The band is the overlap with which both engines begin.
     """
-    rolls = balls.rolls_from(p, p.rim0) - gain / (p.mu * p.g * (1.0 + 1.0 / p.shape))
-    velocity = lambda t: p.v0 - p.mu * p.g * np.minimum(t, rolls)
+    velocity = lambda t: p.v0 - p.mu * p.g * np.minimum(t, balls.rolls_from(p, p.rim0))
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
     off, law = share * new + (1.0 - share) * old - truth(p, T)[0], truth(p, T)
-    faster = velocity(T) - law[1] if gain else 0.0
-    return Prediction(np.array([off, faster, faster]), rounded(p, dt) + overlap / np.linalg.norm(law))
+    return Prediction(np.array([off, 0.0, 0.0]), rounded(p, dt) + overlap / np.linalg.norm(law))
 
 
 def cut_error(p, dt):
     """A step that is cut at the event has no error."""
     return Prediction(np.zeros(3), rounded(p, dt))
-
-
-def bullet_error(p, dt):
-    """pybullet does as our first loop does, but in the first step it uses the moment of its own sphere, 2/5 mR², so
-    that the rim gains more there.
-    """
-    return error(p, dt, 1.0, p.mu * p.g * dt * (1.0 / balls.SPHERE - 1.0 / p.shape), OVERLAP)
 
 
 def pymunk_make(p, dt):
@@ -137,12 +130,15 @@ RUNNERS = (
     engine(PYMUNK, "", pymunk_make, "100 iterations; the circle starts 1e-6 m inside the floor",
            order=1, limit=partial(late_limit, overlap=OVERLAP), predicted=partial(error, share=0.0, overlap=OVERLAP)),
     engine(PYBULLET, "", pybullet_make, "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual threshold, "
-           "no slop, no damping", order=1, limit=late_limit, predicted=bullet_error),
+           "no slop, no damping", order=1, limit=late_limit, predicted=partial(error, share=1.0, overlap=OVERLAP)),
 )
 
 
 def turned(observed, p):
-    """Angle of the ball [rad]: (rim² − rim₀²)/(2μg mR²/I) R while it slides, then the way of the ball over R."""
+    """Return the angle of the ball [rad].
+
+    It is (rim² − rim₀²)/(2μg mR²/I) R while it slides, and then the displacement of the ball over R.
+    """
     x, v, rim = observed
     brake = p.mu * p.g
     way = 0.5 * (rim**2 - p.rim0**2) * p.shape / brake
@@ -184,7 +180,7 @@ def arrows(observed, p):
 
 
 def sanity_checks():
-    """Return Findings: where it goes, and its momentum about the floor."""
+    """Return Findings: the final speeds, and the momentum about the floor."""
     ends = [truth(p, T) for p in CASES.values()]
     kept = [p.v0 + p.shape * p.rim0 - end[1] - p.shape * end[2] for p, end in zip(CASES.values(), ends)]
     return (states("speeds in the end of the three spheres [m/s]", [end[1] for end in ends[:3]],

@@ -1,7 +1,7 @@
-"""A machine of six kinds of parts runs for ten seconds.
+"""A machine of six kinds of parts that runs for ten seconds.
 
-A hammer on a spring, dominoes, crates, a ramp with a block, a crank that turns, and a floor that is a belt.  No
-formula for its motion is known.  It is judged by laws that hold for any motion, and each bound is derived.
+The parts are a hammer on a spring, dominoes, crates, a ramp with a block, a rotating crank, and a floor that is a belt.
+No formula for its motion is known.  It is judged by laws that hold for any motion, and each bound is derived.
 """
 
 from functools import cache
@@ -54,12 +54,12 @@ CASES = {kind: Params(seen=kind) for kind in KINDS}
 
 
 class Run(NamedTuple):
-    """The machine, and what its run has shown."""
+    """The machine, and the extremes that its run has reached."""
     now: object              # PileState
     rows: object             # Bodies
     work: float              # of the supports until now [J]
     lowest: float            # energy less work [J]
-    gain: float              # largest rise of it so far [J]
+    gain: float              # largest rise of that so far [J]
     deepest: float           # overlap [m]
     residual: float          # of a step [m/s]
 
@@ -68,7 +68,7 @@ def acceleration(lessons):
     weight, spring_tension = lessons.simulator.weight, lessons.springs.spring_tension
 
     def load(t, x, q, v, omega, p):
-        """Weight, air, and a spring that pulls the hammer."""
+        """Return the load of weight, air, and a spring that pulls the hammer."""
         F, tau = weight(t, x, q, v, omega, p)
         for i in range(x.shape[0]):
             if p.inv_mass[i] > 0.0:
@@ -95,18 +95,18 @@ def start(p):
 
 
 def energy(now, rows):
-    """Energy [J] of all that moves, and of the spring."""
+    """Return the energy [J] of all moving bodies, and of the spring."""
     stretch = np.linalg.norm(now.x[HAMMER] - ANCHOR) - REST
     return mechanical_energy_2d(now.x, now.q, now.v, now.omega, rows) + 0.5 * SPRING * stretch**2
 
 
 def work_of_supports(now, rows):
-    """Work [J] that rows without inverse mass did in the last step: impulse on what moves times velocity there."""
+    """Return the work [J] of rows without inverse mass in the last step: impulse on a body times its velocity."""
     work, c = 0.0, now.contacts
     for a, b, place, J in zip(c.a, c.b, c.p, now.J):
         for body, sign in ((a, -1.0), (b, 1.0)):
             if rows.inv_mass[body] == 0.0:
-                r = place - now.x[body]      # the support has moved since; one that turns does so about its centre
+                r = place - now.x[body]      # the support has moved since, and a rotating one rotates about its centre
                 work += sign * J @ (now.v[body] + now.omega[body] * np.array([-r[1], r[0]]))
     return work
 
@@ -130,19 +130,19 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def corners(x, angle):
-    """Corners (8n,) [m] of all boxes."""
+    """Return the corners (8n,) [m] of all boxes."""
     c, s, signs = np.cos(angle)[:, None], np.sin(angle)[:, None], np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
     a, b = HALF[:, :1] * signs[:, 0], HALF[:, 1:] * signs[:, 1]
     return np.stack((x[:, :1] + c * a - s * b, x[:, 1:] + s * a + c * b), axis=2).ravel()
 
 
 def first_energy(p):
-    """Of the hammer and its spring [J]: what can become energy of the spring."""
+    """Return the energy of the hammer and its spring [J], which bounds the energy of the spring."""
     return 0.5 * MASS[HAMMER] * p.blow**2 + 0.5 * SPRING * (np.linalg.norm(PLACES[HAMMER] - ANCHOR) - REST) ** 2
 
 
 def observe(state, p):
-    """The corners of all boxes; or a gain of energy, an overlap or a residual, each over what it is compared with."""
+    """Return the corners of all boxes; or a gain of energy, an overlap or a residual, each over its reference value."""
     shares = {"energy": state.gain / first_energy(p), "overlap": state.deepest / THICK,
               "residual": state.residual / p.blow}
     n = len(HALF)
@@ -151,13 +151,13 @@ def observe(state, p):
 
 @cache
 def reference(p):
-    """(FINE/30 + 1, 8n): corners, by pymunk."""
+    """Return (FINE/30 + 1, 8n): the corners, by pymunk."""
     return np.array(PymunkBoxes(parts(p), T / FINE, 100, 1e-5).film(FINE, 30, corners))
 
 
 def truth(p, t):
-    """No formula and no published motion is known.  What must hold is compared with 0: energy that comes from nowhere,
-    overlap, and what one more sweep would change.
+    """No formula and no published motion is known.  Three quantities are compared with 0: energy from no source,
+    overlap, and the change that one more sweep would make.
 
     The picture shows pymunk with 600 steps per second, which has the same parts and shares no code with the loop.
     """
@@ -168,12 +168,12 @@ def truth(p, t):
 
 
 def limit(p, dt):
-    """energy: under symplectic Euler the energy of the spring swings by ½ ω dt of itself to both sides, ω² = k/m; at
-    most it is the energy with which the hammer begins.  Everything else takes energy, or is counted as work of the
-    supports.
+    """energy: under symplectic Euler the energy of the spring oscillates by ½ ω dt of itself to both sides, ω² =
+    k/m.  It is at most the energy with which the hammer begins.  Everything else dissipates energy, or is counted as
+    work of the supports.
 
-    overlap: a step moves a corner along a tangent, but a corner that turns moves on an arc.  Per step it gets ½ v ω
-    dt² inside, and nothing pushes it back.  Until it has turned by a right angle that adds up to ½ v π/2 dt, with the
+    overlap: a step moves a corner along a tangent, but a rotating corner moves on an arc.  Per step it penetrates by
+    ½ v ω dt², and nothing pushes it back.  Until it has rotated by a right angle that adds up to ½ v π/2 dt, with the
     speed v of a fall from the highest place, 0.75 m.
 
     residual: the blow of the hammer runs through five dominoes to the floor: six contacts in a row.  Each sweep leaves
@@ -200,17 +200,17 @@ def pymunk_make(p, dt):
 
 
 def tells_places(p):
-    """Return whether places are compared: an engine reports places, but not what its contacts do within a step."""
+    """Return whether positions are compared: an engine reports them, but not its contacts within a step."""
     return p.seen == "places"
 
 
-UNPREDICTED = "the order in which dominoes and crates come to rest decides, and no theory knows it"
+UNPREDICTED = "it depends on the order in which dominoes and crates come to rest, and no theory predicts that"
 RUNNERS = (
-    # the places need shorter steps than a quick run has, and nothing judges them
+    # the positions need shorter steps than a quick run has, and are not judged
     ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("places",), most_in_quick=120),
     engine(PYMUNK, "", pymunk_make, "boxes on a kinematic floor, a DampedSpring, air by a velocity function; 100 "
            "iterations, collision_slop 1e-5", order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED,
-           supports=tells_places),
+           supports=tells_places, is_truth=tells_places),
 )
 
 
@@ -225,7 +225,7 @@ def sanity_checks():
 
 
 def points(observed, p):
-    """The corners of all boxes, the spring as a zigzag, and the floor; the shares have no picture of their own."""
+    """Draw the corners of all boxes, the spring as a zigzag, and the floor; the ratios have no picture of their own."""
     at = np.asarray(observed) if p.seen == "places" else corners(PLACES, ANGLES)
     boxes = at.reshape(-1, 2)
     hammer = boxes[:4].mean(axis=0)
@@ -254,6 +254,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("boxes in the plane", "springs with dampers, air", "supports that move", "sweeps with memory"),
-    ablations={"pushing out what overlaps": "the soft contacts of lesson 9 do it; here overlaps stay and are judged",
+    ablations={"pushing overlaps apart": "the soft contacts of lesson 9 do it; here overlaps stay and are judged",
                "restitution": "several impacts at once have no law"},
 )

@@ -1,7 +1,7 @@
-"""A block slides down a wedge that slides away under it.  Nothing rubs, so that momentum along the floor stays zero.
+"""A block slides down a wedge that slides away under it.  There is no friction, so momentum along the floor stays zero.
 
-The forces at three contacts are constant.  A loop that finds them exactly has exact velocities, and positions that are
-late by half a step.  With the mean of the velocities before and after each step the positions are exact, too.
+The forces at three contacts are constant.  A loop that finds them exactly has exact velocities, and its positions lag
+by half a step.  With the mean of the velocities before and after each step the positions are exact, too.
 """
 
 from functools import partial
@@ -49,7 +49,7 @@ def normal(p):
 
 
 def places(p):
-    """Centres (2, 2) [m] of the wedge, which is a box on its corner, and of the block on its upper side."""
+    """Return the centres (2, 2) [m] of the wedge, which is a box on its corner, and of the block on its upper side."""
     n, down = normal(p), np.array([np.cos(slope(p)), -np.sin(slope(p))])
     low = LONG * np.sin(slope(p)) + THICK * np.cos(slope(p))
     wedge = np.array([0.0, low])
@@ -57,7 +57,7 @@ def places(p):
 
 
 def start(p):
-    """(PileState, Bodies).  The wedge cannot turn: a moment of inertia without bound stands for its wide foot."""
+    """Return (PileState, Bodies).  The wedge cannot rotate: an infinite moment of inertia replaces its wide foot."""
     check_positives(p, "degrees", "m", "M", "half", "g")
     moments, half = np.array([np.inf, 2.0 / 3.0 * p.m * p.half**2]), np.array([(LONG, THICK), (p.half, p.half)])
     return make_bodies_2d(places(p), np.full(2, -slope(p)), np.array([p.M, p.m]), moments, half,
@@ -77,7 +77,7 @@ def observe(state, p):
 
 
 def accelerations(p):
-    """Accelerations [m/s²]: of the wedge along x, of the block along x and y.
+    """Return the accelerations [m/s²] of the wedge along x, and of the block along x and y.
 
     With N the force between both: M A = −N sin θ,  m a_x = N sin θ,  m a_y = N cos θ − m g, and the block stays on the
     slope: a_y = −(a_x − A) tan θ.
@@ -99,7 +99,7 @@ def truth(p, t):
 
 
 def lag(p, dt):
-    """Return ½ a dt T (3,) [m]: how far positions with the new velocities are behind."""
+    """Return ½ a dt T (3,) [m], by which positions with the new velocities lag behind."""
     return 0.5 * accelerations(p) * dt * T
 
 
@@ -108,15 +108,17 @@ def relative_lag(p, dt):
 
 
 def loop_limit(p, dt):
-    """Positions with the new velocities are late by ½ a dt T, with the old ones early by that; velocities are exact.
+    """Positions with the new velocities are late by ½ a dt T, with the old ones early by the same.
 
-    Ours: 25 sweeps leave 1e-7 of an impulse in the first step, and later steps, which start warm, find the rest.
+    Velocities are exact.
+
+    Ours: 25 sweeps leave 1e-7 of an impulse in the first step, and later steps, which start warm, remove the rest.
     """
     return 1.001 * relative_lag(p, dt) + 1e-7 * dt / T + 1e-9 + T / dt * ROUND_OFF
 
 
 def mean_limit(p, dt):
-    """With mean velocities nothing is wrong but what the sweeps leave of an error.  A gap is rounded, and closed within
+    """With mean velocities only the error that the sweeps leave is present.  A gap is rounded, and closed within
     one step: that adds some 1e-12 to the velocities.
     """
     return contraction(p) ** SWEEPS * dt / T + 5e-12 + T / dt * ROUND_OFF
@@ -128,16 +130,16 @@ def pymunk_limit(p, dt):
 
 
 def bullet_limit(p, dt):
-    """pybullet: both overlaps, and a share of them over the first step in the velocities, while the block moves by less
-    than its half size in a step.  Its contact points are twice as far apart, and it finds those of the last step again
-    by the nearest place.  With longer steps it takes one for another.
+    """pybullet: both overlaps, and a fraction of them over the first step in the velocities, as long as the block
+    moves by less than its half size in a step.  Its contact points are twice as far apart, and it matches those of
+    the last step by the nearest place.  With longer steps it takes one point for another.
     """
     pushed = (4.0 + 2.0 * CONTACT_ERP / dt) * OVERLAP / np.linalg.norm(truth(p, T))
     return relative_lag(p, dt) + pushed + turned(p) if carried(p, dt) else np.inf
 
 
 def contraction(p):
-    """Return what a sweep of Gauss–Seidel leaves of an error: the spectral radius of its iteration.
+    """Return the fraction of an error that a sweep of Gauss–Seidel leaves: the spectral radius of its iteration.
 
     The contacts are the wedge's corner on the floor and two corners of the block on the wedge.  The block has r²/I =
     1.5/m for the corners of its face; the floor pushes the wedge up, the block pushes it along −n.
@@ -155,10 +157,11 @@ def carried(p, dt):
 
 
 def turned(p):
-    """Return the relative error of pybullet's wedge, whose moment of inertia has a bound: it turns by an angle φ.
+    """Return the relative error of pybullet's wedge, which rotates by φ because its moment of inertia is finite.
 
-    The floor carries (M + m) g at one corner, the block presses with m g: the moment is their sum times half of the
-    diagonal at most.  With φ the places on the wedge move, and the direction of the block's acceleration turns.
+    The floor carries (M + m) g at one corner, and the block presses with m g.  The moment is at most their sum
+    times half of the diagonal.  With φ the places on the wedge move, and the direction of the block's acceleration
+    turns.
     """
     reach = np.hypot(LONG, THICK)
     angle = 0.5 * (p.M + 2.0 * p.m) * p.g * reach / WIDE * T**2
@@ -166,15 +169,15 @@ def turned(p):
 
 
 def lag_error(p, dt, sign, limit):
-    """+½ a dt T in the positions with the new velocities, −½ a dt T with pymunk's old ones, and nothing in velocities.
-    The band is what the solvers leave: the rest of the limit.
+    """The error is +½ a dt T in the positions with the new velocities, −½ a dt T with pymunk's old ones, and zero in
+    velocities.  The band is what the solvers leave: the rest of the limit.
     """
     return Prediction(np.append(sign * lag(p, dt), np.zeros(3)), limit(p, dt) - abs(sign) * relative_lag(p, dt))
 
 
 def bullet_error(p, dt):
-    """pybullet takes a share of the overlap of each contact back per step, by a velocity that it adds.  The recursion
-    of both overlaps says where that ends.
+    """pybullet removes a fraction of the overlap of each contact per step, by a velocity that it adds.  The recursion
+    of both overlaps predicts the end.
     """
     if not carried(p, dt):
         return None
@@ -185,7 +188,7 @@ def bullet_error(p, dt):
 
 
 def pymunk_make(p, dt, iterations):
-    """Make a triangle that cannot turn, and a block on it; each begins a micrometre inside what carries it."""
+    """Make a triangle that cannot rotate, and a block on it; each begins a micrometre inside its support."""
     import pymunk
     space, x, n = pymunk_floor_space(p.g, 0.0), places(p), normal(p)
     s, c, down = np.sin(slope(p)), np.cos(slope(p)), np.array([0.0, -OVERLAP])

@@ -1,8 +1,8 @@
-"""A block rocks from one lower corner to the other.  Each impact takes 5.8 % of its rate.
+"""A block rocks from one lower corner to the other, and each impact removes 5.8 % of its rate.
 
-The block is let go at half of the angle at which it would tip.  Angular momentum about the new corner stays, since the
-impulse acts there, and the old corner is free at once.  Our rocking step cuts its step at the impact; the whole loop
-and the engines find the corner when it touches.
+The block is released at half of the angle at which it would tip over.  An impact conserves the angular momentum about
+the new corner, because the impulse acts there and the old corner is free at once.  Our rocking step cuts its step at
+the impact; the whole loop and the engines detect the corner when it touches.
 """
 
 from functools import partial
@@ -31,7 +31,7 @@ STEPS = (24, 48, 120, 240, 480, 1200, 2400)
 SWEEPS = 40                  # [-]
 MARGIN = 0.02                # [m]
 MU = 5.0                     # nothing slides [-]
-BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on where in a step the impact is
+BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on the phase of the impact
 
 
 class Params(NamedTuple):
@@ -53,13 +53,13 @@ def inertia(p):
 
 
 def place(p):
-    """Centre (2,) [m] of the block when it leans on its left corner, which is at −b."""
+    """Return the centre (2,) [m] of the block when it leans on its left corner, which is at −b."""
     c, s = np.cos(p.share * alpha(p)), np.sin(p.share * alpha(p))
     return np.array([-p.b + c * p.b - s * p.h, s * p.b + c * p.h])
 
 
 def start(p):
-    """(angle (1,), rate (1,)): positive to the left."""
+    """Return (angle (1,), rate (1,)), positive to the left."""
     check_positives(p, "b", "h", "share", "g")
     if p.share >= 1.0:
         raise BadInput("first lean over the angle at which it tips [-]", p.share, "give less than 1")
@@ -94,9 +94,9 @@ def truth(p, t):
 def late_limit(p, dt, overlap=0.0):
     """Let P² = 3 g/4R.  Errors grow as cosh(P t), in the fall and after the impact.
 
-    The whole loop and the engines find the corner up to dt late.  In that time the angular acceleration has the wrong
+    The whole loop and the engines detect the corner up to dt late.  In that time the angular acceleration has the wrong
     sign: 2 P² sin α dt.  Before the impact positions use the new velocities: dt/2 P² sin α.  The pivot moves up by
-    ½ ω² dt² per step and is set down again, another ½ ω² dt of the rate.  All that grows by cosh(P T) at the most.
+    ½ ω² dt² per step and is set down again, another ½ ω² dt of the rate.  All of these grow by at most cosh(P T).
     """
     P2 = 0.75 * p.g / np.hypot(p.b, p.h)
     fastest = np.sqrt(P2) * alpha(p)
@@ -131,7 +131,7 @@ def pybullet_make(p, dt):
     def read():
         R = bullet.R(body)
         return np.array([-np.arctan2(R[0, 2], R[2, 2]), -bullet.omega(body)[1]])
-    return EngineRun(bullet.step, read, bullet.close)
+    return EngineRun(bullet.begin().step, read, bullet.close)
 
 
 # Tried at 24, 120, 480 and 2,400 steps; the errors with these settings are 148, 14, 3.1 and 0.64 % in pymunk, and 23,
@@ -142,7 +142,7 @@ def pybullet_make(p, dt):
 # pybullet: 2.8 to 2.9 and 0.66 % in reduced coordinates, with 10 or 1,000 iterations, with erp 0.2 or 0.8, a breaking
 # threshold of 1e-4 or 0.1, or split impulses; 3.2 and 0.66 % with erp 0; 6 and 0.9 % with slop 1e-4 or more.  Four
 # substeps err as four times as many steps do, 0.68 and 0.22 %.  The direct solver (Dantzig) gives 2.9 and 0.66 %.
-BY_CHANCE = "where in its step the impact falls decides by how much it is late"
+BY_CHANCE = "the delay of the impact depends on its phase in the step"
 RUNNERS = (
     ours(LOOP_2D, order=BY_PHASE, limit=late_limit, predicted=BY_CHANCE, in_quick=False),
     ours(ROCKING, limit=cut_limit, predicted="the leading term of its error is not derived, only its bound"),
@@ -156,7 +156,7 @@ RUNNERS = (
 
 
 def corners(observed, p):
-    """Corners (4, 2) of the block, which stands on its lower left or right corner."""
+    """Return the corners (4, 2) of the block, which stands on its lower left or right corner."""
     angle = observed[0]
     c, s, side = np.cos(angle), np.sin(angle), -1.0 if angle >= 0.0 else 1.0
     ring = np.array([(-p.b, -p.h), (p.b, -p.h), (p.b, p.h), (-p.b, p.h)]) @ np.array([(c, s), (-s, c)])

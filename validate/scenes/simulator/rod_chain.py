@@ -1,9 +1,10 @@
-"""A chain of rigid rods on hinges is let go from horizontal.  Its end whips round within a second.
+"""A chain of rigid rods on hinges is released from horizontal; its end whips round within a second.
 
-Our joints take all hinges at once, by one band matrix.  pymunk and pybullet sweep over them, one after the other.
+Our joints solve for all hinges at once, by one band matrix.  pymunk and pybullet sweep over them, one after the other.
 Angles need no joints at all: the chain obeys Lagrange's equations, and Runge–Kutta's method of lesson 1 solves them.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,9 +14,9 @@ from solutions.given.simulator import RodsInAngles
 from solutions.rotation import SUZUKI
 from solutions.simulator import make_bodies, make_bodies_2d, make_joints
 from validate.check import states
-from validate.engines.mujoco import chain as mujoco_chain
+from validate.engines import bullet, mujoco
 from validate.engines.simulator import pybullet_chain, pymunk_chain
-from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
+from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE, SYMPLECTIC_EULER
 from validate.reference.orientation import about
 from validate.reference.schemes import Motion
 from validate.reference.simulator import (
@@ -27,7 +28,7 @@ from validate.reference.simulator import (
     rods_motion,
     rods_slope,
 )
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, ours
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, in_substeps, ours
 from validate.scenes import drawing
 from validate.scenes._common import check_positives
 from validate.scenes.drawing import pose
@@ -36,7 +37,7 @@ T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
 SWEEPS = 10                  # of both engines for each rod: an impulse travels one rod per sweep
 HEADING = np.array([0.6, 0.8, 0.0])      # of the chain in space: along no axis
-THICK = 0.01                 # moment of a rod about itself over the other two [-]
+THICK = 0.01                 # moment of a rod about its axis over the other two [-]
 FIVE = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)
 
 
@@ -60,7 +61,7 @@ def straight(p):
 
 
 def start(p):
-    """(x, q, v, ω, JointedBodies) in the plane, and the same in space.  Body 0 is the wall."""
+    """Return (x, q, v, ω, JointedBodies) in the plane, and the same in space.  Body 0 is the wall."""
     check_positives(p, "l", "m", "g")
     if p.rods < 1:
         raise BadInput("rods", p.rods, "give 1 or more")
@@ -114,7 +115,7 @@ def observe(state, p):
 
 
 def of(p):
-    """Return what the functions of the reference take."""
+    """Return the arguments of the functions of the reference."""
     return p.rods, p.l, p.m, inertia(p), p.g, T
 
 
@@ -144,17 +145,17 @@ def fourth(p, dt):
 
 def limits(p, dt):
     """Ours: the error of the same discrete Lagrangian written in angles, an independent code.  It is taken
-    from one run, of 10 steps per rod (4 for the fourth order), at least 200 (100), and scaled with dt² (dt⁴); half as
-    much again for what the next order adds in shorter steps.
+    from one run, of 10 steps per rod (4 for the fourth order), at least 200 (100), and scaled with dt² (dt⁴); half of
+    it is added for the next order in shorter steps.
     """
     rounded = 1e-11 + T / dt * 100.0 * ROUND_OFF
     return {2: second(p, dt) + rounded, 4: fourth(p, dt) + rounded}
 
 
 def swept_limit(p, dt):
-    """pymunk and pybullet also begin half a step late or early: that is of first order.  And they close a joint in
-    the step after the one that opened it: that is of second order.  Where a rod turns by more than a
-    radian in a step, an expansion in powers of dt says nothing.
+    """pymunk and pybullet also begin half a step late or early, an error of first order.  They close a joint in
+    the step after the one that opened it, an error of second order.  If a rod rotates by more than a
+    radian in a step, an expansion in powers of dt is meaningless.
     """
     gaps, fastest = rods_gaps(*of(p))
     late = (rods_lag(*of(p)) * dt + gaps * dt**2) / size(p)
@@ -162,10 +163,11 @@ def swept_limit(p, dt):
 
 
 def angles_limit(p, dt):
-    """The angles of Runge–Kutta's method and of MuJoCo change at the greatest rate of a rod.  They cannot leave a joint
-    open: the method's table, applied to them, predicts the error.
+    """The angles of Runge–Kutta's method, of pybullet's hinges and of MuJoCo change at the greatest rate of a rod.
+
+    They cannot leave a joint open: the method's table, applied to them, predicts the error.
     """
-    return by_order(rods_gaps(*of(p))[1], T, dt)[4] + 1e-9
+    return {order: limit + 1e-9 for order, limit in by_order(rods_gaps(*of(p))[1], T, dt).items()}
 
 
 def hanging(p):
@@ -195,13 +197,16 @@ def pybullet_make(p, dt):
                           1.0, dt, lambda x, angle: lower_ends(x, angle, p))
 
 
-def mujoco_make(p, dt):
-    return mujoco_chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
+def hinged(p, dt, chain):
+    """Make the EngineRun of rods on hinges, whose coordinates are angles; chain of validate/engines."""
+    return chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
 
 
-LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which its limit has"
+LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which is in its limit"
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
 FINER = (2000, 5000, 10_000, 20_000)
+HINGED = engine(PYBULLET, "reduced coordinates", partial(hinged, chain=bullet.chain), bullet.HINGES,
+                order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), finer_in_full=FINER)
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=LAGRANGIAN),
     ours(COMPOSED_JOINTS, limit=limits, predicted=LAGRANGIAN, in_quick=False),
@@ -212,7 +217,9 @@ RUNNERS = (
     engine(PYBULLET, "", pybullet_make,
            f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane",
            order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
-    engine(MUJOCO, "", mujoco_make, "hinges; Runge–Kutta 4",
+    HINGED,
+    in_substeps(HINGED, 10),
+    engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
            order=4, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
 )
 
@@ -248,7 +255,7 @@ def bodies(p):
 
 
 def poses(observed, p):
-    """Return the rods in the plane of x and z; a capsule is along its own z."""
+    """Return the rods in the plane of x and z; a capsule lies along its own z."""
     ends = np.concatenate((np.zeros((1, 2)), np.reshape(observed, (-1, 2))))
     return [pose(np.array([x, 0.0, z]), about(np.array([0.0, 1.0, 0.0]), np.arctan2(*along)))
             for (x, z), along in zip(0.5 * (ends[1:] + ends[:-1]), ends[1:] - ends[:-1])]

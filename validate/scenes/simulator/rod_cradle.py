@@ -1,6 +1,6 @@
-"""Newton's cradle: five balls on rods, small gaps between them.  One ball swings down, and one leaves: (0, 0, 0, 0, 1).
+"""Newton's cradle: five balls on rods with small gaps; one ball swings down, and one leaves: (0, 0, 0, 0, 1).
 
-A hinge and a contact act in the same instant.  The loop takes them in turn until both hold.
+A hinge and a contact act in the same instant.  The loop visits them alternately until both hold.
 """
 
 from typing import Annotated, NamedTuple
@@ -24,8 +24,8 @@ STEPS = (5, 10, 20, 50, 100, 200, 500)
 BALLS = 5
 SWEEPS = 4                   # of the loop, one contact and hinges: each leaves I/mL² = 1e-3 of an error [-]
 TOGETHER = 60                # of four contacts at once: each leaves cos²(π/5) = 0.65 [-]
-TOUCHING = 1e-9              # margin of the loop: it sees a contact when there is one [m]
-BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on where in steps the impacts are
+TOUCHING = 1e-9              # margin of the loop [m]: it detects only contacts that touch
+BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on the phases of the impacts
 LOW = np.array([(0.0, 1.0, 100.0)])      # a plane far below: the world to which the rods are hinged
 
 
@@ -63,7 +63,7 @@ def centres(theta, p):
 
 
 def start(p):
-    """(PileState, JointedBodies) of the balls; each turns with its rod."""
+    """Return (PileState, JointedBodies) of the balls; each rotates with its rod."""
     check_positives(p, "angle", "L", "R", "g")
     check_not_negative("gap", p.gap)
     if not 1 <= p.lifted <= BALLS or p.angle >= 0.5 * np.pi:
@@ -81,7 +81,10 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 
 
 def seen(theta, omega, p):
-    """With gaps: angle [rad] and rate [rad/s] of each.  Touching: sums of both, and twice the energy over m L²."""
+    """Return the observed quantities: with gaps, the angle [rad] and rate [rad/s] of each ball.
+
+    For touching balls they are the sums of both, and twice the energy over m L².
+    """
     if p.gap > 0.0:
         return np.concatenate((theta, omega))
     energy = (1.0 + moment(p) / p.L**2) * np.sum(omega**2) + 2.0 * p.g / p.L * np.sum(1.0 - np.cos(theta))
@@ -93,14 +96,14 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """With gaps: pendulums by DOP853 until a gap closes; there the impulse along the normal, with e = 1.
+    """With gaps: pendulums by DOP853 until a gap closes; then the impulse along the normal, with e = 1.
 
-    Equal levers act like equal masses.  So each impact passes the rate on, up to squares of the angles, and the last
-    ball leaves alone.  Source: Newton; Herrmann and Schmälzle 1981.
-    Touching balls collide at the same time, and five rates have only two conditions: momentum and energy.  For small
-    angles gravity acts on the sum of the angles as on one pendulum, whichever ball moves: the sums are those of one
-    pendulum that swings through.  (Which balls leave depends on the law of impact: Moreau's in our loop gives (−0.26,
-    0, 0, 0.51, 0.51) rad/s with 400 steps, and another result where rounding closes one of the contacts a step later.)
+    Equal lever arms act like equal masses.  So each impact passes the rate on, up to squares of the angles, and the
+    last ball leaves alone.  Source: Newton; Herrmann and Schmälzle 1981.  Touching balls collide at the same time,
+    and five rates have only two conditions: momentum and energy.  For small angles gravity acts on the sum of the
+    angles as on one pendulum, independent of which ball moves: the sums are those of one pendulum that swings
+    through.  (Which balls leave depends on the law of impact: Moreau's in our loop gives (−0.26, 0, 0, 0.51, 0.51)
+    rad/s with 400 steps, and another result where rounding closes one of the contacts a step later.)
     """
     if p.gap > 0.0:
         return np.concatenate(cradle_motion(*of(p), t)[:2])
@@ -109,18 +112,18 @@ def truth(p, t):
 
 
 def of(p):
-    """Return what the reference takes."""
+    """Return the arguments of the reference."""
     return p.lifted, p.angle, BALLS, pitch(p), p.L, p.R, p.g, p.L**2 + moment(p)
 
 
 def limit(p, dt):
     """Positions use the new velocities, which costs half a step of the swing, ½ dt.  Each of four impacts (four for
-    each ball that swings) is found up to one step late, and so is everything after it.  Late by s, an angle is off by
-    ω s and a rate by w² sin(angle) s, with w² = g/L; a ball that has stopped went up to ω dt too far.  A step in which
-    a ball crosses half of a gap merges two impacts; then there is no bound.
+    each ball that swings) is detected up to one step late, and so is everything after it.  Late by s, an angle is
+    off by ω s and a rate by w² sin(angle) s, with w² = g/L; a ball that has stopped moved up to ω dt too far.  A
+    step in which a ball crosses half of a gap merges two impacts; then there is no bound.
 
-    Touching balls keep the sums; a late impact of a ball inside the next one does not change them.  What is left is
-    half a step of the swing, and the cubes in the sines of five angles of up to 0.3: 5 · angle³/6 · w² T at most.
+    Touching balls conserve the sums; a late impact of a ball inside the next one does not change them.  What is left is
+    half a step of the swing, and the cubes in the sines of five angles of up to 0.3: at most 5 · angle³/6 · w² T.
     """
     w2, size = p.g / p.L, np.linalg.norm(truth(p, T))
     fastest = 2.0 * np.sqrt(w2) * np.sin(0.5 * p.angle)
@@ -138,7 +141,7 @@ def limit(p, dt):
 
 
 def engine_read(p):
-    """Return read(x, v, ω) of the engines: the angle is that of the centre about its pivot."""
+    """Return read(x, v, ω) of the engines; the angle is that of the centre about its pivot."""
     def read(x, v, omega):
         r = np.asarray(x) - pivots(p)
         return seen(np.arctan2(r[:, 0], -r[:, 1]), (r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / np.sum(r * r, axis=1), p)
@@ -153,7 +156,7 @@ def pybullet_make(p, dt):
     return pybullet_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
 
 
-JUDGED = {"order": BY_PHASE, "limit": limit, "predicted": "where in their steps the impacts fall decides"}
+JUDGED = {"order": BY_PHASE, "limit": limit, "predicted": "the delays of its impacts depend on their phases in a step"}
 RUNNERS = (
     ours(JOINTED_LOOP, **JUDGED),
     engine(PYMUNK, "", pymunk_make, f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations",
@@ -164,7 +167,7 @@ RUNNERS = (
 
 
 def sanity_checks():
-    """Return Findings: who leaves, and what each impact keeps."""
+    """Return Findings: which balls leave, and the quantities that each impact conserves."""
     claims = []
     for lifted, leave in ((1, (0.0, 0.0, 0.0, 0.0, 1.0)), (2, (0.0, 0.0, 0.0, 1.0, 1.0))):
         p = Params(lifted=lifted)
@@ -185,7 +188,7 @@ def sanity_checks():
 
 
 def points(observed, p):
-    """The pivots and the balls; touching balls at the start, because only sums are observed."""
+    """Draw the pivots and the balls; touching balls at the start, because only sums are observed."""
     theta = np.asarray(observed)[:BALLS] if p.gap > 0.0 else angles(p)
     x = centres(theta, p)
     return np.round(np.vstack((pivots(p), x, (x[:, None] + p.R * circle(12)).reshape(-1, 2))), 4)
@@ -196,7 +199,7 @@ def links(p):
 
 
 def bodies(p):
-    """Balls, then rods."""
+    """Return the balls, then the rods."""
     return [drawing.sphere(p.R)] * BALLS + [drawing.cylinder(0.1 * p.R, p.L)] * BALLS
 
 
@@ -220,5 +223,5 @@ SCENE = Scene(
     bodies=bodies, poses=poses,
     uses=("hinges", "one contact at a time, with restitution", "the plane"),
     ablations={"friction": "neighbours slide on each other while they touch, for no time",
-               "several impacts at once": "touching balls: no law decides who leaves, only how fast all together are"},
+               "several impacts at once": "touching balls: no law decides which leave, but only sums of velocities"},
 )

@@ -1,6 +1,7 @@
-"""A ball rolls on a turntable, without slipping: it moves on a circle, at 2/7 of the table's angular velocity.
+"""A ball rolls on a turntable without slipping: it moves on a circle, at 2/7 of the table's angular velocity.
 
-If a step takes the table's velocity where the ball was, the ball spirals outwards, in our loop as in an engine.
+If a step takes the table's velocity at the old position of the ball, the ball spirals outwards, in our loop as in an
+engine.
 """
 
 from typing import Annotated, NamedTuple
@@ -47,7 +48,7 @@ def ball(p):
 
 
 def start(p):
-    """(x, q, v, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
+    """Return (x, q, v, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
     check_positives(p, "spin", "shape", "R", "m", "g")
     x, v, r = np.array([p.x0, 0.0, p.R]), np.array([0.0, p.v0, 0.0]), np.array([0.0, 0.0, -p.R])
     omega = np.cross(r, np.cross(table(p), x) - v) / p.R**2
@@ -81,7 +82,7 @@ def rate(p):
 def truth(p, t):
     """v̇ = c/(1 + c) Ω × v: a circle about x₀ + n × v₀/rate, with c = I/mR².
 
-    Friction F gives m v̇ = F and I ω̇ = r × F.  The lowest point keeps to the table, v + ω × r = Ω × x, so that
+    Friction F gives m v̇ = F and I ω̇ = r × F.  The lowest point moves with the table, v + ω × r = Ω × x, so
     v̇ (1 + 1/c) = Ω × v.
     Source: Weltner 1979, “Stable circular orbits of freely moving balls on rotating discs”.
     """
@@ -93,7 +94,7 @@ def truth(p, t):
 
 def carried_limit(p, dt):
     """Per step, Adams and Bashforth's method leaves 5/12 (w dt)³ of v and the mean velocity 1/12 (w dt)³.  In all, the
-    place is off by ½ T w² dt² |v| and the velocity by w times that; a fifth more for the next order, with w dt up to
+    position is off by ½ T w² dt² |v| and the velocity by w times that; a fifth more for the next order, with w dt up to
     0.2.
     """
     w, v = rate(p), abs(p.v0) / np.linalg.norm(truth(p, T))
@@ -101,15 +102,15 @@ def carried_limit(p, dt):
 
 
 def spiral(p, dt):
-    """Return the relative error of first order of a step that takes the floor's velocity where the ball was."""
+    """Return the relative error of first order of a step that takes the floor's velocity at the old position."""
     w, v = rate(p), abs(p.v0) / np.linalg.norm(truth(p, T))
     return ((0.5 * T * w + 2.0) * dt * v + (0.5 * T * w + 1.0) * w * dt * v) * 1.2
 
 
 def loop_limit(p, dt):
-    """With the floor's velocity where the ball was, the step is Euler's method: |v| grows by the share ½ w² dt per
-    second.  The place is then off by ½ T w dt |v|, and the velocity by w times that.  It also begins one step late:
-    another dt |v| of the place, and w dt |v| of the velocity.  Moving with the new velocities adds dt |v| at most.
+    """With the floor's velocity at the old position, the step is Euler's method: |v| grows by the fraction ½ w² dt per
+    second.  The position is then off by ½ T w dt |v|, and the velocity by w times that.  It also begins one step late:
+    another dt |v| of the position, and w dt |v| of the velocity.  Moving with the new velocities adds at most dt |v|.
     """
     return spiral(p, dt) + 1e-12 + T / dt * ROUND_OFF
 
@@ -162,7 +163,7 @@ RUNNERS = (
     engine(PYBULLET, "", pybullet_make, "a box of 10⁹ ball masses that rotates freely, because in maximal coordinates "
            "bodies without mass carry nothing along; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=bullet_limit,
-           predicted="it keeps its contact point for some steps, and that law is not derived here"),
+           predicted="it keeps its contact point for some steps, and the law of this is not derived here"),
 )
 
 
@@ -192,7 +193,7 @@ def sanity_checks():
     x, _, v, omega, *_ = start(p)
 
     def slope(t, y):
-        """ẋ, v̇ and ω̇ by the friction that keeps the lowest point on the table."""
+        """Return ẋ, v̇ and ω̇ by the friction that keeps the lowest point on the table."""
         v = y[2:5]
         F = np.cross(table(p), v) / (1.0 / p.m + p.R**2 / (p.shape * p.m * p.R**2))
         return np.concatenate((v[:2], F / p.m, np.cross(r, F) / (p.shape * p.m * p.R**2)))

@@ -1,12 +1,13 @@
-"""Nets of springs: how they start and are drawn, and the runners that move them."""
+"""Nets of springs: initial states, drawings, and the runners that move them."""
 
 import numpy as np
 
 from solutions.springs import make_spring_network
+from validate.engines import mujoco
 from validate.engines.springs import pymunk_net
-from validate.methods import EXPLICIT, IMPLICIT_MESH
+from validate.methods import EXPLICIT, IMPLICIT_MESH, RK4
 from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
-from validate.scene import PYMUNK, engine, ours
+from validate.scene import MUJOCO, PYMUNK, engine, ours
 from validate.scenes._common import check_positives, measured
 from validate.scenes.integrators._common import integrator_runners
 
@@ -25,7 +26,7 @@ def in_space(net):
 
 
 def observe_net(state, p):
-    """Return the places of all nodes, seen from the front."""
+    """Return the positions of all nodes, seen from the front."""
     return state[0][:, :2].ravel()
 
 
@@ -38,7 +39,7 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
     """Return the fields that the scenes of the ReferenceNetwork net(p) share.
 
     positive    names of parameters that must be positive
-    contact     what the scene leaves out, in words
+    contact     the parts that the scene omits, in words
     other       fields that this scene has in place of the usual ones
     """
     return {
@@ -55,13 +56,13 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
 
 
 def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
-    """Return the runners of a scene of the ReferenceNetwork net(p): our methods, and pymunk.
+    """Return the runners of a scene of the ReferenceNetwork net(p): our methods, pymunk and MuJoCo.
 
     motion           the Motion of net(p)
     limits           (p, dt) → {order: largest relative error}
     finer_in_full    of pymunk
     mesh_in_quick    fields of the Runner of the implicit mesh, whose step takes seconds to compile
-    The implicit methods of lesson 1 are left to a full run: they build a dense matrix at every correction.
+    The implicit methods of lesson 1 run in a full run only, because they build a dense matrix at every correction.
     """
     return (
         *integrator_runners(motion, limits, compiled=EXPLICIT),
@@ -70,6 +71,9 @@ def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
         engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), "DampedSpring between point masses",
                finer_in_full=finer_in_full, order=1, limit=limits,
                predicted=motion.predict_model(net_model(net, pymunk_net_model))),
+        engine(MUJOCO, "", lambda p, dt: mujoco.net(net(p), dt, np.ravel),
+               "point masses on slide joints, tendons as springs; Runge–Kutta 4",
+               order=4, limit=limits, predicted=motion.predict(RK4.table), most_steps=5000),
     )
 
 

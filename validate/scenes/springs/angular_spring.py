@@ -8,13 +8,15 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
 from validate.check import states
+from validate.engines import mujoco
 from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import RK4
 from validate.reference.schemes import Model, Motion
-from validate.scene import PYMUNK, Scene, by_order, engine
+from validate.scene import MUJOCO, PYMUNK, Scene, by_order, engine
 from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
 
-T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
+T = 2.5  # [s]: about two periods; no case is then at a turning point, where phase errors are invisible
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
 # the hinge, and the end of the fixed arm [m]
 HINGE = np.zeros(2)
@@ -45,8 +47,8 @@ def acceleration(lessons):
     def swing(t, x, v, p):
         """θ̈ = (r × F_c − ½ m g length sin θ)/I,  r = length (sin θ, −cos θ),  F_c: the spring's force on the end.
 
-        The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's
-        length.
+        The other arm hangs straight down and is fixed.  F_c ⊥ r has the moment −κ θ about the hinge for any length
+        of the arm.
         """
         r = np.array([p.length * np.sin(x[0]), -p.length * np.cos(x[0])])
         F_c = angular_spring_forces(DOWN, HINGE, r, 0.0, p.kappa)[2]
@@ -90,7 +92,7 @@ def reference(p):
 
 
 def limits(p, dt):
-    """The fastest rate is that of spring and gravity together; relative to θ(T), smaller than θ₀.
+    """The fastest rate is that of spring and gravity together; the error is relative to θ(T), which is smaller than θ₀.
 
     pymunk moves the centre of the rod and rotates it, then pulls the end back to the hinge: symplectic Euler, order
     1.  The correction of the hinge per step, ½ length θ̇² dt, is of the same order at the same rate: θ̇ ≤ rate θ₀
@@ -102,7 +104,7 @@ def limits(p, dt):
 
 
 def law(p):
-    """Return θ̈(t, θ, θ̇), apart from the lesson's."""
+    """Return θ̈(t, θ, θ̇), independent of the lesson's."""
     return lambda t, theta, rate: -(p.kappa * theta + 0.5 * p.m * p.g * p.length * np.sin(theta)) / inertia(p)
 
 
@@ -127,7 +129,7 @@ def pymunk_rod(p, h, steps, nudge):
         omega -= h * p.kappa * theta / I
         v -= 1j * h * p.g
         r = 0.5j * p.length * np.exp(1j * theta)
-        across = 1j * r                                          # how the hinge moves when the rod turns
+        across = 1j * r                                          # velocity of the hinge per rate of the rod
         missing = -(centre + r) / h - (v + omega * across)
         K = np.eye(2) / p.m + np.outer((across.real, across.imag), (across.real, across.imag)) / I
         j = complex(*np.linalg.solve(K, (missing.real, missing.imag)))
@@ -140,7 +142,10 @@ MOTION = Motion(T, law, released, seen, truth, floor_of(limits, 10.0 * UNCERTAIN
 
 
 def pymunk_make(p, dt):
-    """The rod about its centre, a PivotJoint at its end, a DampedRotarySpring to the ground; angle 0 is hanging."""
+    """Make the rod about its centre, a PivotJoint at its end, and a DampedRotarySpring to the ground.
+
+    Angle 0 is hanging.
+    """
     import pymunk
     space = pymunk_space((0.0, -p.g))
     body = pymunk.Body(p.m, p.m * p.length**2 / 12.0)
@@ -151,10 +156,20 @@ def pymunk_make(p, dt):
     return pymunk_world(space, dt, lambda: np.array([body.angle]))
 
 
+def mujoco_make(p, dt):
+    """The rod on a hinge whose spring rests where the rod hangs, at −90° from x."""
+    rod = np.stack((HINGE, p.length * np.array([np.sin(p.theta0), -np.cos(p.theta0)])))
+    spring = f'stiffness="{mujoco.text(p.kappa)}" springref="-90"'
+    return mujoco.chain(rod, p.m, p.m * p.length**2 / 12.0, 0.5, p.g, dt, lambda angles: angles + 0.5 * np.pi,
+                        joint=spring)
+
+
 RUNNERS = (
     *integrator_runners(MOTION, limits),
     engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias = 0",
            order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_rod))),
+    engine(MUJOCO, "", mujoco_make, "hinge with stiffness; Runge–Kutta 4",
+           order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),
 )
 
 
@@ -164,7 +179,7 @@ def points(observed, p):
 
 
 def sanity_checks():
-    """Return Findings: special values for a test to assert.
+    """Return Findings: special values.
 
     The period of a pendulum released at one radian is 1.0663 times that of small oscillations: 2K(sin ½)/π.
     """

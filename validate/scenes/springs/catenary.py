@@ -78,8 +78,8 @@ def reference(p):
 def truth(p, t):
     """Every point of the elastic chain, by DOP853 with separately coded forces, at a relative tolerance of 1e-13.
 
-    At rest it is the discrete catenary: its sag is 0.5895021 m for inextensible links, that of the continuum
-    0.5886677 m.
+    Its rest state is the discrete catenary.  The sag is 0.5895021 m for inextensible links, and 0.5886677 m for the
+    continuum.
     """
     return reference(p)(t).ravel()
 
@@ -110,14 +110,14 @@ def pybullet_make(p, dt):
 
 RUNNERS = (
     *net_runners(net, MOTION, limits, finer_in_full=(20_000, 50_000), in_quick=False),
-    # all forces from the state before a step, then the new velocity moves the points
+    # forces come from the state before a step, then the new velocity moves the points
     engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; spring forces applied each step",
            order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
 )
 
 
 def sanity_checks():
-    """Return Findings: the numbers of the lecture, for a test to assert."""
+    """Return Findings: the numbers of the lecture."""
     p = CASES["at rest"]
     x, H = hung(p, 0.0)
     middle, weight = p.links // 2, p.m * p.g

@@ -5,11 +5,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from validate.check import states
+from validate.engines import mujoco
 from validate.engines.springs import pymunk_net
-from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH
+from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, RK4
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
-from validate.scene import PYMUNK, Scene, engine, ours
+from validate.scene import MUJOCO, PYMUNK, Scene, engine, ours
 from validate.scenes._common import floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
 from validate.scenes.springs._common import in_space, net_fields
@@ -65,7 +66,7 @@ def modes(p):
 
 
 def static_extension(p):
-    """Return the rest positions below the unstretched ones [m]: spring i carries the N + 1 − i masses below it."""
+    """Return the distances of the rest positions below the unstretched ones [m]; spring i carries N + 1 − i masses."""
     return np.cumsum(p.m * p.g / p.k * np.arange(p.springs, 0, -1))
 
 
@@ -84,7 +85,7 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """Each mode on its own, as the system is linear.  pymunk is symplectic Euler: order 1."""
+    """Each mode errs on its own, because the system is linear.  pymunk is symplectic Euler: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
     return by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
@@ -118,12 +119,18 @@ def pymunk_make(p, dt):
     return pymunk_net(net(p), dt, lambda x: observe((x,), p))
 
 
+def mujoco_make(p, dt):
+    return mujoco.net(net(p), dt, lambda x: observe((x,), p))
+
+
 RUNNERS = (
     *integrator_runners(MOTION, limits, compiled=EXPLICIT),
     # in one coordinate springs are linear: one Newton step of the implicit mesh is all of implicit Euler
     ours(IMPLICIT_MESH, limit=limits, predicted=MOTION.predict(IMPLICIT_EULER.table), in_quick=False),
     engine(PYMUNK, "", pymunk_make, "DampedSpring between point masses", finer_in_full=(50_000,),
            order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_model))),
+    engine(MUJOCO, "", mujoco_make, "point masses on slide joints, tendons as springs; Runge–Kutta 4",
+           order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),
 )
 
 
@@ -133,7 +140,7 @@ def points(observed, p):
 
 
 def sanity_checks():
-    """Return Findings: the numbers of the lecture, for a test to assert."""
+    """Return Findings: the numbers of the lecture."""
     p = CASES["at rest"]
     slowest = modes(p)[0][0]
     left = (1.0 + slowest * T) * np.exp(-slowest * T)            # share of the motion left after T, critically damped

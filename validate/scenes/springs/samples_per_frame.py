@@ -1,6 +1,6 @@
 """A net of two metres at 24 frames per second, with 1 to 256 of the lecture's steps per frame.
 
-With one step per frame it tears; with four its worst node is off by 3 cm, with sixteen by 8 mm.
+With one step per frame the run diverges; with four its worst node is off by 3 cm, with sixteen by 8 mm.
 """
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from validate.check import states
+from validate.engines import mujoco
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS
@@ -27,7 +28,7 @@ class Stars(NamedTuple):
 
     @property
     def mu(self):
-        """G (m_a + m_b) [m³/s²]: the path of one star, seen from the other, is that of a planet around such a sun."""
+        """Return G (m_a + m_b) [m³/s²]: the relative path of the stars is that of a planet around such a sun."""
         return self.G * (self.m_a + self.m_b)
 
 
@@ -84,14 +85,14 @@ MOTION = kepler_motion(T)._replace(seen=seen, truth=truth)
 
 
 def pulls(x, p):
-    """Return the accelerations (2, 2) [m/s²] of both, apart from the lesson's."""
+    """Return the accelerations (2, 2) [m/s²] of both, independent of the lesson's."""
     r = x[1] - x[0]
     F = p.G * p.m_a * p.m_b / np.sqrt(np.sum(r * r)) ** 3 * r
     return np.stack((F / p.m_a, -F / p.m_b))
 
 
 def pymunk_stars(p, dt, ahead=0.0):
-    """Attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
+    """Make the stars with their attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
     import pymunk
     space, bodies, (x, v) = pymunk_space(), [], start(p)
     for m, place, speed, pull in zip((p.m_a, p.m_b), x, v, pulls(x, p)):
@@ -128,13 +129,24 @@ def bullet_stars(p, dt, ahead=0.0):
     return EngineRun(step, lambda: np.array([bullet.position(body)[:2] for body in bodies]).ravel(), bullet.close)
 
 
+def mujoco_stars(p, dt):
+    """Call the attraction in every stage of Runge–Kutta's step."""
+    strength = p.G * p.m_a * p.m_b
+
+    def pull(x, v):
+        along, up = x[2] - x[0], x[3] - x[1]
+        share = strength / (along * along + up * up) ** 1.5
+        return share * along, share * up, -share * along, -share * up
+    return mujoco.points((p.m_a, p.m_b), *start(p), dt, np.ravel, force=pull)
+
+
 def points(observed, p):
     """Draw both stars."""
     return np.reshape(observed, (2, 2))
 
 
 def in_space(p):
-    """The same motion with an unused z coordinate."""
+    """Return the same motion with an unused z coordinate."""
     return tuple(np.append(rows, np.zeros((2, 1)), axis=1) for rows in start(p)), p
 
 
@@ -152,7 +164,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Two stars", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, 20_000),
+    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, mujoco_stars, 20_000),
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks, points=points,

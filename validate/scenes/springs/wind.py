@@ -1,4 +1,4 @@
-"""A ball of paper is thrown against the wind.  It comes back, and in the end it drifts at a constant velocity."""
+"""A ball of paper is thrown against the wind, comes back, and in the end drifts at a constant velocity."""
 
 from typing import Annotated, NamedTuple
 
@@ -68,14 +68,14 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """Only the term that decays has an error, of the length |v₀ − u|/k and with the rate k."""
+    """Only the decaying term has an error; its length is |v₀ − u|/k and its rate k."""
     k = p.k_v / p.m
     size = np.linalg.norm(np.array([p.vx, p.vy]) - drift(p)) / k / np.linalg.norm(truth(p, T))
     return {order: size * limit for order, limit in by_order(k, T, dt).items()}
 
 
 def law(p):
-    """Return a(t, x, v) of a complex number x, apart from the lesson's."""
+    """Return a(t, x, v) of a complex number x, independent of the lesson's."""
     return lambda t, x, v: complex(-p.wind / p.m, -p.g) - p.k_v / p.m * v
 
 
@@ -86,11 +86,15 @@ def thrown(p):
 MOTION = Motion(T, law, thrown, as_pair, truth, floor_of(limits))
 
 
-RUNNERS = (*integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits))
+RUNNERS = (
+    *integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits),
+    POINT.in_mujoco(MOTION, limits, "damping of the joints, wind as a part of gravity",
+                    damping=lambda p: p.k_v, wind=lambda p: (-p.wind, 0.0)),
+)
 
 
 def sanity_checks():
-    """Return Findings: where the truth begins, and how it ends."""
+    """Return Findings: the initial and the final velocity of the truth."""
     p, h = CASES["thrown"], 1e-3
     early, late = (truth(p, h) - truth(p, -h)) / (2.0 * h), truth(p, 30.0) - truth(p, 29.0)
     return (states("initial velocity of the truth: error [m/s]", np.linalg.norm(early - (p.vx, p.vy)), 0.0, 1e-5),
