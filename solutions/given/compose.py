@@ -6,7 +6,6 @@ closed, and what cannot turn is not turned.  run_parts runs it.
 *Left out:* space; there make_bodies and the steps of lesson 10 serve.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -96,16 +95,16 @@ class Composed(NamedTuple):
 
 class Part(NamedTuple):
     """A part of a loop."""
-    step: Callable           # (load, bounds, narrow, t, state, dt, p) → state
+    step: object             # (load, bounds, narrow, t, state, dt, p) → state
     why: str                 # what of the model needs it, for people
 
 
 class Loop(NamedTuple):
     """A loop for one model."""
     parts: tuple             # of Part, in their order
-    load: Callable           # (t, x, q, v, omega, p) → (F, tau)
-    bounds: Callable
-    narrow: Callable
+    load: object             # (t, x, q, v, omega, p) → (F, tau)
+    bounds: object           # (x, q, half) → (low, high, turn)
+    narrow: object           # (x, turn, half, planes, pairs, reach) → ContactSet
     state: PileState         # at the start
     p: Composed
     row: np.ndarray          # (bodies,) the row of each body of the model

@@ -28,7 +28,7 @@ from ..support.convex_2d import (  # noqa: F401
 from ..support.records import check_record
 from ..support.scenes import PileState
 from ..support.small_systems import solve_band
-from .compose import Loop, Part, Settings, compose, run_parts, state_of  # noqa: F401
+from .compose import Loop, Part, Settings, compose, refuses, run_parts, state_of  # noqa: F401
 from .invariants import closing_speeds
 from .joints import (
     COMPOSED,

@@ -11,7 +11,6 @@ of the other body count.  pymunk and pybullet have the same law.
 *Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -175,7 +174,7 @@ def checked_load(load):
         if not (k >= 0.0 and np.isfinite(k)):
             raise BadInput("the drag k [N s/m]", k, "give a finite number of zero or above")
         return Drag(k)
-    if not isinstance(load, Callable):
+    if not callable(load):
         raise BadInput("a load", type(load).__name__, "give a Drag or a function of (t, x, q, v, omega)")
     return load
 
