@@ -10,7 +10,7 @@ PLACES = 6                   # of parts in a compiled loop; `leave` stands where
 
 def lesson_of(subject, compiled=False):
     """Return the lesson with the loop, with the exercises of a subject."""
-    return modules.module_set(subject, compiled).lesson_of_scenes("simulator")
+    return modules.module_set(subject, compiled).lessons.simulator
 
 
 def refuses(model):
