@@ -24,7 +24,7 @@ from ..measure.accuracy import ASYMPTOTIC, Outcome, finite, relative, shown_orde
 from ..run.store import writable
 from .described import DESCRIBED
 
-MOST = {True: 500, False: 2000}              # most steps of a run, quick or not
+MOST = {True: 500, False: 2000}              # most steps of a run, quick or not, where there are enough shorter runs
 RUNS = 4                                     # of each scene
 LEAST_ORDER = 0.7                            # from which on an error vanishes with the step: single runs scatter
 EXACT = 1e-9                                 # error of a run that has no error but round-off [-]
@@ -125,7 +125,7 @@ def measured(reader, name, others, most):
     described = DESCRIBED[name]
     scene, p = described.scene, described.scene.parameters
     truth = np.array(scene.truth(p, scene.duration), float)
-    steps = tuple(n for n in scene.steps if n <= most)[-RUNS:]
+    steps = max(tuple(n for n in scene.steps if n <= most)[-RUNS:], scene.steps[:RUNS], key=len)
     about = {"scene": name, "title": scene.title}
     beside = {product.name: error_of(product, described, p, truth, steps[-1]) for product in others}
     try:
