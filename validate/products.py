@@ -19,7 +19,6 @@ class Product:
     remedy: str              # what to do where it is not installed, for people
     recorded: bool = False   # its record stands in where it is not installed
     optional: bool = False   # it is left out where it is not installed
-    by_hand: bool = True     # scenes set it up by hand, with validate/engines; else all of it is in validate/worlds
 
     def __str__(self):
         return self.name
@@ -27,7 +26,7 @@ class Product:
     @property
     def adapter(self):
         """Return its module with empty_world() → EngineRun, and SWITCHES."""
-        return importlib.import_module(f"validate.{'engines' if self.by_hand else 'worlds'}.{self.file}")
+        return importlib.import_module(f"validate.engines.{self.file}")
 
     @property
     def world(self):
@@ -47,9 +46,9 @@ PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
                    "leave --engine out: its recorded traces stand in", recorded=True)
 MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core",
                  "pip install mujoco-core, where it has a wheel", optional=True)
-BOX2D = Product("pyb2d3", 2, "box2d", "#7A5C00", "2", "pyb2d3", "pip install -e '.[opponents]' adds it",
-                optional=True, by_hand=False)
-PRODUCTS = (PYMUNK, PYBULLET, MUJOCO, BOX2D)
+BOX2D = Product("pyb2d3", 2, "box2d", "#7A5C00", "2", "pyb2d3", "pip install -e '.[opponents]' adds it", optional=True)
+PRODUCTS = PYMUNK, PYBULLET, MUJOCO         # of the scenes and of the report
+BUILDERS = *PRODUCTS, BOX2D                 # of worlds from a Model
 
 
 def product_named(name):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from validate.measure.accuracy import ASYMPTOTIC, relative, run_engine_to_end
-from validate.products import MUJOCO, PRODUCTS, PYBULLET
+from validate.products import BUILDERS, MUJOCO, PYBULLET
 from validate.worlds.conformance import error_of
 from validate.worlds.described import DESCRIBED
 
@@ -12,7 +12,7 @@ MOST = 500                   # steps
 SAME = 1e-3                  # of an error: bodies that touch begin a micrometre apart from those of the set-up by hand
 OTHER_SET_UP = {             # by hand: no moments in pybullet's first step with a joint, and a ball as MuJoCo's block
     ("rod_chain", PYBULLET), ("heavy_top", PYBULLET), ("incline", MUJOCO)}
-JUDGED = [(name, product) for name, one in DESCRIBED.items() if not one.shown for product in PRODUCTS
+JUDGED = [(name, product) for name, one in DESCRIBED.items() if not one.shown for product in BUILDERS
           if product.installed() and not product.world.refuses(one.model(one.scene.parameters))]
 BY_HAND = [(name, runner) for name, one in DESCRIBED.items() if not one.shown for runner in one.scene.engine_runners
            if not runner.who.variant and (name, runner.who.product) in JUDGED]
@@ -49,5 +49,5 @@ def test_mujoco_is_of_order_four_where_nothing_touches(name):
 
 def test_each_engine_runs_most_scenes():
     counts = {product.name: sum(not product.world.refuses(one.model(one.scene.parameters))
-                                for one in DESCRIBED.values()) for product in PRODUCTS if product.installed()}
+                                for one in DESCRIBED.values()) for product in BUILDERS if product.installed()}
     assert counts.items() <= {"pymunk": 15, "pybullet": 16, "mujoco": 13, "pyb2d3": 15}.items()

@@ -21,7 +21,7 @@ from solutions.support.model import (
     start_of,
 )
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
-from validate.products import BOX2D, MUJOCO, PRODUCTS, PYBULLET, PYMUNK
+from validate.products import BOX2D, BUILDERS, MUJOCO, PYBULLET, PYMUNK
 from validate.scene import by_order
 from validate.subject import modules
 from validate.worlds import chipmunk, derived, ours
@@ -30,7 +30,7 @@ G = 9.81                     # [m/s²]
 SINGLE = 2e-6                # errors of an engine that computes in single precision: some ten spacings [-]
 SOFT = 1e-3                  # most depth of a soft contact under these weights, of MuJoCo and of Box2D [m]
 REDUCED = {"maximal": False}
-KINDS = [(product, settings) for product in PRODUCTS
+KINDS = [(product, settings) for product in BUILDERS
          for settings in (({}, REDUCED) if product is PYBULLET else ({},))]
 every = pytest.mark.parametrize(("product", "settings"), KINDS, ids=[f"{p}{'-reduced' if s else ''}" for p, s in KINDS])
 FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
@@ -457,7 +457,7 @@ def test_every_body_hangs_on_the_joint_that_leads_to_a_fixed_one():
     assert above == {0: (WORLD, 1), 1: (0, 2), 2: (1, 0), 3: (WORLD, None)} and loops == [3]
 
 
-@pytest.mark.parametrize("product", PRODUCTS, ids=str)
+@pytest.mark.parametrize("product", BUILDERS, ids=str)
 def test_a_four_bar_stays_closed(product):
     pins = np.array([(0.0, 0.0), (0.0, 0.4), (1.0, 0.9), (1.2, 0.0)])
     rods = [Body(tuple(0.5 * (a + b)), 1.0, inertia=(b - a) @ (b - a) / 12.0) for a, b in pairwise(pins)]
