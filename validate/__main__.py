@@ -7,7 +7,6 @@ changed, `validate audit` whether a report follows from its raw rows, `validate 
 import json
 import os
 from contextlib import contextmanager
-from enum import StrEnum
 from math import isfinite
 from pathlib import Path
 from typing import Annotated
@@ -32,16 +31,14 @@ app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup
 console = Console()
 
 
-EngineName = StrEnum("EngineName", {product.name: product.name for product in PRODUCTS})  # type: ignore[misc]
-
-
 RESULTS = "<!-- results -->"    # begins and ends the table of results in the README
 ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
 ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
 ANSWERS = typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")
 SPEED = typer.Option("--plain/--compiled", help="One speed only; both without this option.")
 DEPTH = typer.Option("--quick/--full", help="Compile, refine and time only what is quick; or everything.")
-LIVE = typer.Option(help="Run only this engine live (may be repeated).")
+LIVE = typer.Option(metavar="NAME|FILE.py", help=f"Run only this engine live: {', '.join(map(str, PRODUCTS))} (may be "
+                    "repeated); or run an engine of your own, a file with build(model, dt), as docs/engine.md shows.")
 CHANGE = typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")
 PROCESSES = typer.Option(min=1, help="Processes for everything that is not timed.")
 ROUNDS = Annotated[int, typer.Option(min=3, help="How often each is timed, in turn.")]
@@ -56,7 +53,7 @@ def validate(
     of: Annotated[str, ANSWERS] = "solutions",
     plain: Annotated[bool | None, SPEED] = None,
     quick: Annotated[bool, DEPTH] = True,
-    engine: Annotated[list[EngineName] | None, LIVE] = None,
+    engine: Annotated[list[str] | None, LIVE] = None,
     set_: Annotated[list[str] | None, CHANGE] = None,
     jobs: Annotated[int, PROCESSES] = max(1, min(4, os.cpu_count() or 1)),
     executor: Annotated[str | None, EXECUTOR] = None,
@@ -64,12 +61,15 @@ def validate(
 ):
     if context.invoked_subcommand:
         return
+    files = [name for name in engine or [] if name.endswith(".py")]
+    if files:
+        raise typer.Exit(own_engines(files, [name for name in engine or [] if name not in files], scene, quick, out))
     from . import measure  # takes half a second: not for --help
     from .run.run import run
     names, broken = select_scenes(scene or [], lesson or [])
     asked, of = of, copies.meant_here(of)
     require_answers(of, names)
-    plan = plan_of(of, names, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
+    plan = plan_of(of, names, plain, quick, engine or [], overrides(set_ or [], names))
     try:
         with workers(jobs) as pool, on_cluster(executor, of) as measuring:
             for _ in pool.each({name: (measure.load, name, of) for name in names}):
@@ -85,6 +85,12 @@ def validate(
     for error in broken.values():                            # after the other scenes have run
         raise error
     raise typer.Exit(code)
+
+
+def own_engines(files, named, scenes, quick, out):
+    """Run engines of the reader beside known ones, and return the exit code."""
+    from .worlds.conformance import conform
+    return max(conform(file, scenes or [], installed(named), quick, out, console) for file in files)
 
 
 @contextmanager
@@ -294,14 +300,19 @@ def require_answers(of, names):
                        "give --of lessons --plain")
 
 
-def plan_of(of, names, plain, quick, wanted, changes):
-    from .measure import Plan
-    folder = modules.subject_folder(of)
+def installed(wanted):
+    """Return the engines of these names, or all that are installed.  Raises BadInput for one that is not."""
     chosen = tuple(product_named(name) for name in wanted) or PRODUCTS
     for product in chosen if wanted else ():
         if not product.installed():
             raise BadInput(f"engine {product.name!r}", "not installed", product.remedy)
-    live = tuple(product for product in chosen if product.installed())
+    return tuple(product for product in chosen if product.installed())
+
+
+def plan_of(of, names, plain, quick, wanted, changes):
+    from .measure import Plan
+    folder = modules.subject_folder(of)
+    live = installed(wanted)
     speeds = {None: ("plain", "compiled"), True: ("plain",), False: ("compiled",)}[plain]
     if plain is False and not modules.can_compile():
         raise BadInput("numba", "not installed", "install it, or use --plain")

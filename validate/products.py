@@ -1,4 +1,4 @@
-"""The physics engines: one record each.  A new engine is one record here and one adapter in `validate/engines/`."""
+"""The physics engines: one record each.  A new engine is one record here and one adapter in `validate/worlds/`."""
 
 import importlib
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ class Product:
     """An engine."""
     name: str                # of its Python module, in commands and in stored results
     dimensions: int
-    file: str                # its adapter in validate/engines, which has empty_world() → EngineRun, and SWITCHES
+    file: str                # of its adapters: see `adapter` and `world`
     colour: str
     marker: str
     distribution: str        # what pip installs
@@ -25,8 +25,13 @@ class Product:
 
     @property
     def adapter(self):
-        """Return its module in validate/engines."""
+        """Return its module with empty_world() → EngineRun, and SWITCHES."""
         return importlib.import_module(f"validate.engines.{self.file}")
+
+    @property
+    def world(self):
+        """Return its module with build(model, dt, **settings) → World, and refuses(model)."""
+        return importlib.import_module(f"validate.worlds.{self.file}")
 
     def installed(self):
         """Return its version, or None."""
@@ -41,7 +46,9 @@ PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
                    "leave --engine out: its recorded traces stand in", recorded=True)
 MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core",
                  "pip install mujoco-core, where it has a wheel", optional=True)
-PRODUCTS = (PYMUNK, PYBULLET, MUJOCO)
+BOX2D = Product("pyb2d3", 2, "box2d", "#7A5C00", "2", "pyb2d3", "pip install -e '.[opponents]' adds it", optional=True)
+PRODUCTS = PYMUNK, PYBULLET, MUJOCO         # of the scenes and of the report
+BUILDERS = *PRODUCTS, BOX2D                 # of worlds from a Model
 
 
 def product_named(name):

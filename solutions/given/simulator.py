@@ -17,9 +17,18 @@ from ..simulator import (
     velocity_sweep_2d,
 )
 from ..support.arms import apply_impulses_2d, arms_2d
+from ..support.convex_2d import (  # noqa: F401
+    box_bounds_of,
+    box_contacts_of,
+    convex_bounds_2d,
+    convex_contacts_2d,
+    disc_bounds_of,
+    disc_contacts_of,
+)
 from ..support.records import check_record
 from ..support.scenes import PileState
 from ..support.small_systems import solve_band
+from .compose import Loop, Part, Settings, compose, refuses, run_parts, state_of  # noqa: F401
 from .invariants import closing_speeds
 from .joints import (
     COMPOSED,
@@ -31,6 +40,7 @@ from .joints import (
     parting_speeds,
     without_joined,
 )
+from .parts import *  # noqa: F403    a compiled loop is made of these
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most

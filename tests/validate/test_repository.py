@@ -160,7 +160,7 @@ OTHER_NAMES = {              # of distributions that are not called like their m
 BESIDE_THE_WORKER = {"shipping", "wire"}     # files that the sandbox holds beside grading/worker.py
 
 
-def test_every_engine_belongs_to_the_default_installation():
+def test_every_engine_of_the_report_belongs_to_the_default_installation():
     """So the published report has them, and newer Pythons have a live engine in space."""
     default = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["validate"]
     assert {product.distribution for product in PRODUCTS} <= {re.match(r"[\w.-]+", one)[0] for one in default}

@@ -1,0 +1,327 @@
+"""Given with lesson 10.  Our loop, put together from what a Model contains.
+
+compose(model) returns a Loop: the parts that the model needs, in the lecture's order, each with the reason why it is
+there.  What a model does not have, no part knows: without shapes nothing is searched for, without joints nothing is
+closed, and what cannot turn is not turned.  run_parts runs it.
+*Left out:* space; there make_bodies and the steps of lesson 10 serve.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks import BadInput, check_not_negative, positive_number, whole_number
+from ..simulator import weight
+from ..support.broad_phase import Pairs
+from ..support.convex_2d import (
+    Cores,
+    box_bounds_of,
+    box_contacts_of,
+    convex_bounds_2d,
+    convex_contacts_2d,
+    disc_bounds_of,
+    disc_contacts_of,
+)
+from ..support.model import (
+    WORLD,
+    Distance,
+    Drag,
+    State,
+    Weld,
+    can_move,
+    can_turn,
+    friction_of,
+    own_place,
+    restitution_of,
+    start_of,
+    touching_pairs,
+)
+from ..support.scenes import PileState, no_contacts
+from ..support.shapes import Ball, Box, HalfSpace, core_of, size_of
+from .joints import Joints, farthest_neighbour, form_loops
+from .parts import (
+    accelerate,
+    accelerate_half,
+    accelerate_rest,
+    advance_parts,
+    close,
+    detect_few,
+    detect_many,
+    detect_unjoined,
+    hold,
+    leave,
+    model_load,
+    move,
+    move_and_turn,
+    separate,
+    solve,
+    solve_centres,
+    solve_jointed,
+    solve_pairs,
+)
+
+FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
+SLOP = 5e-3                  # overlap that stays, over the smallest size of a shape [-]
+
+
+class Settings(NamedTuple):
+    """How a model is solved; nothing here changes the motion that ever shorter steps approach."""
+    sweeps: int = 100        # over all contacts in a step, at most
+    settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]
+    margin: float = 0.0      # gap up to which a contact is found [m]; 0: a tenth of the smallest size of a shape
+
+
+class Composed(NamedTuple):
+    """What does not change in a run.  Rows: bodies with shapes, half-spaces, bodies without shapes, the world."""
+    inv_mass: np.ndarray     # (rows,) [1/kg]
+    inv_inertia: np.ndarray  # (rows,) [1/(kg m²)]
+    half: Cores              # the shapes
+    planes: np.ndarray       # (h, 3)
+    gravity: np.ndarray      # (2,) [m/s²]
+    mu: float                # friction, if it is the same for all pairs [-]
+    mu_of: np.ndarray        # (rows,) of each body
+    e_of: np.ndarray         # (rows,) restitution of each body [-]
+    pairs: Pairs             # all that could touch
+    sweeps: int
+    settled: float
+    margin: float
+    slop: float              # overlap that stays [m]
+    joints: Joints
+    ends: np.ndarray         # (s, 2) bodies of springs
+    arms: np.ndarray         # (s, 4) their points, in coordinates of the bodies [m]
+    laws: np.ndarray         # (s, 3) rest [m], k [N/m], c [N s/m]
+    drag: float              # [N s/m]
+
+
+class Part(NamedTuple):
+    """A part of a loop."""
+    step: object             # (load, bounds, narrow, t, state, dt, p) → state
+    why: str                 # what of the model needs it, for people
+
+
+class Loop(NamedTuple):
+    """A loop for one model."""
+    parts: tuple             # of Part, in their order
+    load: object             # (t, x, q, v, omega, p) → (F, tau)
+    bounds: object           # (x, q, half) → (low, high, turn)
+    narrow: object           # (x, turn, half, planes, pairs, reach) → ContactSet
+    state: PileState         # at the start
+    p: Composed
+    row: np.ndarray          # (bodies,) the row of each body of the model
+    joint_of: tuple          # the number of the model's joint that each row of p.joints belongs to
+
+
+# ---------------------------------------------------------------------------------------------- composition
+
+def refuses(model):
+    """Return why our loop cannot run a model, for people; an empty text where it can."""
+    if model.d == 3:
+        return "space: the loop is composed in the plane"
+    if any(isinstance(joint, Distance) for joint in model.joints):
+        return "a Distance between two points"
+    return ""
+
+
+SETTINGS = Settings()
+
+
+def compose(model, settings=SETTINGS):
+    """Return the Loop of a Model in the plane.  Raises BadInput where refuses(model) has a reason."""
+    if why := refuses(model):
+        raise BadInput("a model for our loop", why, "take another world")
+    whole_number("number of sweeps", settings.sweeps, 1)
+    check_not_negative("the share at which sweeps have settled [-]", settings.settled)
+    p, state, row = rows_of(model, settings)
+    touching, moves = touching_pairs(model), (move_and_turn if turns(model) else move)
+    motion = Part(moves, "what moves and turns" if moves is move_and_turn else "what moves; nothing can turn")
+    forces = bool(np.any(model.gravity) or model.springs or model.loads)
+    if model.joints and not touching:
+        parts = (*[Part(accelerate_half, reason_of_forces(model))] * forces, Part(close, "joints"), motion,
+                 *[Part(accelerate_rest, reason_of_forces(model))] * forces, Part(hold, "joints"))
+    elif touching:
+        parts = (*[Part(accelerate, reason_of_forces(model))] * forces, detection(model, touching),
+                 Part(separate, "shapes, which may overlap"), solver(model, touching), motion)
+    else:
+        parts = (*[Part(accelerate, reason_of_forces(model))] * forces, motion)
+    bounds, narrow = shapes_of_loop(model)
+    joint_of = tuple(k for k, joint in enumerate(model.joints) for _ in points_of(model, joint))
+    return Loop(parts, load_of(model), bounds, narrow, state, p, row, joint_of)
+
+
+def reason_of_forces(model):
+    """Return which forces a model has, for people."""
+    found = {"gravity": np.any(model.gravity), "springs": model.springs, "loads": model.loads}
+    return " and ".join(name for name, there in found.items() if there)
+
+
+def load_of(model):
+    """Return the load of a model: exercise `weight` where gravity is all, and functions of its own at last."""
+    own = [load for load in model.loads if not isinstance(load, Drag)]
+    if not own:
+        return model_load if model.springs or model.loads else weight
+    row = rows_in_order(model)
+
+    def with_own_loads(t, x, q, v, omega, p):
+        F, tau = model_load(t, x, q, v, omega, p)
+        state = State(x[row], q[row], v[row], omega[row])
+        for load in own:
+            more, twist = load(t, *state)
+            F[row], tau[row] = F[row] + more, tau[row] + twist
+        return F, tau
+    return with_own_loads
+
+
+def turns(model):
+    """Return whether anything turns: a spin at the start, or a finite moment and something that could turn it."""
+    if any(body.omega for body in model.bodies):
+        return True
+    free = {k for k, body in enumerate(model.bodies) if can_turn(body)}
+    off_centre = any(np.any(place) for s in model.springs for k, place in ((s.a, s.place_a), (s.b, s.place_b))
+                     if k in free)
+    own = any(not isinstance(load, Drag) for load in model.loads)
+    pushed = any(k in free and (not isinstance(model.bodies[k].shape, Ball) or friction_of(model, i, j) > 0.0)
+                 for i, j in touching_pairs(model) for k in (i, j))
+    return bool(free) and (off_centre or own or bool(model.joints) or pushed)
+
+
+def detection(model, touching):
+    """Return the part that finds contacts."""
+    shaped = sum(body.shape is not None and not isinstance(body.shape, HalfSpace) for body in model.bodies)
+    if shaped <= FEW:
+        return Part(detect_few, f"{len(touching)} pairs of shapes, so few that all are tested")
+    if model.joints:
+        return Part(detect_unjoined, "many shapes, some of them joined")
+    return Part(detect_many, "many shapes")
+
+
+def solver(model, touching):
+    """Return the part that solves the contacts."""
+    rubs = {friction_of(model, i, j) for i, j in touching}
+    if model.joints:
+        return Part(solve_jointed, "contacts and joints")
+    if rubs == {0.0} and not turns(model):
+        return Part(solve_centres, "contacts; nothing rubs and nothing turns")
+    if len(rubs) == 1:
+        return Part(solve, "contacts with one friction")
+    return Part(solve_pairs, "contacts with several frictions")
+
+
+def shapes_of_loop(model):
+    """Return (bounds, narrow): those of lesson 9 where all shapes are discs or all are boxes."""
+    kinds = {type(body.shape) for body in model.bodies if body.shape is not None} - {HalfSpace}
+    if kinds == {Ball}:
+        return disc_bounds_of, disc_contacts_of
+    if kinds == {Box}:
+        return box_bounds_of, box_contacts_of
+    return convex_bounds_2d, convex_contacts_2d
+
+
+# ---------------------------------------------------------------------------------------------- rows
+
+def ordered_bodies(model):
+    """Return (order, n, h): numbers of bodies as rows: n with shapes, then h half-spaces, then those without shapes."""
+    kinds = [2 if body.shape is None else 1 if isinstance(body.shape, HalfSpace) else 0 for body in model.bodies]
+    return np.argsort(kinds, kind="stable"), kinds.count(0), kinds.count(1)
+
+
+def rows_in_order(model):
+    """Return the row (bodies,) of each body of the model."""
+    order, _, _ = ordered_bodies(model)
+    row = np.empty(len(order), np.int64)
+    row[order] = np.arange(len(order))
+    return row
+
+
+def rows_of(model, settings):
+    """Return (Composed, PileState, row (bodies,) of each body of the model)."""
+    order, n, h = ordered_bodies(model)
+    row, bodies, s = rows_in_order(model), [model.bodies[k] for k in order], start_of(model)
+    x, q, v, omega = (np.concatenate((rows[order], np.zeros((1, *rows.shape[1:])))) for rows in s)
+    inv_mass = np.array([1.0 / body.m for body in bodies] + [0.0])
+    inv_inertia = np.array([1.0 / body.inertia for body in bodies] + [0.0])
+    sizes = [size_of(body.shape) for body in bodies[:n]]
+    margin = positive_number("margin [m]", settings.margin or 0.1 * min(sizes, default=1.0))
+    rubs = {friction_of(model, i, j) for i, j in touching_pairs(model)}
+    joints = joints_of(model, row, inv_mass)
+    ends, arms, laws = springs_of(model, row, len(bodies))
+    p = Composed(
+        inv_mass, inv_inertia, cores_of(bodies[:n]), lines_of(bodies[n:n + h]),
+        np.array(model.gravity), rubs.pop() if len(rubs) == 1 else 0.0,
+        np.array([body.mu for body in bodies] + [0.0]), np.array([body.e for body in bodies] + [0.0]),
+        pairs_of(model, row, n), settings.sweeps, float(settings.settled), margin, SLOP * min(sizes, default=1.0),
+        joints, ends, arms, laws, float(sum(load.k for load in model.loads if isinstance(load, Drag))))
+    return p, PileState(x, q, v, omega, no_contacts(n, 2), np.zeros((0, 2))), row
+
+
+def cores_of(bodies):
+    """Return the Cores of bodies with shapes."""
+    cores = [core_of(body.shape) for body in bodies]
+    half = [body.shape.half if isinstance(body.shape, Box) else (size_of(body.shape),) * 2 for body in bodies]
+    return Cores(np.concatenate([np.zeros((0, 2)), *[corners for corners, _ in cores]]),
+                 np.cumsum([0] + [len(corners) for corners, _ in cores]), np.array([r for _, r in cores], float),
+                 np.array(half, float).reshape(-1, 2))
+
+
+def lines_of(bodies):
+    """Return rows (h, 3) of half-spaces."""
+    return np.array([(*body.shape.normal, body.shape.offset) for body in bodies], float).reshape(-1, 3)
+
+
+def pairs_of(model, row, n):
+    """Return the Pairs of rows that could touch."""
+    partners = [[] for _ in range(n)]
+    for i, j in touching_pairs(model):
+        low, high = sorted((int(row[i]), int(row[j])))
+        partners[low].append(high)
+    first = np.cumsum([0] + [len(found) for found in partners])
+    return Pairs(first, np.array([j for found in partners for j in sorted(found)], np.int64))
+
+
+def points_of(model, joint):
+    """Return the places (2,) that a joint holds together: one of a Hinge, and two of a Weld, which lie apart."""
+    place = np.array(joint.place)
+    if not isinstance(joint, Weld):
+        return [place]
+    sizes = [size_of(model.bodies[k].shape) for k in (joint.a, joint.b)
+             if k != WORLD and model.bodies[k].shape is not None]
+    return [place, place + np.array((min([*sizes, 1.0]), 0.0))]
+
+
+def joints_of(model, row, inv_mass):
+    """Return the Joints of a model."""
+    points = [(joint.a, joint.b, place) for joint in model.joints for place in points_of(model, joint)]
+    a = np.array([row[i] for i, _, _ in points], np.int64)
+    b = np.array([row[j] if j != WORLD else inv_mass.size - 1 for _, j, _ in points], np.int64)
+    r_a, r_b = (np.array([own_place(model, k, place) for k, place in ends]).reshape(-1, 2)
+                for ends in ([(i, place) for i, _, place in points], [(j, place) for _, j, place in points]))
+    return Joints(a, b, r_a, r_b, 2 * (farthest_neighbour(a, b, inv_mass) + 1) - 1, form_loops(a, b, inv_mass))
+
+
+def springs_of(model, row, world):
+    """Return (ends (s, 2), arms (s, 4), laws (s, 3)) of the springs."""
+    ends = [(row[s.a], world if s.b == WORLD else row[s.b]) for s in model.springs]
+    arms, laws = [(*s.place_a, *s.place_b) for s in model.springs], [(s.rest, s.k, s.c) for s in model.springs]
+    return (np.array(ends, np.int64).reshape(-1, 2), np.array(arms, float).reshape(-1, 4),
+            np.array(laws, float).reshape(-1, 3))
+
+
+def state_of(loop, state):
+    """Return the State of all bodies of the model, in its order."""
+    return State(*(rows[loop.row] for rows in state[:4]))
+
+
+def run_parts(loop, t, state, dt, steps):
+    """Return the PileState after so many steps of a Loop."""
+    steps = whole_number("number of steps", steps, 0)
+    padded = [part.step for part in loop.parts] + [leave] * (6 - len(loop.parts))
+    return advance_parts(*padded, loop.load, loop.bounds, loop.narrow, t, state, dt, steps, loop.p)
+
+
+def has_restitution(model):
+    """Return whether any pair of shapes bounces."""
+    return any(restitution_of(model, i, j) > 0.0 for i, j in touching_pairs(model))
+
+
+def movable(model):
+    """Return the numbers of the bodies that impulses move."""
+    return [k for k, body in enumerate(model.bodies) if can_move(body)]

@@ -1,0 +1,302 @@
+"""Given with lesson 10.  The parts of our loop in the plane: compose.py says which of them a model needs.
+
+Every part has the arguments of a step,
+
+    part(load, bounds, narrow, t, state, dt, p) → state
+
+and is made of exercises and given functions of lessons 9 and 10.  p is a Composed of compose.py.
+*Left out:* space; there the steps of lesson 10 serve.
+"""
+
+import numpy as np
+
+from ..contact import kept_impulses, velocity_sweep_2d
+from ..simulator import find_contacts, new_velocities_2d, weight
+from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
+from ..support.contact_points import ContactSet
+from ..support.scenes import PileState
+from .joints import close_joints_2d, hold_joints_2d, without_joined
+
+PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
+TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
+
+
+# ---------------------------------------------------------------------------------------------- forces
+
+def model_load(t, x, q, v, omega, p):
+    """Return (F, tau) of gravity, springs and drag on all rows in the plane."""
+    F, tau = weight(t, x, q, v, omega, p)
+    for i in range(x.shape[0]):
+        if p.inv_mass[i] > 0.0:
+            F[i, 0] -= p.drag * v[i, 0]
+            F[i, 1] -= p.drag * v[i, 1]
+    for s in range(p.ends.shape[0]):
+        a, b = p.ends[s, 0], p.ends[s, 1]
+        c, d = np.cos(q[a]), np.sin(q[a])
+        a_x, a_y = c * p.arms[s, 0] - d * p.arms[s, 1], d * p.arms[s, 0] + c * p.arms[s, 1]
+        c, d = np.cos(q[b]), np.sin(q[b])
+        b_x, b_y = c * p.arms[s, 2] - d * p.arms[s, 3], d * p.arms[s, 2] + c * p.arms[s, 3]
+        r_x, r_y = x[a, 0] + a_x - x[b, 0] - b_x, x[a, 1] + a_y - x[b, 1] - b_y
+        u_x = v[a, 0] - omega[a] * a_y - v[b, 0] + omega[b] * b_y
+        u_y = v[a, 1] + omega[a] * a_x - v[b, 1] - omega[b] * b_x
+        length = np.sqrt(r_x * r_x + r_y * r_y)
+        pull = -(p.laws[s, 1] * (length - p.laws[s, 0]) + p.laws[s, 2] * (r_x * u_x + r_y * u_y) / length) / length
+        F[a, 0], F[a, 1] = F[a, 0] + pull * r_x, F[a, 1] + pull * r_y
+        F[b, 0], F[b, 1] = F[b, 0] - pull * r_x, F[b, 1] - pull * r_y
+        tau[a] += pull * (a_x * r_y - a_y * r_x)
+        tau[b] -= pull * (b_x * r_y - b_y * r_x)
+    return F, tau
+
+
+def accelerate(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads have acted for dt."""
+    x, q, v, omega, contacts, J = state
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def accelerate_half(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads have acted for ½ dt."""
+    return accelerate(load, bounds, narrow, t, state, 0.5 * dt, p)
+
+
+def accelerate_rest(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads at the end of the step have acted for ½ dt."""
+    return accelerate(load, bounds, narrow, t + dt, state, 0.5 * dt, p)
+
+
+# ---------------------------------------------------------------------------------------------- detection
+
+def detect_few(load, bounds, narrow, t, state, dt, p):
+    """Return the state with the contacts of all pairs that could touch, and the impulses that they keep."""
+    x, q, v, omega, old, J = state
+    _, _, turn = bounds(x, q, p.half)
+    contacts = narrow(x, turn, p.half, p.planes, p.pairs, p.margin)
+    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, old, J, p.margin))
+
+
+def detect_many(load, bounds, narrow, t, state, dt, p):
+    """Return the same, with a broad phase."""
+    x, q, v, omega, old, J = state
+    low, high, turn = bounds(x, q, p.half)
+    contacts = find_contacts(narrow, x, low, high, turn, p)
+    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, old, J, p.margin))
+
+
+def detect_unjoined(load, bounds, narrow, t, state, dt, p):
+    """Return the same as detect_many, without contacts of bodies that share a joint."""
+    x, q, v, omega, old, J = state
+    low, high, turn = bounds(x, q, p.half)
+    contacts = without_joined(find_contacts(narrow, x, low, high, turn, p), p.joints)
+    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, old, J, p.margin))
+
+
+# ---------------------------------------------------------------------------------------------- contact
+
+def parting_aims(contacts, v, omega, arms, dt, p):
+    """Return u_n (m,) [m/s] below which no contact may leave: each pair has its own restitution.
+
+    A contact that is open may close, −gap/dt.  One that has closed leaves with −e u_n, if it comes faster than what
+    gravity adds in TRUE_IMPACT steps; what comes more slowly rests.  One with e > 0 that comes fast and is still open
+    has to close first, so nothing stops it in this step.
+    """
+    u_n, aim = normal_velocities_2d(v, omega, contacts, arms), np.empty(contacts.a.size)
+    rests = TRUE_IMPACT * dt * np.sqrt(p.gravity[0] ** 2 + p.gravity[1] ** 2)
+    for k in range(aim.size):
+        e, gap = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k]
+        bounces = e > 0.0 and u_n[k] < -rests
+        if gap > 0.0:
+            aim[k] = -np.inf if bounces else -gap / dt
+        else:
+            aim[k] = -e * u_n[k] if bounces else 0.0
+    return aim
+
+
+def sweep_pairs_2d(v, omega, J, aim, give, contacts, arms, p):
+    """Return (v, omega, J) after velocity_sweep_2d of lesson 9 over contacts that have a friction of their own each."""
+    v, omega, J = v.copy(), omega.copy(), J.copy()
+    for k in range(contacts.a.size):
+        a, b, n_x, n_y = contacts.a[k], contacts.b[k], contacts.n[k, 0], contacts.n[k, 1]
+        a_x, a_y, b_x, b_y = arms.r_a[k, 0], arms.r_a[k, 1], arms.r_b[k, 0], arms.r_b[k, 1]
+        u_x = v[a, 0] - omega[a] * a_y - v[b, 0] + omega[b] * b_y
+        u_y = v[a, 1] + omega[a] * a_x - v[b, 1] - omega[b] * b_x
+        u_n, u_t = n_x * u_x + n_y * u_y, n_x * u_y - n_y * u_x
+        J_n, J_t = n_x * J[k, 0] + n_y * J[k, 1], n_x * J[k, 1] - n_y * J[k, 0]
+        J_n = max(0.0, J_n + (aim[k] - u_n) / arms.k_n[k])
+        limit = p.mu_of[a] * p.mu_of[b] * J_n if J_n > 0.0 else 0.0
+        J_t = min(max(J_t - u_t / arms.k_t[k], -limit), limit)
+        d_x, d_y = J_n * n_x - J_t * n_y - J[k, 0], J_n * n_y + J_t * n_x - J[k, 1]
+        J[k, 0], J[k, 1] = J[k, 0] + d_x, J[k, 1] + d_y
+        v[a, 0], v[a, 1] = v[a, 0] + p.inv_mass[a] * d_x, v[a, 1] + p.inv_mass[a] * d_y
+        v[b, 0], v[b, 1] = v[b, 0] - p.inv_mass[b] * d_x, v[b, 1] - p.inv_mass[b] * d_y
+        omega[a] += p.inv_inertia[a] * (a_x * d_y - a_y * d_x)
+        omega[b] -= p.inv_inertia[b] * (b_x * d_y - b_y * d_x)
+    return v, omega, J
+
+
+def sweep_centres_2d(v, omega, J, aim, give, contacts, arms, p):
+    """Return the same where nothing rubs and nothing turns: no arms, no tangent."""
+    v, J = v.copy(), J.copy()
+    for k in range(contacts.a.size):
+        a, b, n_x, n_y = contacts.a[k], contacts.b[k], contacts.n[k, 0], contacts.n[k, 1]
+        old, u_n = n_x * J[k, 0] + n_y * J[k, 1], n_x * (v[a, 0] - v[b, 0]) + n_y * (v[a, 1] - v[b, 1])
+        J_n = max(0.0, old + (aim[k] - u_n) / (p.inv_mass[a] + p.inv_mass[b]))
+        d_x, d_y = (J_n - old) * n_x, (J_n - old) * n_y
+        J[k, 0], J[k, 1] = J_n * n_x, J_n * n_y
+        v[a, 0], v[a, 1] = v[a, 0] + p.inv_mass[a] * d_x, v[a, 1] + p.inv_mass[a] * d_y
+        v[b, 0], v[b, 1] = v[b, 0] - p.inv_mass[b] * d_x, v[b, 1] - p.inv_mass[b] * d_y
+    return v, omega, J
+
+
+def begun(state, dt, p):
+    """Return (v, omega, J, aim, arms): what the sweeps of a step begin with; a bounce keeps no impulse."""
+    x, _, v, omega, contacts, J = state
+    v, omega, J, arms = v.copy(), omega.copy(), J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
+    aim = parting_aims(contacts, v, omega, arms, dt, p)
+    for k in range(aim.size):
+        if aim[k] > 0.0 or aim[k] == -np.inf:
+            J[k, 0], J[k, 1] = 0.0, 0.0
+    apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
+    return v, omega, J, aim, arms
+
+
+def is_settled(J, before, p):
+    """Return whether a sweep has changed no impulse by more than p.settled times the largest one."""
+    return np.max(np.abs(J - before)) <= p.settled * np.max(np.abs(J))
+
+
+def swept(sweep, state, dt, p):
+    """Return the state after sweeps over all contacts, until they settle."""
+    x, q, _, _, contacts, J = state
+    if contacts.a.size == 0:
+        return state
+    v, omega, J, aim, arms = begun(state, dt, p)
+    for _ in range(p.sweeps):
+        before = J
+        v, omega, J = sweep(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
+        if is_settled(J, before, p):
+            break
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def solve(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the impulses of all contacts, with one friction for all."""
+    return swept(velocity_sweep_2d, state, dt, p)
+
+
+def solve_pairs(load, bounds, narrow, t, state, dt, p):
+    """Return the same with a friction of each pair."""
+    return swept(sweep_pairs_2d, state, dt, p)
+
+
+def solve_centres(load, bounds, narrow, t, state, dt, p):
+    """Return the same where nothing rubs and nothing turns."""
+    return swept(sweep_centres_2d, state, dt, p)
+
+
+def solve_jointed(load, bounds, narrow, t, state, dt, p):
+    """Return the same as solve_pairs, with joints that are closed after every sweep."""
+    x, q, v, omega, contacts, J = state
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    if contacts.a.size == 0:
+        return PileState(x, q, v, omega, contacts, J)
+    v, omega, J, aim, arms = begun(PileState(x, q, v, omega, contacts, J), dt, p)
+    for _ in range(p.sweeps):
+        before = J
+        v, omega, J = sweep_pairs_2d(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
+        v, omega = close_joints_2d(x, q, v, omega, dt, p)
+        if is_settled(J, before, p):
+            break
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def separate(load, bounds, narrow, t, state, dt, p):
+    """Return the state with bodies moved out of each other, and with the velocities that they have.
+
+    Sweeps without friction give velocities that remove PUSH_OUT of what is deeper than p.slop and open no other gap
+    wrongly.  The bodies move with them for dt and then lose them, so nothing gains kinetic energy.
+    *Source:* split impulses, as in Bullet.
+    """
+    x, q, v, omega, contacts, J = state
+    if contacts.a.size == 0 or np.min(contacts.gap) >= -p.slop:
+        return state
+    aim, arms = np.empty(contacts.a.size), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
+    for k in range(aim.size):
+        deep = -contacts.gap[k] - p.slop
+        aim[k] = PUSH_OUT * deep / dt if deep > 0.0 else -max(contacts.gap[k], 0.0) / dt
+    push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
+    for _ in range(p.sweeps):
+        before = J_push
+        push, spin, J_push = sweep_smooth_2d(push, spin, J_push, aim, contacts, arms, p)
+        if is_settled(J_push, before, p):
+            break
+    gap = contacts.gap + dt * normal_velocities_2d(push, spin, contacts, arms)
+    moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
+    return PileState(x + dt * push, q + dt * spin, v, omega, moved, J)
+
+
+def sweep_smooth_2d(v, omega, J, aim, contacts, arms, p):
+    """Return (v, omega, J) after a sweep over contacts without friction."""
+    v, omega, J = v.copy(), omega.copy(), J.copy()
+    for k in range(contacts.a.size):
+        a, b, n_x, n_y = contacts.a[k], contacts.b[k], contacts.n[k, 0], contacts.n[k, 1]
+        lever_a = arms.r_a[k, 0] * n_y - arms.r_a[k, 1] * n_x
+        lever_b = arms.r_b[k, 0] * n_y - arms.r_b[k, 1] * n_x
+        u_n = n_x * (v[a, 0] - v[b, 0]) + n_y * (v[a, 1] - v[b, 1]) + omega[a] * lever_a - omega[b] * lever_b
+        old = n_x * J[k, 0] + n_y * J[k, 1]
+        change = max(0.0, old + (aim[k] - u_n) / arms.k_n[k]) - old
+        J[k, 0], J[k, 1] = (old + change) * n_x, (old + change) * n_y
+        v[a, 0], v[a, 1] = v[a, 0] + p.inv_mass[a] * change * n_x, v[a, 1] + p.inv_mass[a] * change * n_y
+        v[b, 0], v[b, 1] = v[b, 0] - p.inv_mass[b] * change * n_x, v[b, 1] - p.inv_mass[b] * change * n_y
+        omega[a] += p.inv_inertia[a] * lever_a * change
+        omega[b] -= p.inv_inertia[b] * lever_b * change
+    return v, omega, J
+
+
+# ---------------------------------------------------------------------------------------------- joints and motion
+
+def close(load, bounds, narrow, t, state, dt, p):
+    """Return the state with velocities that leave no joint open at the end of the step."""
+    x, q, v, omega, contacts, J = state
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def hold(load, bounds, narrow, t, state, dt, p):
+    """Return the state with velocities at which the joints' points do not part."""
+    x, q, v, omega, contacts, J = state
+    v, omega = hold_joints_2d(q, v, omega, p)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def move(load, bounds, narrow, t, state, dt, p):
+    """Return the state after all bodies have moved on; none turns."""
+    x, q, v, omega, contacts, J = state
+    return PileState(x + dt * v, q, v, omega, contacts, J)
+
+
+def move_and_turn(load, bounds, narrow, t, state, dt, p):
+    """Return the state after all bodies have moved and turned on."""
+    x, q, v, omega, contacts, J = state
+    return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
+
+
+def leave(load, bounds, narrow, t, state, dt, p):
+    """Return the state: it stands where a model needs no further part."""
+    return state
+
+
+def advance_parts(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, steps, p):
+    """Return the PileState after so many steps of a loop with six parts; `leave` stands where there is none.
+
+    They are arguments of their own, so that compiled code is kept on disk for each set of parts.
+    """
+    for n in range(steps):
+        now = t + n * dt
+        state = first(load, bounds, narrow, now, state, dt, p)
+        state = second(load, bounds, narrow, now, state, dt, p)
+        state = third(load, bounds, narrow, now, state, dt, p)
+        state = fourth(load, bounds, narrow, now, state, dt, p)
+        state = fifth(load, bounds, narrow, now, state, dt, p)
+        state = sixth(load, bounds, narrow, now, state, dt, p)
+    return state

@@ -1,0 +1,328 @@
+"""Given.  A scene as data: bodies, joints, springs, gravity and loads, in the plane or in space.
+
+A Model says what is there and nothing of how it is solved: it has no step, no sweeps, no margin and no engine.  The
+worlds of `validate/worlds/` are built from it: our own loop, pymunk, pybullet, MuJoCo and Box2D.
+
+d = 2: vectors are (x, y), an orientation is an angle [rad], and an angular velocity is a number.
+d = 3: vectors are (x, y, z), an orientation is a unit quaternion (w, x, y, z), an angular velocity is a vector (world).
+
+Two bodies touch with friction μ = μ_a μ_b and restitution e = e_a e_b.  So what carries others has 1, and the numbers
+of the other body count.  pymunk and pybullet have the same law.
+*Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks import BadInput, check_friction, check_restitution, finite_array, number
+from .model_checks import (
+    check_joint,
+    check_moments,
+    check_shape_of,
+    check_spring,
+    one_of,
+    orientation,
+    vector,
+)
+from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, moments_of_shape, outline_of
+
+WORLD = -1                   # in a joint or a spring: the world, which does not move
+
+
+class Body(NamedTuple):
+    """A rigid body.  A field that is None gets its value from make_model."""
+    x: tuple                 # (d,) centre of mass [m]
+    m: float = np.inf        # [kg]; ∞: no impulse moves it, and it keeps the velocity that it has
+    shape: object = None     # Ball, Box, Capsule, Polygon, HalfSpace; None: it touches nothing
+    mu: float = 0.0          # friction [-]
+    e: float = 0.0           # restitution [-]
+    q: object = None         # orientation; None: it is not turned
+    v: tuple | None = None   # [m/s]; None: at rest
+    omega: object = None     # [rad/s]; None: at rest
+    inertia: object = None   # moment about the centre, or (3,) about the axes of the body [kg m²]; ∞: it does not turn;
+                             # None: that of its shape, filled evenly; ∞ without a shape
+
+
+class Hinge(NamedTuple):
+    """A point of a stays at a point of b, and in space a line through it stays at a line.  They do not collide."""
+    a: int                   # number of a body
+    b: int                   # number of a body, or WORLD
+    place: tuple             # (d,) at the start [m]
+    axis: tuple | None = None  # (3,) in space, at the start; None in the plane
+
+
+class BallJoint(NamedTuple):
+    """In space: a point of a stays at a point of b.  They do not collide."""
+    a: int
+    b: int                   # or WORLD
+    place: tuple             # (3,) at the start [m]
+
+
+class Weld(NamedTuple):
+    """Bodies a and b move as one.  They do not collide."""
+    a: int
+    b: int                   # or WORLD
+    place: tuple             # (d,) at the start [m]: where the weld is
+
+
+class Distance(NamedTuple):
+    """Two points stay as far apart as they are at the start: a rod without mass.  The bodies may collide."""
+    a: int
+    b: int                   # or WORLD
+    place_a: tuple           # (d,) from the centre of a, in coordinates of a [m]
+    place_b: tuple           # the same of b; a place of the world where b is WORLD [m]
+    compliance: float = 0.0  # [m/N]; 0: rigid
+
+
+class Spring(NamedTuple):
+    """A spring with a damper along the line between two points."""
+    a: int
+    b: int                   # or WORLD
+    place_a: tuple           # (d,) from the centre of a, in coordinates of a [m]
+    place_b: tuple           # the same of b; a place of the world where b is WORLD [m]
+    rest: float              # its length without a force [m]
+    k: float                 # [N/m]
+    c: float = 0.0           # [N s/m]
+
+
+class Drag(NamedTuple):
+    """Air: the force −k v on the centre of each body that can move."""
+    k: float                 # [N s/m]
+
+
+class Model(NamedTuple):
+    """A scene.  Make it with make_model, which checks it."""
+    bodies: tuple
+    gravity: tuple           # (d,) [m/s²]
+    joints: tuple = ()       # Hinge, BallJoint, Weld, Distance
+    springs: tuple = ()
+    loads: tuple = ()        # Drag, or functions (t, x, q, v, omega) → (F (n, d) [N], tau [N m]) of all bodies
+
+    @property
+    def d(self):
+        return len(self.gravity)
+
+
+class State(NamedTuple):
+    """Where n bodies are and how they move."""
+    x: np.ndarray            # (n, d) [m]
+    q: np.ndarray            # (n,) [rad], or (n, 4) unit quaternions
+    v: np.ndarray            # (n, d) [m/s]
+    omega: np.ndarray        # (n,) or (n, 3) [rad/s]
+
+
+SHAPES = (Ball, Box, Capsule, Polygon, HalfSpace)
+JOINTS = (Hinge, BallJoint, Weld, Distance)
+
+
+# ---------------------------------------------------------------------------------------------- making one
+
+def make_model(bodies, gravity, joints=(), springs=(), loads=()):
+    """Return the Model of these records, with all numbers as floats and without None in a body that has a value there.
+
+    Raises BadInput, with the number of the record, for what cannot be: a mass that is not above zero, moments that no
+    body has, a number of a body that is none, a joint of two bodies that cannot move, a shape of the other dimension.
+    """
+    gravity = tuple(map(float, finite_array("gravity [m/s²]", gravity)))
+    d = len(gravity)
+    if d not in (2, 3):
+        raise BadInput("the number of components of gravity", d, "give 2 in the plane or 3 in space")
+    bodies = tuple(checked_body(k, one_of("a body", body, (Body,)), d) for k, body in enumerate(bodies))
+    if not bodies:
+        raise BadInput("the number of bodies of a model", 0, "give at least one")
+    free = [np.isfinite(body.m) for body in bodies]
+    joints = tuple(check_joint(k, one_of("a joint", joint, JOINTS), free, d) for k, joint in enumerate(joints))
+    springs = tuple(check_spring(k, one_of("a spring", spring, (Spring,)), free, d)
+                    for k, spring in enumerate(springs))
+    return Model(bodies, gravity, joints, springs, tuple(map(checked_load, loads)))
+
+
+def checked_body(k, body, d):
+    """Return body number k, checked, with floats and without None where it has a value.  Raises BadInput."""
+    def name(thing):
+        return f"{thing} of body {k}"
+
+    mass, shape, fixed = number(name("the mass m [kg]"), body.m), body.shape, False
+    if not mass > 0.0:
+        raise BadInput(name("the mass m [kg]"), mass, "give a number above zero; ∞ for what nothing moves")
+    fixed = not np.isfinite(mass)
+    if shape is not None:
+        shape = check_shape_of(name("the shape"), one_of(name("the shape"), shape, SHAPES), d, fixed)
+    check_friction(number(name("friction μ [-]"), body.mu))
+    check_restitution(number(name("restitution e [-]"), body.e))
+    still = 0.0 if d == 2 else (0.0, 0.0, 0.0)
+    q = orientation(name("the orientation q"), body.q, d)
+    v = vector(name("the velocity v [m/s]"), (0.0,) * d if body.v is None else body.v, d)
+    omega = still if body.omega is None else body.omega
+    omega = (number(name("the angular velocity ω [rad/s]"), omega) if d == 2 else
+             vector(name("the angular velocity ω [rad/s]"), omega, 3))
+    inertia = body.inertia
+    if fixed or (inertia is None and shape is None):
+        inertia = np.inf if d == 2 else (np.inf,) * 3
+    elif inertia is None:
+        inertia = moments_of_shape(shape, mass, d)
+    inertia = check_moments(name("the moment of inertia [kg m²]"), inertia, d)
+    return Body(vector(name("the centre x [m]"), body.x, d), mass, shape, float(body.mu), float(body.e), q, v, omega,
+                inertia)
+
+
+def checked_load(load):
+    """Return a load.  Raises BadInput unless it is a Drag of zero or more, or a function."""
+    if isinstance(load, Drag):
+        k = number("the drag k [N s/m]", load.k)
+        if not (k >= 0.0 and np.isfinite(k)):
+            raise BadInput("the drag k [N s/m]", k, "give a finite number of zero or above")
+        return Drag(k)
+    if not callable(load):
+        raise BadInput("a load", type(load).__name__, "give a Drag or a function of (t, x, q, v, omega)")
+    return load
+
+
+# ---------------------------------------------------------------------------------------------- its start
+
+def start_of(model):
+    """Return the State at the start."""
+    rows = [np.array([getattr(body, name) for body in model.bodies], float) for name in State._fields]
+    return State(*rows)
+
+
+def can_move(body):
+    """Return whether impulses move a body."""
+    return bool(np.isfinite(body.m))
+
+
+def can_turn(body):
+    """Return whether impulses turn a body."""
+    return can_move(body) and bool(np.all(np.isfinite(body.inertia)))
+
+
+def rotation_of(q):
+    """Return R (d, d) of an angle or of a unit quaternion: columns are the axes of the body in the world."""
+    if np.ndim(q) == 0:
+        return np.array([(np.cos(q), -np.sin(q)), (np.sin(q), np.cos(q))])
+    w, x, y, z = q
+    return np.array([(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+                     (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+                     (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))])
+
+
+def own_place(model, k, place):
+    """Return a place of the world, at the start, in coordinates of body k; of the WORLD: the place itself."""
+    place = np.asarray(place, float)
+    if k == WORLD:
+        return place
+    return rotation_of(model.bodies[k].q).T @ (place - model.bodies[k].x)
+
+
+def world_place(state, k, place):
+    """Return a place of body k, in its coordinates, in the world; of the WORLD: the place itself."""
+    return np.asarray(place, float) if k == WORLD else state.x[k] + rotation_of(state.q[k]) @ place
+
+
+# ---------------------------------------------------------------------------------------------- forces
+
+def loads_at(model, t, state):
+    """Return (F (n, d) [N], tau [N m]) of springs and loads on all bodies, without gravity."""
+    F, tau = np.zeros_like(state.x), np.zeros_like(state.omega)
+    for spring in model.springs:
+        add_spring(F, tau, spring, state)
+    for load in model.loads:
+        if isinstance(load, Drag):
+            F -= load.k * state.v * np.array([can_move(body) for body in model.bodies])[:, None]
+        else:
+            more, twist = load(t, *state)
+            F, tau = F + more, tau + twist
+    return F, tau
+
+
+def add_spring(F, tau, spring, state):
+    """Add what a spring pulls at its two bodies, in place."""
+    at, u = [], []
+    for k, place in ((spring.a, spring.place_a), (spring.b, spring.place_b)):
+        at.append(world_place(state, k, place))
+        u.append(0.0 if k == WORLD else state.v[k] + turned_by(state.omega[k], at[-1] - state.x[k]))
+    way = at[0] - at[1]
+    length = np.sqrt(way @ way)
+    pull = -(spring.k * (length - spring.rest) + spring.c * (way @ (u[0] - u[1])) / length) / length * way
+    for k, point, force in ((spring.a, at[0], pull), (spring.b, at[1], -pull)):
+        if k != WORLD:
+            F[k] += force
+            tau[k] += torque_of(point - state.x[k], force)
+
+
+def turned_by(omega, r):
+    """Return ω × r, in the plane or in space."""
+    return np.array([-omega * r[1], omega * r[0]]) if len(r) == 2 else np.cross(omega, r)
+
+
+def torque_of(r, F):
+    """Return r × F: a number in the plane, a vector in space."""
+    return r[0] * F[1] - r[1] * F[0] if len(r) == 2 else np.cross(r, F)
+
+
+# ---------------------------------------------------------------------------------------------- what it contains
+
+def joined_pairs(model):
+    """Return the pairs of bodies, frozensets of two numbers, that share a joint and therefore do not collide."""
+    return {frozenset((joint.a, joint.b)) for joint in model.joints if not isinstance(joint, Distance)}
+
+
+def touching_pairs(model):
+    """Return the pairs (i, j), i < j, of bodies that could ever touch: both have shapes, one can move, not joined."""
+    joined, n = joined_pairs(model), len(model.bodies)
+    return [(i, j) for i in range(n) for j in range(i + 1, n)
+            if model.bodies[i].shape is not None and model.bodies[j].shape is not None
+            and (can_move(model.bodies[i]) or can_move(model.bodies[j])) and frozenset((i, j)) not in joined]
+
+
+def friction_of(model, i, j):
+    """Return μ of a pair of bodies [-]."""
+    return model.bodies[i].mu * model.bodies[j].mu
+
+
+def restitution_of(model, i, j):
+    """Return e of a pair of bodies [-]."""
+    return model.bodies[i].e * model.bodies[j].e
+
+
+# ---------------------------------------------------------------------------------------------- judged and seen
+
+def model_energy(model, state):
+    """Return the energy [J] of motion, height and springs of all bodies that impulses move.
+
+    *Left out:* what function loads store; what drag and dampers have taken is gone.
+    """
+    energy = 0.0
+    for body, x, q, v, omega in zip(model.bodies, *state):
+        if can_move(body):
+            energy += body.m * (0.5 * v @ v - np.dot(model.gravity, x))
+        if can_turn(body):
+            w = omega if model.d == 2 else rotation_of(q).T @ omega                # about the axes of the body
+            energy += 0.5 * np.sum(np.multiply(body.inertia, w * w))
+    for spring in model.springs:
+        way = world_place(state, spring.a, spring.place_a) - world_place(state, spring.b, spring.place_b)
+        energy += 0.5 * spring.k * (np.sqrt(way @ way) - spring.rest) ** 2
+    return float(energy)
+
+
+def picture_of(model, state, width=3.0):
+    """Return (points (k, 2) [m], links) of the outlines of all shapes in the plane, for a film.
+
+    A half-space is a line, `width` [m] to both sides of its body's place at the start.
+    """
+    points, links = [], []
+    for body, x, q in zip(model.bodies, state.x, state.q):
+        if isinstance(body.shape, HalfSpace):
+            n = np.array(body.shape.normal)
+            middle = np.array(body.x) - body.shape.offset * n
+            line = middle + width * np.outer((-1.0, 1.0), (n[1], -n[0]))
+            links.append((len(points), len(points) + 1))
+        elif body.shape is not None:
+            line = x + outline_of(body.shape, 16)[:-1] @ rotation_of(q).T
+            k, last = len(points), len(points) + len(line) - 1
+            links += [*((i, i + 1) for i in range(k, last)), (last, k)]
+        else:
+            line = x[None]
+        points += list(line)
+    return np.array(points), links

@@ -1,0 +1,140 @@
+"""Given.  Checks of what a Model is made of: each raises BadInput with one sentence that names the record."""
+
+import numpy as np
+
+from ..checks import BadInput, WrongShape, check_unit, finite_array, finite_number, number, positive_number
+from .records import check_principal_moments
+from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, polygon_centre
+
+CENTRED = 1e-9               # allowed distance of a polygon's centre from the origin, over its size [-]
+
+
+def one_of(thing, record, kinds):
+    """Return a record.  Raises BadInput unless it is one of these."""
+    if not isinstance(record, kinds):
+        names = ", ".join(kind.__name__ for kind in kinds)
+        raise BadInput(thing, f"a {type(record).__name__}", f"give one of: {names}")
+    return record
+
+
+def vector(thing, values, d):
+    """Return values as a tuple of d floats.  Raises BadInput."""
+    values = finite_array(thing, values)
+    if values.shape != (d,):
+        raise WrongShape(thing, values.shape, (d,))
+    return tuple(map(float, values))
+
+
+def orientation(thing, q, d):
+    """Return an angle, or a unit quaternion as a tuple.  Raises BadInput."""
+    if d == 2:
+        return finite_number(thing, 0.0 if q is None else q)
+    q = vector(thing, (1.0, 0.0, 0.0, 0.0) if q is None else q, 4)
+    check_unit(f"the length of {thing} [-]", np.sqrt(np.dot(q, q)))
+    return q
+
+
+def check_moments(thing, inertia, d):
+    """Return a moment, or three.  Raises BadInput for those that no body has."""
+    if d == 2:
+        inertia = number(thing, inertia)
+        if not inertia > 0.0:
+            raise BadInput(thing, inertia, "give a number above zero; ∞ for what does not turn")
+        return inertia
+    moments = np.asarray(inertia, float)
+    moments = np.full(3, moments) if moments.ndim == 0 else moments
+    if moments.shape != (3,):
+        raise WrongShape(thing, moments.shape, (3,))
+    check_principal_moments(moments)
+    return tuple(map(float, moments))
+
+
+def check_shape_of(thing, shape, d, fixed):
+    """Return a shape with floats.  Raises BadInput for one of the other dimension, or with sizes that cannot be."""
+    if isinstance(shape, Ball):
+        return Ball(positive_number(f"the radius of {thing} [m]", shape.radius))
+    if isinstance(shape, Capsule):
+        return Capsule(positive_number(f"the half length of {thing} [m]", shape.half_length),
+                       positive_number(f"the radius of {thing} [m]", shape.radius))
+    if isinstance(shape, Box):
+        half = vector(f"the half sizes of {thing} [m]", shape.half, d)
+        return Box(tuple(positive_number(f"a half size of {thing} [m]", size) for size in half))
+    if isinstance(shape, HalfSpace):
+        if not fixed:
+            raise BadInput(thing, "a HalfSpace with a finite mass", "leave its mass out: it has none")
+        normal = vector(f"the normal of {thing}", shape.normal, d)
+        check_unit(f"the length of the normal of {thing} [-]", np.sqrt(np.dot(normal, normal)))
+        return HalfSpace(normal, finite_number(f"the offset of {thing} [m]", shape.offset))
+    if d == 3:
+        raise BadInput(thing, "a Polygon in space", "polygons are shapes of the plane")
+    return check_polygon(thing, shape)
+
+
+def check_polygon(thing, shape):
+    """Return a Polygon with floats.  Raises BadInput unless it is convex, counter-clockwise and centred."""
+    corners = finite_array(f"the corners of {thing} [m]", shape.corners)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
+        raise WrongShape(f"the corners of {thing} [m]", corners.shape, "three rows of two numbers, or more")
+    edges = np.roll(corners, -1, axis=0) - corners
+    turns = edges[:, 0] * np.roll(edges, -1, axis=0)[:, 1] - edges[:, 1] * np.roll(edges, -1, axis=0)[:, 0]
+    around = np.sum(np.arctan2(turns, np.sum(edges * np.roll(edges, -1, axis=0), axis=1)))
+    if not (np.all(turns > 0.0) and abs(around - 2.0 * np.pi) < 1e-6):
+        raise BadInput(f"a turn between two edges of {thing} [m²]", np.min(turns),
+                       "list the corners of a convex polygon counter-clockwise, none of them on a line with its two "
+                       "neighbours")
+    centre, size = polygon_centre(corners), np.max(np.abs(corners))
+    if np.max(np.abs(centre)) > CENTRED * size:
+        raise BadInput(f"the centre of mass of the corners of {thing} [m]", centre.tolist(),
+                       "subtract it from all corners, and add it to the centre x of the body")
+    return Polygon(tuple(map(tuple, corners.tolist())))
+
+
+def check_ends(thing, a, b, free):
+    """Raise BadInput unless a is a body, b is another one or the world, and one of them can move."""
+    for k, least in ((a, 0), (b, -1)):
+        if not isinstance(k, int | np.integer) or isinstance(k, bool) or not least <= k < len(free):
+            raise BadInput(f"a body of {thing}", k, f"give a whole number from 0 to {len(free) - 1}; b may be WORLD")
+    if a == b:
+        raise BadInput(f"both bodies of {thing}", a, "name two bodies")
+    if not (free[a] or (b >= 0 and free[b])):
+        raise BadInput(f"the bodies of {thing}", f"{a} and {b}", "name two bodies of which one can move")
+
+
+def check_joint(k, joint, free, d):
+    """Return joint number k with floats.  Raises BadInput."""
+    thing, kind = f"joint {k} (a {type(joint).__name__})", type(joint).__name__
+    check_ends(thing, joint.a, joint.b, free)
+    changed = {name: vector(f"{name} of {thing} [m]", getattr(joint, name), d)
+               for name in ("place", "place_a", "place_b") if hasattr(joint, name)}
+    if kind == "BallJoint" and d == 2:
+        raise BadInput(thing, "in the plane", "take a Hinge, which is the same there")
+    if kind == "Hinge":
+        if (joint.axis is None) != (d == 2):
+            raise BadInput(f"the axis of {thing}", joint.axis, "give one in space, and None in the plane")
+        if d == 3:
+            axis = vector(f"the axis of {thing}", joint.axis, 3)
+            check_unit(f"the length of the axis of {thing} [-]", np.sqrt(np.dot(axis, axis)))
+            changed["axis"] = axis
+    if kind == "Distance":
+        changed["compliance"] = not_negative(f"the compliance of {thing} [m/N]", joint.compliance)
+    return joint._replace(a=int(joint.a), b=int(joint.b), **changed)
+
+
+def check_spring(k, spring, free, d):
+    """Return spring number k with floats.  Raises BadInput."""
+    thing = f"spring {k}"
+    check_ends(thing, spring.a, spring.b, free)
+    return spring._replace(
+        a=int(spring.a), b=int(spring.b), rest=not_negative(f"the rest length of {thing} [m]", spring.rest),
+        place_a=vector(f"place_a of {thing} [m]", spring.place_a, d),
+        place_b=vector(f"place_b of {thing} [m]", spring.place_b, d),
+        k=not_negative(f"the stiffness k of {thing} [N/m]", spring.k),
+        c=not_negative(f"the damper c of {thing} [N s/m]", spring.c))
+
+
+def not_negative(thing, value):
+    """Return value as a float.  Raises BadInput unless it is finite, and zero or more."""
+    value = finite_number(thing, value)
+    if value < 0.0:
+        raise BadInput(thing, value, "give zero or more")
+    return value

@@ -1,0 +1,241 @@
+"""The loop that is composed of what a Model needs: closed forms, and what may be left out."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from solutions.checks import BadInput
+from solutions.given import parts as given_parts
+from solutions.given.compose import Part, Settings, compose, run_parts, state_of
+from solutions.support.model import (
+    WORLD,
+    Ball,
+    Body,
+    Box,
+    Capsule,
+    Distance,
+    Drag,
+    HalfSpace,
+    Hinge,
+    Polygon,
+    Spring,
+    Weld,
+    make_model,
+)
+from solutions.support.shapes import polygon_centre
+
+G = 9.81                                       # [m/s²]
+DOWN = (0.0, -G)
+FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+
+
+def names(model):
+    return [part.step.__name__ for part in compose(model).parts]
+
+
+def run(model, T, steps, **settings):
+    """Return the State of all bodies after T [s]."""
+    loop = compose(model, Settings(**settings))
+    return state_of(loop, run_parts(loop, 0.0, loop.state, T / steps, steps))
+
+
+def energy(model, s):
+    """Return the energy of motion and of height [J] of all bodies that can move."""
+    total = 0.0
+    for body, x, v, omega in zip(model.bodies, s.x, s.v, s.omega, strict=True):
+        if np.isfinite(body.m):
+            total += body.m * (0.5 * v @ v - np.dot(model.gravity, x))
+            total += 0.5 * body.inertia * omega**2 if np.isfinite(body.inertia) else 0.0
+    return total
+
+
+# ---------------------------------------------------------------------------------------------- what is needed
+
+def test_the_parts_are_those_that_the_model_needs_and_each_has_a_reason():
+    ball, box = Body((0.0, 2.0), 1.0, Ball(0.5)), Body((0.0, 2.0), 1.0, Box((0.5, 0.5)), mu=0.5)
+    assert names(make_model([ball._replace(shape=None)], (0.0, 0.0))) == ["move"]
+    assert names(make_model([ball._replace(shape=None)], DOWN)) == ["accelerate", "move"]
+    assert names(make_model([ball._replace(omega=1.0)], DOWN)) == ["accelerate", "move_and_turn"]
+    assert names(make_model([ball, FLOOR], DOWN)) == ["accelerate", "detect_few", "separate", "solve_centres", "move"]
+    assert names(make_model([box, FLOOR], DOWN))[1:] == ["detect_few", "separate", "solve", "move_and_turn"]
+    two = [box, box._replace(x=(3.0, 2.0), mu=0.1), FLOOR]
+    assert names(make_model(two, DOWN))[3] == "solve_pairs"
+    hinge = [Hinge(0, WORLD, (0.5, 2.5))]
+    assert names(make_model([box], DOWN, hinge)) == [
+        "accelerate_half", "close", "move_and_turn", "accelerate_rest", "hold"]
+    assert names(make_model([box, FLOOR], DOWN, hinge))[3] == "solve_jointed"
+    many = [box._replace(x=(3.0 * k, 2.0)) for k in range(9)]
+    assert names(make_model([*many, FLOOR], DOWN))[1] == "detect_many"
+    assert all(part.why for part in compose(make_model(two, DOWN)).parts)
+
+
+@pytest.mark.parametrize(("model", "left_out", "fuller"), [
+    (make_model([Body((0.0, 0.9), 1.0, Ball(0.5), e=0.5, v=(1.0, 0.0)), FLOOR], DOWN),
+     "solve_centres", "solve"),
+    (make_model([Body((0.0, 0.9), 1.0, Ball(0.5), e=0.5, v=(1.0, 0.0)), FLOOR], DOWN), "move", "move_and_turn"),
+    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "solve", "solve_pairs"),
+    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "detect_few", "detect_many"),
+    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "separate", "leave"),
+    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "solve_pairs", "solve_jointed"),
+], ids=lambda value: value if isinstance(value, str) else "model")
+def test_what_is_left_out_changes_no_motion(model, left_out, fuller):
+    """A part in its fuller form gives the same motion to round-off."""
+    loop = compose(model)
+    steps = [part.step.__name__ for part in loop.parts]
+    if left_out not in steps:                                          # the fuller one of one pair begins another pair
+        steps[steps.index("solve")] = left_out
+    fuller_steps = [fuller if name == left_out else name for name in steps]
+    ends = []
+    for chosen in (steps, fuller_steps):
+        made = loop._replace(parts=tuple(Part(getattr(given_parts, name), "") for name in chosen))
+        ends.append(run_parts(made, 0.0, loop.state, 1e-3, 600))
+    assert np.max(np.abs(ends[0].x - ends[1].x)) < 1e-11
+    assert np.max(np.abs(ends[0].q - ends[1].q)) < 1e-11
+
+
+# ---------------------------------------------------------------------------------------------- closed forms
+
+def test_a_throw_with_drag_has_its_exponential():
+    k, m, T = 0.5, 2.0, 1.5
+    model = make_model([Body((0.0, 0.0), m, v=(3.0, 4.0))], DOWN, loads=[Drag(k)])
+    errors = []
+    for steps in (200, 400):
+        x = run(model, T, steps).x[0]
+        tau = m / k
+        decay = 1.0 - np.exp(-T / tau)
+        errors.append(np.abs(x - (3.0 * tau * decay, (4.0 + G * tau) * tau * decay - G * tau * T)).max())
+    assert errors[1] < 0.5 * T / 400 * G * T * 1.1                     # symplectic Euler falls ½ dt g T too far
+    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)        # first order
+
+
+def test_a_block_slides_down_a_slope_by_half_a_t_squared():
+    alpha, mu, T, steps = 0.5, 0.3, 1.0, 500
+    gravity = (G * np.sin(alpha), -G * np.cos(alpha))
+    model = make_model([FLOOR, Body((0.0, 0.1), 1.0, Box((1.0, 0.1)), mu=mu)], gravity)
+    a = G * (np.sin(alpha) - mu * np.cos(alpha))
+    s = run(model, T, steps)
+    assert s.x[1, 0] == pytest.approx(0.5 * a * T * (T + T / steps), rel=1e-6)       # symplectic Euler's own end
+    assert s.x[1, 1] == pytest.approx(0.1, abs=1e-6)
+    assert s.q[1] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_each_body_has_its_own_friction():
+    v, mus, steps = 2.0, (0.1, 0.4, 0.8), 1000
+    bodies = [Body((3.0 * k, 0.2), 1.0, Box((1.0, 0.2)), mu=mu, v=(v, 0.0)) for k, mu in enumerate(mus)]
+    bodies = [body._replace(x=(10.0 * k, 0.2)) for k, body in enumerate(bodies)]
+    s = run(make_model([*bodies, FLOOR], DOWN), 3.0, steps, settled=1e-9, sweeps=500)
+    for k, mu in enumerate(mus):
+        slid = s.x[k, 0] - 10.0 * k
+        assert slid == pytest.approx(v * v / (2.0 * mu * G), abs=v * 3.0 / steps)    # it stops within a step
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_each_body_has_its_own_restitution(e):
+    """Two discs meet with an offset: momentum along the line of centres, Newton's e, and what is across stays."""
+    m, v, offset = (1.0, 3.0), np.array([(2.0, 0.0), (-1.0, 0.3)]), 0.3
+    n = np.array([-np.sqrt(1.0 - offset**2), -offset])                 # from b to a at contact: radii of ½
+    x = np.array([(-1.0, 0.0), (0.0, 0.0)])
+    meet = x[0] + 0.4 * v[0]
+    x[1] = meet - n - 0.4 * v[1]                                       # they touch after 0.4 s
+    bodies = [Body(tuple(x[k]), m[k], Ball(0.5), e=(e, 1.0)[k], v=tuple(v[k])) for k in (0, 1)]
+    s = run(make_model(bodies, (0.0, 0.0)), 0.8, 3200)
+    reduced = 1.0 / (1.0 / m[0] + 1.0 / m[1])
+    J = -(1.0 + e) * reduced * ((v[0] - v[1]) @ n)
+    expected = np.array([v[0] + J / m[0] * n, v[1] - J / m[1] * n])
+    assert s.v == pytest.approx(expected, abs=5e-3)                    # the normal turns within the last step
+
+
+@pytest.mark.parametrize("shape", [
+    Box((0.4, 0.2)), Ball(0.3), Capsule(0.4, 0.2),
+    Polygon(tuple(map(tuple, np.array([(0.5, -0.3), (0.2, 0.4), (-0.5, -0.3)]) - polygon_centre(
+        [(0.5, -0.3), (0.2, 0.4), (-0.5, -0.3)]))))])
+def test_a_body_of_any_shape_comes_to_rest_on_a_box_that_rests_on_the_floor(shape):
+    model = make_model([FLOOR, Body((0.0, 0.5), 5.0, Box((1.0, 0.5)), mu=0.7), Body((0.1, 2.0), 1.0, shape, mu=0.7)],
+                       DOWN)
+    loop = compose(model)
+    end = run_parts(loop, 0.0, loop.state, 1.0 / 240.0, 960)
+    s = state_of(loop, end)
+    assert np.max(np.abs(s.v)) < 1e-3
+    assert s.x[1] == pytest.approx((0.0, 0.5), abs=5e-3)
+    assert 1.0 < s.x[2, 1] < 1.6
+    weight = sum(J[1] for b, J in zip(end.contacts.b, end.J, strict=True) if b == 2) * 240.0
+    assert weight == pytest.approx(6.0 * G, rel=2e-2)                  # the floor carries both
+
+
+def test_a_body_on_a_spring_swings_with_its_own_frequency():
+    k, m, T = 30.0, 2.0, 1.3
+    model = make_model([Body((1.2, 0.0), m)], (0.0, 0.0), springs=[Spring(0, WORLD, (0.0, 0.0), (0.0, 0.0), 1.0, k)])
+    errors = [abs(run(model, T, steps).x[0, 0] - 1.0 - 0.2 * np.cos(np.sqrt(k / m) * T)) for steps in (400, 800)]
+    assert errors[1] < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.15)
+
+
+def test_a_pendulum_of_a_rod_swings_as_its_equation_says_with_second_order():
+    length, angle, T = 1.0, 1.0, 2.0
+    at = 0.5 * length * np.array([np.sin(angle), -np.cos(angle)])
+    model = make_model([Body(tuple(at), 1.0, inertia=length**2 / 12.0)], DOWN, [Hinge(0, WORLD, (0.0, 0.0))])
+    truth = solve_ivp(lambda t, y: (y[1], -1.5 * G / length * np.sin(y[0])), (0.0, T), (angle, 0.0), rtol=1e-12,
+                      atol=1e-12).y[0, -1]
+    errors = []
+    for steps in (200, 400):
+        x = run(model, T, steps).x[0]
+        errors.append(abs(np.arctan2(x[0], -x[1]) - truth))
+        assert np.hypot(*x) == pytest.approx(0.5 * length, rel=1e-12)
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_four_bar_stays_closed_and_keeps_its_energy():
+    corners = np.array([(0.0, 0.0), (0.0, 1.0), (1.5, 1.3), (1.5, 0.0)])
+    bars = [Body(tuple(0.5 * (a + b)), 1.0, q=float(np.arctan2(*(b - a)[::-1])),
+                 inertia=float((b - a) @ (b - a)) / 12.0) for a, b in pairwise(corners)]
+    ends = [(0, WORLD), (1, 0), (2, 1), (2, WORLD)]
+    model = make_model(bars, DOWN, [Hinge(a, b, tuple(place)) for (a, b), place in zip(ends, corners, strict=True)])
+    before, s = energy(model, state_of(compose(model), compose(model).state)), run(model, 1.0, 500)
+    assert energy(model, s) == pytest.approx(before, abs=1e-3 * G)
+
+
+def test_welded_bodies_fly_like_one_body():
+    """Two boxes side by side are one box of twice the width: its spin and its centre are those of the whole."""
+    half, omega = (0.5, 0.2), 3.0
+    boxes = [Body((sign * 0.5, 0.0), 1.0, Box(half), v=(0.0, sign * 0.5 * omega), omega=omega) for sign in (-1.0, 1.0)]
+    model = make_model(boxes, (0.0, 0.0), [Weld(0, 1, (0.0, 0.0))])
+    s = run(model, 1.0, 400)
+    assert s.omega == pytest.approx([omega, omega], rel=1e-9)
+    assert s.q == pytest.approx([omega, omega], abs=omega**3 / 400**2)     # second order
+    assert s.x[1] - s.x[0] == pytest.approx((np.cos(omega), np.sin(omega)), abs=1e-4)
+    assert s.x.sum(axis=0) == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+# ---------------------------------------------------------------------------------------------- overlaps
+
+def test_bodies_that_begin_inside_each_other_part_without_kinetic_energy():
+    """The worst that may remain is what the loop leaves on purpose, 0.5 % of the smallest body."""
+    bodies = [FLOOR, Body((0.0, 0.4), 1.0, Box((0.5, 0.5)), mu=0.5), Body((0.2, 1.2), 1.0, Ball(0.5), mu=0.5),
+              Body((0.5, 0.45), 1.0, Capsule(0.3, 0.2), mu=0.5)]
+    model = make_model(bodies, (0.0, 0.0))                             # without gravity nothing else could move them
+    loop, state, fastest = compose(model), None, 0.0
+    state = loop.state
+    for _ in range(400):
+        state = run_parts(loop, 0.0, state, 1.0 / 240.0, 1)
+        fastest = max(fastest, np.max(np.abs(state.v)), np.max(np.abs(state.omega)))
+    assert fastest == 0.0
+    assert state.contacts.gap.min() > -1.1 * loop.p.slop
+    assert np.max(np.abs(loop.state.x - state.x)) > 0.05               # they did move
+
+
+# ---------------------------------------------------------------------------------------------- refusals
+
+@pytest.mark.parametrize(("model", "why"), [
+    (make_model([Body((0.0, 0.0, 0.0), 1.0)], (0.0, 0.0, -G)), "space"),
+    (make_model([Body((0.0, 0.0), 1.0)], DOWN, [Distance(0, WORLD, (0.0, 0.0), (1.0, 0.0))]), "Distance")])
+def test_what_the_loop_cannot_run_is_named(model, why):
+    with pytest.raises(BadInput, match=why):
+        compose(model)
+
+
+@pytest.mark.parametrize("settings", [{"sweeps": 0}, {"settled": -1.0}, {"margin": -0.1}, {"settled": np.nan}])
+def test_settings_that_cannot_be_are_refused(settings):
+    with pytest.raises(BadInput):
+        compose(make_model([Body((0.0, 1.0), 1.0, Ball(0.5)), FLOOR], DOWN), Settings(**settings))

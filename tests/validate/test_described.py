@@ -1,0 +1,53 @@
+"""Scenes as Models: the engines err as in the scenes' own set-ups, and within the limits that these derive."""
+
+import numpy as np
+import pytest
+
+from validate.measure.accuracy import ASYMPTOTIC, relative, run_engine_to_end
+from validate.products import BUILDERS, MUJOCO, PYBULLET
+from validate.worlds.conformance import error_of
+from validate.worlds.described import DESCRIBED
+
+MOST = 500                   # steps
+SAME = 1e-3                  # of an error: bodies that touch begin a micrometre apart from those of the set-up by hand
+OTHER_SET_UP = {             # by hand: no moments in pybullet's first step with a joint, and a ball as MuJoCo's block
+    ("rod_chain", PYBULLET), ("heavy_top", PYBULLET), ("incline", MUJOCO)}
+JUDGED = [(name, product) for name, one in DESCRIBED.items() if not one.shown for product in BUILDERS
+          if product.installed() and not product.world.refuses(one.model(one.scene.parameters))]
+BY_HAND = [(name, runner) for name, one in DESCRIBED.items() if not one.shown for runner in one.scene.engine_runners
+           if not runner.who.variant and (name, runner.who.product) in JUDGED]
+
+
+def errors(name, product, most=MOST):
+    """(number of steps, error) of a world built from the Model, and the truth."""
+    one = DESCRIBED[name]
+    p, steps = one.scene.parameters, max(n for n in one.scene.steps if n <= most)
+    truth = np.array(one.scene.truth(p, one.scene.duration), float)
+    return steps, error_of(product, one, p, truth, steps), truth
+
+
+@pytest.mark.parametrize(("name", "runner"), BY_HAND, ids=[f"{name}-{runner.label}" for name, runner in BY_HAND])
+def test_a_model_errs_as_the_set_up_by_hand(name, runner):
+    scene = DESCRIBED[name].scene
+    steps, error, truth = errors(name, runner.who.product)
+    limit = runner.largest_error(scene.parameters, scene.duration / steps)
+    assert error <= limit or limit >= ASYMPTOTIC
+    if (name, runner.who.product) not in OTHER_SET_UP:
+        by_hand = relative(run_engine_to_end(scene, runner.who, scene.parameters, steps).observed, truth)
+        assert error == pytest.approx(by_hand, rel=SAME)
+
+
+@pytest.mark.parametrize("name", ["linear_drag", "oscillator", "spring_net"])
+def test_mujoco_is_of_order_four_where_nothing_touches(name):
+    """Also with springs and with loads, which count in every stage of a step."""
+    if not MUJOCO.installed():
+        pytest.skip(f"MuJoCo is not installed: {MUJOCO.remedy}")
+    _, coarse, _ = errors(name, MUJOCO, 200)
+    _, fine, _ = errors(name, MUJOCO, 500)
+    assert np.log(coarse / fine) / np.log(500 / 200) > 3.5
+
+
+def test_each_engine_runs_most_scenes():
+    counts = {product.name: sum(not product.world.refuses(one.model(one.scene.parameters))
+                                for one in DESCRIBED.values()) for product in BUILDERS if product.installed()}
+    assert counts.items() <= {"pymunk": 15, "pybullet": 16, "mujoco": 13, "pyb2d3": 15}.items()

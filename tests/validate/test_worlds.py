@@ -1,0 +1,546 @@
+"""A Model in every engine: truths, forces, refusals, and what the engines derive from it."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from solutions.checks import BadInput
+from solutions.support.model import (
+    WORLD,
+    BallJoint,
+    Body,
+    Distance,
+    Drag,
+    Hinge,
+    Spring,
+    Weld,
+    can_move,
+    make_model,
+    start_of,
+)
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+from validate.products import BOX2D, BUILDERS, MUJOCO, PYBULLET, PYMUNK
+from validate.scene import by_order
+from validate.subject import modules
+from validate.worlds import chipmunk, derived, ours
+
+G = 9.81                     # [m/s²]
+SINGLE = 2e-6                # errors of an engine that computes in single precision: some ten spacings [-]
+SOFT = 1e-3                  # most depth of a soft contact under these weights, of MuJoCo and of Box2D [m]
+REDUCED = {"maximal": False}
+KINDS = [(product, settings) for product in BUILDERS
+         for settings in (({}, REDUCED) if product is PYBULLET else ({},))]
+every = pytest.mark.parametrize(("product", "settings"), KINDS, ids=[f"{p}{'-reduced' if s else ''}" for p, s in KINDS])
+FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+GROUND = Body((0.0, 0.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), mu=1.0, e=1.0)
+TRIANGLE = Polygon(((-0.3, -0.2), (0.3, -0.2), (0.0, 0.4)))
+SHAPES = (Ball(0.2), Box((0.3, 0.1)), Capsule(0.3, 0.1), TRIANGLE)
+
+
+def run(product, model, T, steps, **settings):
+    """Return the State at T and the pushes of the last step; skip what the engine does not have."""
+    if not product.installed():
+        pytest.skip(f"{product} is not installed: {product.remedy}")
+    why = product.world.refuses(model)
+    if why:
+        pytest.skip(f"{product} refuses: {why}")
+    world = product.world.build(model, T / steps, **settings)
+    try:
+        for _ in range(steps):
+            world.step()
+        return world.state(), world.pushes()
+    finally:
+        world.close()
+
+
+def spacings(product, steps):
+    """Round-off after this many steps [-]."""
+    return steps * 1e-15 + (steps * SINGLE if product is BOX2D else 1e-12)
+
+
+def order_of(product):
+    """Order of an engine where nothing touches."""
+    return 4 if product is MUJOCO else 1
+
+
+# ---------------------------------------------------------------------------------------------- closed forms
+
+@every
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_thrown_body_errs_by_half_a_step_of_its_velocity_at_most(product, settings, d):
+    T, steps, v = 1.0, 100, np.array((1.0, 2.0, 3.0)[3 - d:])
+    down = np.eye(d)[-1] * -G
+    state, _ = run(product, make_model([Body((0.0,) * d, 2.0, v=tuple(v))], tuple(down)), T, steps, **settings)
+    allowed = 0.0 if product is MUJOCO else 0.5 * G * T * T / steps
+    noise = spacings(product, steps) * 10.0
+    assert np.max(np.abs(state.x[0] - (v * T + 0.5 * down * T * T))) <= allowed + noise
+    assert np.max(np.abs(state.v[0] - (v + down * T))) <= noise
+
+
+@pytest.mark.parametrize("product", [PYMUNK, PYBULLET, BOX2D], ids=str)
+def test_a_leapfrog_start_makes_a_throw_exact(product):
+    T, steps, v = 1.0, 100, np.array((2.0, 3.0))
+    state, _ = run(product, make_model([Body((0.0, 0.0), 2.0, v=tuple(v))], (0.0, -G)), T, steps, ahead=0.5)
+    assert np.max(np.abs(state.x[0] - (v * T - (0.0, 0.5 * G * T * T)))) <= spacings(product, steps) * 10.0
+
+
+@every
+def test_drag_and_a_function_load_slow_a_body_as_the_exponential_does(product, settings):
+    T, steps, k, m = 1.0, 200, 0.8, 2.0
+
+    def more(t, x, q, v, omega):
+        return -k * v, 0.0 * omega
+    for loads in ((Drag(2.0 * k),), (Drag(k), more)):
+        model = make_model([Body((0.0, 0.0), m, v=(3.0, 1.0))], (0.0, 0.0), loads=loads)
+        state, _ = run(product, model, T, steps, **settings)
+        allowed = by_order(2.0 * k / m, T, T / steps)[order_of(product)] + spacings(product, steps)
+        assert np.linalg.norm(state.v[0] - np.exp(-2.0 * k / m * T) * np.array((3.0, 1.0))) <= allowed * np.sqrt(10.0)
+
+
+@every
+@pytest.mark.parametrize("shape", [Box((0.5, 0.1)), Capsule(0.4, 0.1), Polygon(((-0.5, -0.1), (0.5, -0.1), (0.5, 0.1),
+                                                                               (-0.5, 0.1)))])
+def test_a_body_slides_down_an_incline_with_g_sin_minus_mu_g_cos(product, settings, shape):
+    T, steps, theta, mu = 0.5, 500, 0.5, 0.3
+    rho = np.array([np.sin(theta), -np.cos(theta)]) * G
+    model = make_model([Body((0.0, 0.1), 1.0, shape, mu), FLOOR], tuple(rho))
+    state, _ = run(product, model, T, steps, **settings)
+    a = rho[0] + mu * rho[1]
+    assert abs(state.x[0, 0] - 0.5 * a * T * T) <= 0.5 * a * T * T / steps + mu * SOFT + spacings(product, steps)
+    assert abs(state.x[0, 1] - 0.1) <= SOFT and abs(state.q[0]) <= 2.0 * SOFT
+
+
+@every
+def test_friction_of_a_pair_is_the_product(product, settings):
+    """While a block slides, also where it hops, friction gives μ times the normal impulse, m (g T + v_y)."""
+    T, steps, v = 0.2, 400, 2.0
+    for first, second in ((0.8, 0.5), (0.5, 0.8), (0.4, 1.0)):
+        model = make_model([Body((0.0, 0.1), 1.0, Box((0.5, 0.1)), first, v=(v, 0.0)), FLOOR._replace(mu=second)],
+                           (0.0, -G))
+        state, _ = run(product, model, T, steps, **settings)
+        assert state.v[0, 0] == pytest.approx(v - 0.4 * (G * T + state.v[0, 1]), abs=0.4 * G * T / steps)
+
+
+@every
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_ball_leaves_the_floor_with_e_times_its_speed(product, settings, d):
+    e, h, T, steps = 0.6, 0.5, 0.5, 2000
+    model = make_model([Body((0.0,) * (d - 1) + (0.1 + h,), 1.0, Ball(0.1), e=e), FLOOR if d == 2 else GROUND],
+                       tuple(np.eye(d)[-1] * -G))
+    state, _ = run(product, model, T, steps, **settings)
+    fall, v = np.sqrt(2.0 * h / G), np.sqrt(2.0 * h * G)
+    # it meets the floor up to dt late, with up to g dt more speed, and moves with one end's velocity in each step
+    late = T / steps * ((1.0 + e) * v + G * (T - fall) + 0.5 * G * T)
+    assert abs(state.x[0, -1] - (0.1 + e * v * (T - fall) - 0.5 * G * (T - fall) ** 2)) <= late
+    assert abs(state.v[0, -1] - (e * v - G * (T - fall))) <= (1.0 + e) * G * T / steps + 1e-4
+
+
+@every
+@pytest.mark.parametrize("d", [2, 3])
+def test_two_balls_exchange_the_momentum_of_newtons_impact_law(product, settings, d):
+    m, e, v = (1.0, 3.0), 0.5, np.array([2.0, -1.0])
+    rest = (0.0,) * (d - 1)
+    model = make_model([Body((-0.3, *rest), m[0], Ball(0.1), e=e, v=(v[0], *rest)),
+                        Body((0.3, *rest), m[1], Ball(0.1), e=1.0, v=(v[1], *rest))], (0.0,) * d)
+    state, _ = run(product, model, 0.4, 400, **settings)
+    common = np.dot(m, v) / sum(m)
+    assert np.allclose(state.v[:, 0], common - e * (v - common), atol=spacings(product, 400), rtol=0.0)
+    assert np.allclose(state.v[:, 1:], 0.0, atol=spacings(product, 400))
+
+
+def pendulum_angle(rate, start, T, first=0.0):
+    """The angle from the vertical after T of θ″ = −rate² sin θ, with the first rate θ′ [rad/s]."""
+    return solve_ivp(lambda t, y: (y[1], -rate**2 * np.sin(y[0])), (0.0, T), (start, first), rtol=1e-12,
+                     atol=1e-12).y[0, -1]
+
+
+@every
+@pytest.mark.parametrize(("d", "hinges"), [(2, 1), (3, 1), (3, 2)])
+def test_a_rod_on_a_hinge_swings_as_the_pendulum_equation_says(product, settings, d, hinges):
+    T, half, axis = 1.0, (0.5, 0.05), None
+    place, x, gravity = (0.0, 0.0), (0.5, 0.0), (0.0, -G)
+    if d == 3:                                               # the same in space, in a plane that no axis lies in
+        e = np.array([0.6, 0.48, 0.64])
+        place, x, gravity, half = (0.0,) * 3, tuple(0.5 * np.array([0.8, -0.36, -0.48])), tuple(
+            np.cross(e, (0.8, -0.36, -0.48)) * -G), (0.05, 0.04, 0.06)
+        axis = tuple(e)
+    w = -1.5                                                 # it is pushed as it is let go
+    spin = w if d == 2 else tuple(w * np.array(axis))
+    v = (0.0, w * 0.5) if d == 2 else tuple(np.cross(spin, x))
+    more = [Hinge(0, WORLD, tuple(0.2 * np.array(axis)), axis)] if hinges == 2 else []   # on the same axis: a loop
+    model = make_model([Body(x, 2.0, Box(half), v=v, omega=spin)], gravity, [Hinge(0, WORLD, place, axis), *more])
+    sign = np.sign(np.dot(gravity, v))                       # towards the vertical
+    I = (np.array(model.bodies[0].inertia) @ np.square(axis) if d == 3 else model.bodies[0].inertia) + 2.0 * 0.25
+    rate, limits = np.sqrt(2.0 * G * 0.5 / I), []
+    errors = []
+    for steps in (500, 1000):
+        state, _ = run(product, model, T, steps, **settings)
+        angle = pendulum_angle(rate, 0.5 * np.pi, T, -sign * abs(w))
+        down = np.array(gravity) / G
+        out = np.array(x) / 0.5
+        errors.append(np.linalg.norm(state.x[0] - 0.5 * (np.cos(angle) * down + np.sin(angle) * out)))
+        limits.append(0.5 * by_order(rate * np.sqrt(2.0), T, T / steps)[order_of(product)] + spacings(product, steps))
+    assert np.all(np.array(errors) <= limits)
+
+
+@every
+def test_two_hinged_rods_that_turn_as_one_go_on_in_a_circle(product, settings):
+    """Without gravity.  The second rod has no rate relative to the first."""
+    T, steps, w = 1.0, 1000, 2.0
+    rods = [Body((x, 0.0), 1.0, Box((0.25, 0.05)), v=(0.0, w * x), omega=w) for x in (0.25, 0.75)]
+    model = make_model(rods, (0.0, 0.0), [Hinge(0, WORLD, (0.0, 0.0)), Hinge(1, 0, (0.5, 0.0))])
+    state, _ = run(product, model, T, steps, **settings)
+    circle = np.outer((0.25, 0.75), (np.cos(w * T), np.sin(w * T)))
+    assert np.max(np.abs(state.x - circle)) <= 0.75 * by_order(w, T, T / steps)[1] + spacings(product, steps)
+    assert np.allclose(state.omega, w, atol=w * by_order(w, T, T / steps)[1] + spacings(product, steps))
+
+
+@every
+def test_two_rods_swing_as_one_that_is_welded_together(product, settings):
+    """The second rod lies along its second axis, so that the angles differ."""
+    T, steps, turn = 0.5, 500, 0.5 * np.pi
+    rods = [Body((0.25, 0.0), 1.0, Box((0.25, 0.05))), Body((0.75, 0.0), 1.0, Box((0.05, 0.25)), q=turn)]
+    long = Body((0.5, 0.0), 2.0, Box((0.5, 0.05)))
+    two = make_model(rods, (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.5, 0.0))])
+    one = make_model([long], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
+    first, second = (run(product, model, T, steps, **settings)[0] for model in (two, one))
+    rate = np.sqrt(1.5 * G)
+    allowed = by_order(rate, T, T / steps)[1] + spacings(product, steps)
+    assert np.linalg.norm(0.5 * (first.x[0] + first.x[1]) - second.x[0]) <= allowed
+    assert abs(first.q[0] + turn - first.q[1]) <= 2.0 * allowed
+
+
+@every
+@pytest.mark.parametrize("welds", [1, 2])
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_weld_holds_a_turned_beam_in_the_wall(product, settings, d, welds):
+    place = (0.0,) * d
+    beam = (Body((0.5, 0.0), 1.0, Box((0.05, 0.5)), q=0.5 * np.pi) if d == 2 else
+            Body((0.5, 0.0, 0.0), 1.0, Box((0.05, 0.5, 0.06)), q=(np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))))
+    model = make_model([beam], tuple(-G * np.eye(d)[-1]), [Weld(0, WORLD, place)] * welds)
+    state, _ = run(product, model, 0.5, 500, **settings)
+    assert np.max(np.abs(state.x[0] - beam.x)) <= SOFT
+    assert np.max(np.abs(state.q[0] - model.bodies[0].q)) <= 2.0 * SOFT
+
+
+@every
+def test_a_rod_without_mass_keeps_its_length_and_the_bob_swings(product, settings):
+    T, steps, L = 0.5, 1000, 1.0
+    model = make_model([Body((L, 0.0), 1.0, Ball(0.05))], (0.0, -G),
+                       [Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0))])
+    state, _ = run(product, model, T, steps, **settings)
+    rate = np.sqrt(G / L)
+    angle = pendulum_angle(rate, 0.5 * np.pi, T)
+    allowed = by_order(rate * np.sqrt(2.0), T, T / steps)[1] + spacings(product, steps)
+    assert np.linalg.norm(state.x[0] - L * np.array((np.sin(angle), -np.cos(angle)))) <= allowed
+
+
+@every
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_spring_with_a_damper_swings_as_its_formula_says(product, settings, d):
+    T, steps, k, c, m, rest = 1.0, 1000, 40.0, 0.5, 1.0, 2.0
+    zero = (0.0,) * d
+    model = make_model([Body((0.3, *zero[1:]), m)], zero,
+                       springs=[Spring(0, WORLD, zero, (-rest, *zero[1:]), rest, k, c)])
+    state, _ = run(product, model, T, steps, **settings)
+    decay = 0.5 * c / m
+    rate = np.sqrt(k / m - decay**2)
+    x = 0.3 * np.exp(-decay * T) * (np.cos(rate * T) + decay / rate * np.sin(rate * T))
+    assert abs(state.x[0, 0] - x) <= 0.3 * by_order(rate, T, T / steps)[order_of(product)] + spacings(product, steps)
+
+
+@every
+def test_a_compliant_distance_is_a_spring_of_the_inverse_stiffness(product, settings):
+    T, steps, alpha = 0.5, 500, 0.01
+    bob = Body((0.5, 0.0), 1.0, v=(0.0, 1.0))
+    ends = (0.0, 0.0), (0.0, 0.0)
+    soft = make_model([bob], (0.0, -G), [Distance(0, WORLD, *ends, alpha)])
+    spring = make_model([bob], (0.0, -G), springs=[Spring(0, WORLD, *ends, 0.5, 1.0 / alpha)])
+    first, second = (run(product, model, T, steps, **settings)[0] for model in (soft, spring))
+    assert np.array_equal(first.x, second.x)
+
+
+@every
+def test_a_free_body_turns_as_eulers_equations_say(product, settings):
+    T, moments, first = 1.0, np.array([1.0, 2.0, 2.5]), np.array([0.2, 3.0, 0.4])
+    model = make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=tuple(moments), omega=tuple(first))], (0.0, 0.0, 0.0))
+    spin = np.empty((3, 3))
+
+    def slope(t, y):
+        R, w = y[:9].reshape(3, 3), y[9:]
+        spin[:] = (0.0, -w[2], w[1]), (w[2], 0.0, -w[0]), (-w[1], w[0], 0.0)
+        return np.concatenate(((R @ spin).ravel(), np.cross(moments * w, w) / moments))
+    end = solve_ivp(slope, (0.0, T), (*np.eye(3).ravel(), *first), rtol=1e-12, atol=1e-12).y[:9, -1].reshape(3, 3)
+    for steps in (500, 1000):
+        state, _ = run(product, model, T, steps, **settings)
+        w, x, y, z = state.q[0]
+        axis = np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
+        limit = by_order(np.linalg.norm(first), T, T / steps)[order_of(product)]
+        assert np.linalg.norm(axis - end[:, 2]) <= limit
+        assert np.allclose(state.omega[0], end @ (end.T @ state.omega[0]), atol=1e-9)
+
+
+@every
+def test_a_spring_off_the_centre_turns_a_body_in_space_alike_everywhere(product, settings):
+    """Truth: MuJoCo's Runge–Kutta 4, which shares nothing with the others but the Model."""
+    T, turned = 0.5, np.array([0.9, 0.3, -0.1, 0.3])
+    body = Body((0.0, 0.0, 0.0), 1.0, q=tuple(turned / np.linalg.norm(turned)), inertia=(0.05, 0.08, 0.1),
+                omega=(1.0, 0.0, 2.0))
+    model = make_model([body], (0.0, 0.0, -G), springs=[
+        Spring(0, WORLD, (0.2, 0.1, 0.0), (0.5, 0.4, 1.0), 0.8, 30.0, 0.2),
+        Spring(0, WORLD, (-0.1, -0.2, 0.1), (-0.5, -0.4, 1.0), 0.8, 30.0, 0.2)])
+    truth, _ = run(MUJOCO, model, T, 2000)
+    state, _ = run(product, model, T, 2000, **settings)
+    allowed = by_order(15.0, T, T / 2000)[1]                 # the fastest turn: √(60 N/m (0.3 m)² / 0.05 kg m²) < 15/s
+    assert np.max(np.abs(state.x - truth.x)) <= allowed
+    assert 1.0 - abs(state.q[0] @ truth.q[0]) <= allowed**2
+    assert np.max(np.abs(state.omega - truth.omega)) <= 15.0 * allowed
+
+
+# ---------------------------------------------------------------------------------------------- forces
+
+def at_rest(shape):
+    height = 0.1 if isinstance(shape, Box | Capsule) else 0.2
+    return make_model([Body((0.5, height), 3.0, shape, 0.5), FLOOR], (0.0, -G)), height
+
+
+@every
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: type(shape).__name__)
+def test_a_resting_body_stays_and_its_contacts_carry_its_weight(product, settings, shape):
+    model, height = at_rest(shape)
+    state, pushes = run(product, model, 0.3, 300, **settings)
+    assert np.max(np.abs(state.x[0] - (0.5, height))) <= SOFT and abs(state.q[0]) <= 2.0 * SOFT
+    assert not np.any(state.x[1]) and not np.any(state.v[1])
+    if product is BOX2D:
+        assert pushes == []                                  # its binding tells no forces of contacts
+        return
+    on_body = sum(push.F if push.a == 0 else -push.F for push in pushes)
+    assert {frozenset((push.a, push.b)) for push in pushes} == {frozenset((0, 1))}
+    assert on_body == pytest.approx([0.0, 3.0 * G], abs=3.0 * G * 1e-3)
+
+
+@every
+@pytest.mark.parametrize("shape", [Ball(0.2), Box((0.2, 0.3, 0.1)), Capsule(0.3, 0.1)],
+                         ids=lambda shape: type(shape).__name__)
+def test_a_body_rests_on_a_tilted_plane_in_space(product, settings, shape):
+    n = np.array([0.6, 0.0, 0.8])
+    height = shape.radius if isinstance(shape, Ball | Capsule) else shape.half[2]
+    half = 0.5 * np.arctan2(n[0], n[2])
+    model = make_model([Body(tuple((height - 0.3) * n), 2.0, shape, 1.0, q=(np.cos(half), 0.0, np.sin(half), 0.0)),
+                        Body((1.0, 2.0, 3.0), shape=HalfSpace(tuple(n), 0.3), mu=1.0, e=1.0,
+                             q=(np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)))], tuple(-G * n))
+    state, pushes = run(product, model, 0.3, 300, **settings)
+    assert np.max(np.abs(state.x[0] - model.bodies[0].x)) <= SOFT
+    on_body = sum(push.F if push.a == 0 else -push.F for push in pushes)
+    assert on_body == pytest.approx(2.0 * G * n, abs=2.0 * G * 1e-2)
+
+
+@pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)
+@pytest.mark.parametrize(("ends", "sign"), [((0, WORLD), 1.0), ((0, 1), 1.0), ((1, 0), -1.0)])
+def test_a_joint_tells_the_force_of_a_pendulum(product, ends, sign):
+    """A hinge carries a quarter of the weight of a rod that is let go level, and 5/2 sin θ of it θ below."""
+    wall = Body((-1.0, 0.0))
+    model = make_model([Body((0.5, 0.0), 2.0, Box((0.5, 1e-3))), wall], (0.0, -G), [Hinge(*ends, (0.0, 0.0))])
+    for steps in (1, 500):
+        state, pushes = run(product, model, steps * 1e-3, steps)
+        angle = state.q[0]
+        out, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        F = sign * 2.0 * G * (2.5 * np.sin(angle) * out + 0.25 * np.cos(angle) * across)
+        assert [(push.a, push.b, push.joint) for push in pushes] == [(*ends, 0)]
+        assert pushes[0].F == pytest.approx(F, abs=2.0 * G * 2.5 * (3.9 * 1e-3 + 2e-3))
+
+
+# ---------------------------------------------------------------------------------------------- many things at once
+
+def box(x, y, half, m, mu=0.5, **more):
+    return Body((x, y), m, Box(half), mu, **more)
+
+
+def mixed_machine():
+    """A ball on a ramp, dominoes, a crate on a spring, a see-saw, and a pendulum of a rod and a ball."""
+    slope = -0.35
+    along, n = np.array([np.cos(slope), np.sin(slope)]), np.array([-np.sin(slope), np.cos(slope)])
+    ball = lambda x, r, m, mu: Body(tuple(x), m, Ball(r), mu, inertia=0.4 * m * r * r)
+    bodies = [
+        FLOOR, Body((-1.75, 0.45), shape=Box((0.6, 0.03)), mu=1.0, e=1.0, q=slope),
+        ball(np.array([-1.75, 0.45]) - 0.35 * along + 0.11 * n, 0.08, 1.0, 0.6),
+        *[box(-0.6 + 0.16 * k, 0.15, (0.025, 0.15), 0.3, 0.4) for k in range(4)],
+        box(0.14, 0.1, (0.1, 0.1), 0.4, 0.2), box(1.5, 0.3, (0.6, 0.02), 0.8, 0.7), ball((1.05, 0.38), 0.06, 0.2, 0.7),
+        box(1.95, 0.75, (0.1, 0.08), 1.5, 0.7), Body((3.0, 1.3), 0.2, inertia=0.2 * 0.2**2 / 12.0),
+        ball((3.45, 1.3), 0.09, 0.6, 0.3), box(2.55, 0.5, (0.08, 0.5), 0.5)]
+    joints = [Hinge(8, WORLD, (1.5, 0.3)), Hinge(11, WORLD, (2.9, 1.3)), Hinge(12, 11, (3.1, 1.3))]
+    return make_model(bodies, (0.0, -G), joints, [Spring(7, WORLD, (0.1, 0.0), (0.9, 0.1), 0.66, 60.0, 1.0)])
+
+
+@pytest.mark.parametrize("product", [PYBULLET, MUJOCO, BOX2D], ids=str)
+def test_a_mixed_machine_moves_alike_in_engines_that_share_nothing(product):
+    """For 0.2 s, before anything tips.  Two engines of order 1 that fall are up to g T dt apart."""
+    model, T, steps = mixed_machine(), 0.2, 800
+    truth, _ = run(PYMUNK, model, T, 4 * steps)
+    state, _ = run(product, model, T, steps)
+    off = np.linalg.norm(state.x - truth.x, axis=1)[[can_move(body) for body in model.bodies]]
+    assert np.max(off) <= G * T * (T / steps + T / (4 * steps))
+
+
+# ---------------------------------------------------------------------------------------------- refusals
+
+SPACE_BOX = Body((0.0, 0.0, 0.0), 1.0, Box((0.1, 0.1, 0.1)))
+MOVING = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), v=(1.0, 0.0))
+BALL = Body((0.0, 0.1), 1.0, Ball(0.1))
+ROD = make_model([BALL], (0.0, -G), [Distance(0, WORLD, (0.0, 0.0), (1.0, 0.0))])
+BOUNCY = make_model([BALL._replace(e=0.5), FLOOR], (0.0, -G))
+SEVERAL = make_model([BALL._replace(e=0.5), BALL._replace(x=(1.0, 0.1), e=0.8), FLOOR], (0.0, -G))
+ROUND = np.linspace(0.0, 2.0 * np.pi, 9, endpoint=False)
+NINE = make_model([Body((0.0, 1.0), 1.0, Polygon(tuple(zip(np.cos(ROUND), np.sin(ROUND), strict=True))))], (0.0, -G))
+IN_SPACE = make_model([SPACE_BOX], (0.0, 0.0, -G))
+REFUSED = [
+    (PYMUNK, IN_SPACE, "plane"), (BOX2D, IN_SPACE, "plane"),
+    (PYBULLET, make_model([BALL, MOVING], (0.0, -G)), "without mass"), (PYBULLET, ROD, "Distance"),
+    (MUJOCO, make_model([BALL, MOVING], (0.0, -G)), "without mass"), (MUJOCO, BOUNCY, "no restitution"),
+    (BOX2D, SEVERAL, "restitution"), (BOX2D, NINE, "8 corners"),
+    (PYMUNK, make_model([SPACE_BOX], (0.0, 0.0, -G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))]), "plane"),
+]
+
+
+@pytest.mark.parametrize(("product", "model", "word"), REFUSED)
+def test_what_an_engine_lacks_is_refused_by_name(product, model, word):
+    assert word in product.world.refuses(model)
+
+
+def test_reduced_coordinates_refuse_ball_joints():
+    model = make_model([SPACE_BOX], (0.0, 0.0, -G), [BallJoint(0, WORLD, (0.0, 0.0, 0.2))])
+    with pytest.raises(BadInput, match="BallJoint"):
+        run(PYBULLET, model, 0.01, 1, **REDUCED)
+
+
+@pytest.mark.parametrize("product", [PYMUNK, BOX2D], ids=str)
+def test_an_engine_of_the_plane_carries_a_belt(product):
+    model = make_model([Body((0.0, 0.1), 1.0, Box((0.2, 0.1)), 0.5), FLOOR._replace(v=(1.0, 0.0))], (0.0, -G))
+    state, _ = run(product, model, 0.5, 1000)
+    assert state.v[0, 0] == pytest.approx(1.0, abs=1e-3)
+    assert state.x[0, 0] == pytest.approx(0.5 - 0.5 / (0.5 * G), abs=2e-3)        # it slides for v / μg
+
+
+# ---------------------------------------------------------------------------------------------- what worlds derive
+
+def test_the_gap_of_two_shapes_is_their_distance():
+    at = lambda shape, x, q=None: make_model([Body(x, 1.0, shape, q=q)], (0.0,) * len(x)).bodies[0]
+    for a, b, distance, n in (
+            (at(Ball(0.1), (0.0, 0.0)), at(Ball(0.2), (0.0, 1.0)), 0.7, (0.0, -1.0)),
+            (at(Box((0.5, 0.5)), (0.0, 0.0)), at(Box((0.5, 0.5)), (1.0 + 0.3, 1.0 + 0.4)), 0.5, (-0.6, -0.8)),
+            (at(Box((0.5, 0.5)), (0.0, 0.0)), at(Box((0.5, 0.5)), (0.2, 0.9)), -0.1, (0.0, -1.0)),
+            (at(Capsule(1.0, 0.1), (0.0, 0.0), 0.5 * np.pi), at(Ball(0.1), (1.0, 0.5)), 0.8, (-1.0, 0.0)),
+            (at(Box((0.5,) * 3), (0.0,) * 3), at(Ball(0.1), (1.5, 1.5, 1.5)), np.sqrt(3.0) - 0.1, (-3**-0.5,) * 3),
+            (at(Capsule(1.0, 0.1), (0.0,) * 3), at(Capsule(1.0, 0.2), (0.0, 0.0, 1.0), (np.sqrt(0.5), 0.0, 0.0,
+                                                                                       np.sqrt(0.5))), 0.7,
+             (0.0, 0.0, -1.0))):
+        for one, other, sign in ((a, b, 1.0), (b, a, -1.0)):
+            found, way = derived.gap(one, other)
+            assert found == pytest.approx(distance, abs=1e-12)
+            assert way == pytest.approx(sign * np.array(n), abs=1e-9)
+
+
+def test_a_tower_is_pressed_in_from_the_floor_upwards():
+    model = make_model([*[box(0.0, 0.2 * k + 0.1, (0.1, 0.1), 1.0) for k in range(3)], box(0.5, 0.3, (0.1, 0.1), 1.0),
+                        FLOOR], (0.0, -G))
+    sunk = start_of(model).x - derived.pressed_in(model, 1e-6)
+    assert sunk[:, 1] == pytest.approx([1e-6, 2e-6, 3e-6, 0.0, 0.0], abs=1e-12) and not np.any(sunk[:, 0])
+
+
+def test_every_body_hangs_on_the_joint_that_leads_to_a_fixed_one():
+    bodies = [Body((float(k), 0.0), 1.0) for k in range(4)]
+    joints = [Hinge(2, 1, (1.5, 0.0)), Hinge(0, WORLD, (0.0, 0.0)), Hinge(1, 0, (0.5, 0.0)),
+              Hinge(2, WORLD, (2.0, 0.0))]
+    above, loops = derived.tree(make_model(bodies, (0.0, -G), joints))
+    assert above == {0: (WORLD, 1), 1: (0, 2), 2: (1, 0), 3: (WORLD, None)} and loops == [3]
+
+
+@pytest.mark.parametrize("product", BUILDERS, ids=str)
+def test_a_four_bar_stays_closed(product):
+    pins = np.array([(0.0, 0.0), (0.0, 0.4), (1.0, 0.9), (1.2, 0.0)])
+    rods = [Body(tuple(0.5 * (a + b)), 1.0, inertia=(b - a) @ (b - a) / 12.0) for a, b in pairwise(pins)]
+    joints = [Hinge(k, k - 1 if k else WORLD, tuple(pins[k])) for k in range(3)] + [Hinge(2, WORLD, tuple(pins[3]))]
+    model = make_model(rods, (0.0, -G), joints)
+    T, steps = 0.5, 1000
+    state, _ = run(product, model, T, steps)
+    c, s = np.cos(state.q[2]), np.sin(state.q[2])
+    arm = np.array(pins[3] - rods[2].x)
+    assert state.x[2] + (c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]) == pytest.approx(pins[3], abs=SOFT)
+    I = np.array([rod.inertia for rod in rods])
+    energy = 0.5 * np.sum(state.v**2) + 0.5 * I @ state.omega**2 + G * np.sum(state.x[:, 1] - start_of(model).x[:, 1])
+    assert abs(energy) <= 2.0 * G * 3.0 * T / steps * np.max(np.abs(state.v))     # order 1, with weight and speed
+
+
+# ---------------------------------------------------------------------------------------------- our loop beside them
+
+def belt_machine():
+    """Boxes on a plank on a belt, a capsule that falls on them, and a ball on a rod that hits them."""
+    bodies = [
+        FLOOR._replace(v=(-0.8, 0.0)),
+        Body((0.0, 0.05), 3.0, Box((0.6, 0.05)), mu=0.4),
+        Body((-0.3, 0.2), 1.0, Box((0.1, 0.1)), mu=0.4),
+        Body((0.0, 0.25), 1.0, Box((0.1, 0.15)), mu=0.4),
+        Body((0.3, 0.9), 0.5, Capsule(0.12, 0.06), mu=0.4, q=0.4),
+        Body((0.9, 0.9), 0.8, Ball(0.1), mu=0.3),
+        Body((0.6, 0.9), 0.2, inertia=0.2 * 0.6**2 / 12.0),
+    ]
+    return make_model(bodies, (0.0, -G), [Hinge(6, WORLD, (0.3, 0.9)), Hinge(5, 6, (0.9, 0.9))],
+                      [Spring(2, 3, (0.0, 0.0), (0.0, 0.0), 0.3, 50.0, 1.0)])
+
+
+def test_our_loop_and_pymunk_agree_the_longer_the_shorter_the_step():
+    """Two codes that share nothing but the Model: with a quarter of the step they are at most half as far apart."""
+    model, apart = belt_machine(), []
+    for rate in (240, 960):
+        dt = 1.0 / rate
+        worlds = ours.build(model, dt, sweeps=300, settled=1e-6), chipmunk.build(model, dt, ahead=1.0, iterations=300)
+        largest = 0.0
+        for _ in range(round(0.5 * rate)):
+            for world in worlds:
+                world.step()
+            x, other = (world.state().x[1:] for world in worlds)
+            largest = max(largest, np.max(np.hypot(*(x - other).T)))
+        apart.append(largest)
+    assert apart[1] < 0.03
+    assert apart[1] < 0.6 * apart[0]
+
+
+def test_our_loop_tells_the_forces_of_contacts_and_joints():
+    model = make_model([FLOOR, Body((0.0, 0.3), 2.0, Box((0.4, 0.3)), mu=0.5)], (0.0, -G))
+    world = ours.build(model, 1e-3, sweeps=1000, settled=1e-12)
+    for _ in range(50):
+        world.step()
+    on_box = sum((push.F if push.a == 1 else -push.F for push in world.pushes()), np.zeros(2))
+    assert on_box == pytest.approx((0.0, 2.0 * G), abs=1e-6)
+    hung = make_model([Body((0.0, -1.0), 2.0, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
+    world = ours.build(hung, 1e-3)
+    world.step()
+    (push,) = world.pushes()
+    assert (push.a, push.b, push.joint) == (0, WORLD, 0)
+    assert push.F == pytest.approx((0.0, 2.0 * G), abs=1e-9)
+    welded = make_model([Body((0.0, 0.0), 1.0, Box((0.1, 0.1))), Body((0.5, 0.0), 1.0, Box((0.1, 0.1)))], (0.0, -G),
+                        [Weld(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.25, 0.0))])
+    world = ours.build(welded, 1e-3)
+    world.step()
+    held = sum(push.F for push in world.pushes() if push.joint == 0)
+    assert held == pytest.approx((0.0, 2.0 * G), abs=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.xdist_group("compiled simulator")
+def test_our_compiled_loop_runs_every_part_as_the_plain_one_does():
+    if not modules.can_compile():
+        pytest.skip("numba has no wheel for this machine")
+    light = Body((0.0, 1.0), 1.0, Ball(0.2), e=0.5)
+    for model in (belt_machine(), make_model([light, FLOOR], (0.0, -G)),
+                  make_model([light._replace(mu=0.5), light._replace(x=(1.0, 1.0), mu=0.2), FLOOR], (0.0, -G)),
+                  make_model([light._replace(shape=None, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.5, 1.0))])):
+        worlds = [ours.build(model, 1e-3, compiled=kind) for kind in (False, True)]
+        for _ in range(700):
+            for world in worlds:
+                world.step()
+        plain, compiled = (world.state() for world in worlds)
+        assert compiled.x == pytest.approx(plain.x, abs=1e-9)
+        assert compiled.q == pytest.approx(plain.q, abs=1e-9)

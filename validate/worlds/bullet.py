@@ -1,0 +1,376 @@
+"""pybullet.  It pushes, then moves.  Friction and restitution of a pair are products, as in a Model.
+
+A planar Model moves in the plane x, z.  In maximal coordinates joints are constraints.  In reduced coordinates a tree
+of hinges is one body with links.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput
+from solutions.support.model import (
+    WORLD,
+    BallJoint,
+    Hinge,
+    State,
+    Weld,
+    can_move,
+    joined_pairs,
+    loads_at,
+    start_of,
+)
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+
+from ..engines.bullet import CONTACT_ERP, WARM, Bullet
+from ..reference.orientation import about, quaternion
+from . import Push, World, unsupported
+from .derived import (
+    Embedding,
+    acceleration_at_start,
+    bounces,
+    carries,
+    fastest,
+    grip,
+    pressed_in,
+    round_only,
+    smallest,
+    touches,
+    tree,
+    with_plain_springs,
+)
+
+OVERLAP = 1e-6               # [m]: a contact exists in the first step
+WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
+BREAKING = 0.02              # the engine's contactBreakingThreshold, over the size of a body [-]
+SLAB = 50.0                  # half size of the box that stands for a half-space [m]
+FAR = 1000.0                 # where bodies are while they get their moments [m]
+ARM = 0.5                    # distance from a joint of further points that are held together [m]
+TO_CAPSULE = (0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5))  # turns z, the engine's axis of a capsule, to x; w is last
+
+
+class Settings(NamedTuple):
+    """What cannot be derived from a Model."""
+    maximal: bool = True     # coordinates of bodies that move
+    iterations: int | None = None    # of the solver; None: 10 per joint, at least 100
+    ahead: float = 0.0       # share of a step by which the first velocities lag; ½ makes leapfrog
+    damped: bool = False     # keep the engine's default damping
+    overlap: float = OVERLAP  # of touching bodies at the start, where nothing bounces [m]
+    slop: float = OVERLAP    # overlap that it leaves, where nothing bounces [m]
+    erp: float = 1.0         # share of a joint's error that it takes back per step [-]
+    warm: float = WARM       # share of the last impulses with which the solver begins [-]
+    ground: bool | None = None       # maximal coordinates of fixed bodies; None: as those that move
+    lasts: float = 0.0       # [s]: until then a sliding contact is kept; 0: as the engine does
+    weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
+
+
+class Parts(NamedTuple):
+    """A world that is being built."""
+    pb: object
+    model: object
+    start: State
+    space: Embedding
+    settings: Settings
+    handles: list            # (body, link) of each body of the Model
+
+
+def refuses(model):
+    """Return why it cannot run a model, or ""."""
+    if carries(model):
+        return "in maximal coordinates it ignores the velocity of a body without mass"
+    return unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, HalfSpace, Hinge, BallJoint, Weld)
+
+
+def build(model, dt, **settings):
+    """Make a World.  Raises BadInput for joints that reduced coordinates do not have here."""
+    settings, model = Settings(**settings), with_plain_springs(model)
+    world = Bullet(dt)
+    parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies))
+    configure(parts, dt)
+    x = pressed_in(model, settings.overlap) if touches(model) and not bounces(model) else parts.start.x
+    linked = [] if settings.maximal else add_linked(parts, x)
+    for k in range(len(model.bodies)):
+        if k not in linked:
+            add_body(parts, k, x[k])
+    if settings.maximal and settings.weighed:
+        parts.pb.stepSimulation()
+    release(parts, x, settings.ahead * dt, linked)
+    parts.pb.setGravity(*parts.space.point(model.gravity).tolist())
+    join(parts)
+    clock = [0]
+
+    def step():
+        if model.springs or model.loads:
+            push(parts, clock[0] * dt)
+        clock[0] += 1
+        parts.pb.stepSimulation()
+
+    def close():
+        parts.pb.setPhysicsEngineParameter(erp=0.2, contactERP=CONTACT_ERP, contactSlop=1e-5,
+                                           restitutionVelocityThreshold=0.2)
+        world.close()
+    return World(step, lambda: state(parts), lambda: pushes(parts), close)
+
+
+def configure(parts, dt):
+    """Set the solver for impacts or for resting contacts."""
+    model, settings, impacts = parts.model, parts.settings, bounces(parts.model)
+    breaking = BREAKING
+    if np.isfinite(smallest(model)) and not impacts:
+        breaking = max(BREAKING, 1.2 * fastest(model, settings.lasts) * dt / smallest(model))
+    parts.pb.setPhysicsEngineParameter(
+        numSolverIterations=settings.iterations or max(100, 10 * len(model.joints)), erp=settings.erp,
+        warmStartingFactor=settings.warm, contactSlop=0.0 if impacts else settings.slop,
+        contactERP=0.0 if impacts else CONTACT_ERP, restitutionVelocityThreshold=0.0,
+        contactBreakingThreshold=breaking)
+
+
+# ---------------------------------------------------------------------------------------------- bodies
+
+def shape_of(parts, body, place=(0.0, 0.0, 0.0)):
+    """Return a shape of the engine, or −1; place: its centre in the frame of its body [m]."""
+    pb, shape, at = parts.pb, body.shape, {"collisionFramePosition": list(map(float, place))}
+    if isinstance(shape, Ball):
+        return pb.createCollisionShape(pb.GEOM_SPHERE, radius=shape.radius, **at)
+    if isinstance(shape, Box):
+        return pb.createCollisionShape(pb.GEOM_BOX, halfExtents=parts.space.half(shape.half).tolist(), **at)
+    if isinstance(shape, Capsule):
+        return pb.createCollisionShape(pb.GEOM_CAPSULE, radius=shape.radius, height=2.0 * shape.half_length,
+                                       collisionFrameOrientation=TO_CAPSULE, **at)
+    if isinstance(shape, Polygon):
+        return pb.createCollisionShape(pb.GEOM_MESH, vertices=parts.space.deep(shape.corners).tolist(), **at)
+    if isinstance(shape, HalfSpace):
+        if round_only(parts.model):
+            return pb.createCollisionShape(pb.GEOM_PLANE)
+        return pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[SLAB, SLAB, 1.0])
+    return -1
+
+
+def pose(parts, k, x):
+    """Return (place, quaternion with w last) of body k in the engine; a half-space is put where its plane is."""
+    shape = parts.model.bodies[k].shape
+    if not isinstance(shape, HalfSpace):
+        return parts.space.point(x).tolist(), last(quaternion(parts.space.frame(parts.start.q[k])))
+    n = parts.space.point(shape.normal)
+    axis = np.cross([0.0, 0.0, 1.0], n)
+    size = np.linalg.norm(axis)
+    R = about(axis / size, np.arctan2(size, n[2])) if size > 0.0 else np.diag((1.0, np.sign(n[2]), np.sign(n[2])))
+    depth = 0.0 if round_only(parts.model) else 1.0
+    return (-(shape.offset + depth) * n).tolist(), last(quaternion(R))
+
+
+def last(q):
+    """Return a quaternion with w last, as the engine has them."""
+    return np.roll(q, -1).tolist()
+
+
+def add_body(parts, k, x):
+    """Add a body without links; one in maximal coordinates is far from all others until `release`."""
+    body, settings = parts.model.bodies[k], parts.settings
+    free, (place, q) = can_move(body), pose(parts, k, x)
+    maximal = settings.maximal if free or settings.ground is None else settings.ground
+    away = free and settings.maximal and settings.weighed
+    made = parts.pb.createMultiBody(float(body.m) if free else 0.0, shape_of(parts, body),
+                                    basePosition=[FAR, FAR + 100.0 * k, FAR] if away else place, baseOrientation=q,
+                                    useMaximalCoordinates=int(maximal))
+    parts.handles[k] = made, -1
+    describe(parts, k)
+
+
+def describe(parts, k):
+    """Set the moments, the damping and the surface of body k."""
+    body, (one, link) = parts.model.bodies[k], parts.handles[k]
+    change = {"lateralFriction": grip(body), "restitution": body.e, "rollingFriction": 0, "spinningFriction": 0}
+    if can_move(body):
+        moments = np.minimum(np.broadcast_to(body.inertia, 3), WIDE).tolist()
+        change |= {"mass": body.m, "localInertiaDiagonal": moments}
+        if not parts.settings.damped:
+            change |= {"linearDamping": 0, "angularDamping": 0}
+    if bounces(parts.model):
+        change["contactProcessingThreshold"] = 0
+    if isinstance(body.shape, Polygon):
+        change["collisionMargin"] = 0.0                      # else a hull is a millimetre larger than its corners
+    parts.pb.changeDynamics(one, link, **change)
+    if can_move(body) and not parts.settings.damped and not parts.settings.maximal:
+        parts.pb.changeDynamics(one, link, maxJointVelocity=1e9)     # apart: a call with it changes the base
+
+
+def release(parts, x, age, linked):
+    """Put the bodies at their places with their velocities; age [s]: how old these are."""
+    a, alpha = acceleration_at_start(parts.model)
+    start, space = parts.start, parts.space
+    for k, body in enumerate(parts.model.bodies):
+        if not can_move(body) or k in linked:
+            continue
+        one = parts.handles[k][0]
+        parts.pb.resetBasePositionAndOrientation(one, *pose(parts, k, x[k]))
+        parts.pb.resetBaseVelocity(one, space.point(start.v[k] - age * a[k]).tolist(),
+                                   space.turning(start.omega[k] - age * alpha[k]).tolist())
+
+
+# ---------------------------------------------------------------------------------------------- joints
+
+def join(parts):
+    """Add the joints that are constraints, and let joined bodies pass through each other."""
+    pb, model = parts.pb, parts.model
+    loops = range(len(model.joints)) if parts.settings.maximal else tree(model)[1]
+    for n in loops:
+        joint = model.joints[n]
+        ends = [handle_of(parts, k, joint.place) for k in (joint.a, joint.b)]
+        for place in points_of(joint, model.d):
+            constrain(parts, joint, ends, place)
+    for a, b in map(tuple, joined_pairs(model)):
+        if WORLD not in (a, b) and model.bodies[a].shape is not None and model.bodies[b].shape is not None:
+            pb.setCollisionFilterPair(parts.handles[a][0], parts.handles[b][0], parts.handles[a][1],
+                                      parts.handles[b][1], 0)
+
+
+def points_of(joint, d):
+    """Return the points of the world that a joint holds together: one, two on an axis, or as many as fix a body.
+
+    In maximal coordinates the engine's own JOINT_FIXED ignores the orientation of its frames: it turns a body until its
+    axes are those of the other one.
+    """
+    place = np.array(joint.place)
+    if isinstance(joint, Weld):
+        return [place, *(place + ARM * np.eye(d)[:d if d == 3 else 1])]
+    if isinstance(joint, Hinge) and d == 3:
+        return [place - ARM * np.array(joint.axis), place + ARM * np.array(joint.axis)]
+    return [place]
+
+
+def handle_of(parts, k, place):
+    """Return (body, link) of body k; of the WORLD: a new fixed body without a shape, at the place."""
+    if k != WORLD:
+        return parts.handles[k]
+    place = parts.space.point(place).tolist()
+    return parts.pb.createMultiBody(0, -1, basePosition=place, useMaximalCoordinates=int(parts.settings.maximal)), -1
+
+
+def constrain(parts, joint, ends, place):
+    """Hold a place of the world together; the child is the world, or else a."""
+    space, own = parts.space, []
+    for k in (joint.a, joint.b):
+        R = np.eye(3) if k == WORLD else space.frame(parts.start.q[k])
+        base = joint.place if k == WORLD else parts.start.x[k]
+        own.append((R.T @ (space.point(place) - space.point(base))).tolist())
+    one, other = (0, 1) if joint.b == WORLD else (1, 0)
+    parts.pb.createConstraint(*ends[one], *ends[other], parts.pb.JOINT_POINT2POINT, [0, 0, 0], own[one], own[other])
+
+
+def add_linked(parts, x):
+    """Add each tree of joints as one body with links, and return the numbers of its bodies."""
+    above, _ = tree(parts.model)
+    kinds = {type(parts.model.joints[n]) for _, n in above.values() if n is not None}
+    if BallJoint in kinds:
+        raise BadInput("a joint in reduced coordinates", "a BallJoint", "take maximal coordinates, or hinges")
+    below = {k: [i for i in above if above[i][0] == k and above[i][1] is not None] for k in (WORLD, *above)}
+    linked = []
+    for k in below:
+        held = k == WORLD or not can_move(parts.model.bodies[k])
+        free = not held and above[k][1] is None
+        for root in (below[k] if held else [k] if free and below[k] else []):
+            linked += add_tree(parts, x, root, above, below)
+    return linked
+
+
+def add_tree(parts, x, root, above, below):
+    """Add one body with links, and return the numbers of its bodies, a parent before its children."""
+    space, start, model = parts.space, parts.start, parts.model
+    order = [root]
+    for k in order:
+        order += below[k]
+    hangs = above[root][1] is not None
+    rows, frames = [], {}                                     # (origin, R) of the frame of each link
+    for k in order:
+        R, n = space.frame(start.q[k]), above[k][1]
+        origin = space.point(x[k] if n is None else model.joints[n].place)
+        frames[k] = origin, R
+        if n is not None:
+            base, turn = frames.get(above[k][0], (np.zeros(3), np.eye(3)))
+            index = 0 if k == root else order.index(above[k][0]) + hangs
+            rows.append(link_of(parts, k, n, turn.T @ (origin - base), turn.T @ R, R.T @ (space.point(x[k]) - origin),
+                                index))
+    body = model.bodies[root]
+    base = {"baseMass": 0.0, "basePosition": [0, 0, 0]} if hangs else {
+        "baseMass": body.m, "baseCollisionShapeIndex": shape_of(parts, body),
+        "basePosition": frames[root][0].tolist(), "baseOrientation": last(quaternion(frames[root][1]))}
+    made = parts.pb.createMultiBody(**base, flags=parts.pb.URDF_USE_SELF_COLLISION,
+                                    **{name: [row[name] for row in rows] for name in rows[0]})
+    for n, k in enumerate(order, 0 if hangs else -1):
+        parts.handles[k] = made, n
+        describe(parts, k)
+    start_links(parts, order, above)
+    return order
+
+
+def link_of(parts, k, n, place, turn, centre, index):
+    """Return what createMultiBody takes for body k, which joint n holds."""
+    joint, pb, space = parts.model.joints[n], parts.pb, parts.space
+    axis = (np.array([0.0, -1.0, 0.0]) if space.flat else
+            space.frame(parts.start.q[k]).T @ joint.axis if isinstance(joint, Hinge) else np.eye(3)[0])
+    body = parts.model.bodies[k]
+    return {"linkMasses": body.m, "linkCollisionShapeIndices": shape_of(parts, body, centre),
+            "linkVisualShapeIndices": -1, "linkPositions": place.tolist(), "linkOrientations": last(quaternion(turn)),
+            "linkInertialFramePositions": centre.tolist(), "linkInertialFrameOrientations": [0.0, 0.0, 0.0, 1.0],
+            "linkParentIndices": index, "linkJointTypes": pb.JOINT_FIXED if isinstance(joint, Weld) else
+            pb.JOINT_REVOLUTE, "linkJointAxis": axis.tolist()}
+
+
+def start_links(parts, order, above):
+    """Switch the motors off and set the first rates of the hinges, and of a base that nothing holds."""
+    pb, start, space = parts.pb, parts.start, parts.space
+    for k in order:
+        (body, link), (parent, n) = parts.handles[k], above[k]
+        if n is None:
+            pb.resetBaseVelocity(body, space.point(start.v[k]).tolist(), space.turning(start.omega[k]).tolist())
+        elif isinstance(parts.model.joints[n], Hinge):
+            rate = start.omega[k] - (0.0 if parent == WORLD else start.omega[parent])
+            rate = rate if space.flat else rate @ parts.model.joints[n].axis
+            pb.setJointMotorControl2(body, link, pb.VELOCITY_CONTROL, force=0)
+            pb.resetJointState(body, link, 0.0, float(rate))
+
+
+# ---------------------------------------------------------------------------------------------- a step, and after it
+
+def state(parts):
+    """Return the State; a fixed body stays where the Model has it."""
+    pb, start, rows = parts.pb, parts.start, []
+    for body, link in parts.handles:
+        if link < 0:
+            rows.append((*pb.getBasePositionAndOrientation(body), *pb.getBaseVelocity(body)))
+        else:
+            seen = pb.getLinkState(body, link, 1, 1)
+            rows.append((*seen[:2], *seen[6:8]))
+    x, q, v, omega = (np.array(column) for column in zip(*rows))
+    now = parts.space.back(x, np.roll(q, 1, axis=1), v, omega)
+    for k, body in enumerate(parts.model.bodies):
+        if not can_move(body):
+            now.x[k], now.q[k] = start.x[k], start.q[k]
+    return now
+
+
+def push(parts, t):
+    """Apply springs and loads at time t [s] during the next step."""
+    pb, space, now = parts.pb, parts.space, state(parts)
+    F, tau = loads_at(parts.model, t, now)
+    for k, (body, link) in enumerate(parts.handles):
+        if can_move(parts.model.bodies[k]):
+            pb.applyExternalForce(body, link, space.point(F[k]).tolist(), space.point(now.x[k]).tolist(),
+                                  pb.WORLD_FRAME)
+            if np.any(tau[k]):
+                pb.applyExternalTorque(body, link, space.turning(tau[k]).tolist(), pb.WORLD_FRAME)
+
+
+def pushes(parts):
+    """Return the contact forces, one for each point.
+
+    The engine tells no forces of joints in maximal coordinates.  In reduced ones its joint reaction forces are not
+    those of the constraint: two rods that swing gave 17 N where MuJoCo and Box2D have 12 N.
+    """
+    number, found = {handle: k for k, handle in enumerate(parts.handles)}, []
+    for c in parts.pb.getContactPoints() or ():
+        if c[8] <= 0.0 or c[9] > 0.0:
+            F = c[9] * np.array(c[7]) + c[10] * np.array(c[11]) + c[12] * np.array(c[13])
+            found.append(Push(number[c[1], c[3]], number[c[2], c[4]], parts.space.push(F)))
+    return found

@@ -1,0 +1,172 @@
+"""pymunk (Chipmunk2D).  It moves, then pushes.  Friction and restitution of a pair are products, as in a Model."""
+
+import numpy as np
+
+from solutions.support.model import (
+    WORLD,
+    Distance,
+    Hinge,
+    State,
+    Weld,
+    can_move,
+    loads_at,
+    own_place,
+    start_of,
+    world_place,
+)
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+
+from ..engines.chipmunk import pymunk_space
+from . import Push, World, unsupported
+from .derived import acceleration_at_start, bounces, grip, in_plane, pressed_in, touches, with_plain_springs
+
+OVERLAP = 1e-6               # [m]: inside the slop, so that a contact exists in the first step
+SLOP = 1e-5                  # overlap that it leaves [m]
+THICK, LONG = 5.0, 1000.0    # radius and half length of the segment that stands for a half-space [m]
+
+
+def refuses(model):
+    """Return why it cannot run a model, or ""."""
+    if model.d == 3 and in_plane(model) is None:
+        return "it is an engine of the plane"
+    return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+
+
+def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop=SLOP):
+    """Make a World.  ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog."""
+    settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop}
+    if model.d == 3:
+        flat, lift = in_plane(model)
+        world = build(flat, dt, **settings)
+        return world._replace(state=lambda: lift(world.state()))
+    model = with_plain_springs(model)
+    space = pymunk_space(model.gravity)
+    space.collision_slop = slop
+    space.iterations = iterations or max(100, 10 * len(model.joints))
+    bodies = add_bodies(space, model, ahead * dt, overlap)
+    add_joints(space, model, bodies, bias)
+    add_springs(space, model, bodies)
+    rows = lambda name: np.array([getattr(body, name) for body in bodies], float)
+    state = lambda: State(rows("position"), rows("angle"), rows("velocity"), rows("angular_velocity"))
+    clock = [0]
+    if model.loads:
+        push_in_each_step(model, bodies, state, clock, dt)
+
+    def step():
+        space.step(dt)
+        clock[0] += 1
+    return World(step, state, lambda: pushes(bodies, dt))
+
+
+def add_bodies(space, model, ahead, overlap):
+    """Return the engine's bodies; ahead [s]: the age of the first velocities."""
+    import pymunk
+    start = start_of(model)
+    x = pressed_in(model, overlap) if touches(model) and not bounces(model) else start.x
+    a, alpha = acceleration_at_start(model)
+    v, omega, bodies = start.v + ahead * a, start.omega + ahead * alpha, []
+    for k, one in enumerate(model.bodies):
+        carries = np.any(start.v[k]) or np.any(start.omega[k])
+        body = (pymunk.Body(one.m, one.inertia) if can_move(one) else
+                pymunk.Body(body_type=pymunk.Body.KINEMATIC if carries else pymunk.Body.STATIC))
+        body.position, body.angle = tuple(x[k].tolist()), float(start.q[k])
+        body.velocity, body.angular_velocity = tuple(v[k].tolist()), float(omega[k])
+        space.add(body)
+        if one.shape is not None:
+            shape = shape_of(body, one.shape)
+            shape.friction, shape.elasticity = grip(one), one.e
+            space.add(shape)
+        bodies.append(body)
+    return bodies
+
+
+def shape_of(body, shape):
+    """Return a shape of the engine.  A half-space lies in the world, so its body is turned back."""
+    import pymunk
+    if isinstance(shape, Ball):
+        return pymunk.Circle(body, shape.radius)
+    if isinstance(shape, Box):
+        return pymunk.Poly.create_box(body, tuple(2.0 * h for h in shape.half))
+    if isinstance(shape, Capsule):
+        return pymunk.Segment(body, (-shape.half_length, 0.0), (shape.half_length, 0.0), shape.radius)
+    if isinstance(shape, Polygon):
+        return pymunk.Poly(body, list(shape.corners))
+    n = np.array(shape.normal)
+    middle, along = -(shape.offset + THICK) * n, LONG * np.array([n[1], -n[0]])
+    ends = [body.world_to_local(tuple((middle + way * along).tolist())) for way in (-1.0, 1.0)]
+    return pymunk.Segment(body, *ends, THICK)
+
+
+def ends_of(space, bodies, one):
+    """Return the engine's two bodies of a joint or a spring, b first."""
+    return [space.static_body if k == WORLD else bodies[k] for k in (one.b, one.a)]
+
+
+def add_joints(space, model, bodies, bias):
+    """Add the joints.  bias: share of an error that is left after one second."""
+    import pymunk
+    start = start_of(model)
+    for joint in model.joints:
+        b, a = ends_of(space, bodies, joint)
+        if isinstance(joint, Distance):
+            places = joint.place_b, joint.place_a
+            rod = pymunk.PinJoint(b, a, *places)
+            rod.distance = float(np.linalg.norm(world_place(start, joint.a, joint.place_a)
+                                                - world_place(start, joint.b, joint.place_b)))
+            made = [rod]
+        else:
+            anchors = [tuple(own_place(model, k, joint.place).tolist()) for k in (joint.b, joint.a)]
+            made = [pymunk.PivotJoint(b, a, *anchors)]
+            if isinstance(joint, Weld):
+                made.append(pymunk.GearJoint(b, a, a.angle - b.angle, 1.0))
+        for one in made:
+            one.error_bias, one.collide_bodies = bias, isinstance(joint, Distance)
+            space.add(one)
+
+
+def add_springs(space, model, bodies):
+    """Add the springs."""
+    import pymunk
+    for spring in model.springs:
+        space.add(pymunk.DampedSpring(*ends_of(space, bodies, spring), spring.place_b, spring.place_a,
+                                      spring.rest, spring.k, spring.c))
+
+
+def push_in_each_step(model, bodies, state, clock, dt):
+    """Give each body a velocity function with the loads.
+
+    The engine calls these after it has moved all bodies.  A force that is set before the step would belong to the old
+    positions, which is forward Euler.
+    """
+    import pymunk
+    memory, loads = {"step": None}, model._replace(springs=())
+
+    def now():
+        if memory["step"] != clock[0]:
+            memory.update(step=clock[0], loads=loads_at(loads, clock[0] * dt, state()))
+        return memory["loads"]
+
+    def pushed(k):
+        def update(body, gravity, damping, dt):
+            F, tau = now()
+            a = gravity[0] + F[k, 0] / body.mass, gravity[1] + F[k, 1] / body.mass
+            pymunk.Body.update_velocity(body, a, 1.0, dt)
+            body.angular_velocity += dt * float(tau[k]) / body.moment
+        return update
+    for k, body in enumerate(bodies):
+        if can_move(model.bodies[k]):
+            body.velocity_func = pushed(k)
+
+
+def pushes(bodies, dt):
+    """Return the contact forces, one for each pair.  The engine tells of a joint only how large its impulse was."""
+    import pymunk
+    number, found = {id(body): k for k, body in enumerate(bodies)}, {}
+
+    def add(arbiter):
+        a, b = (number[id(shape.body)] for shape in arbiter.shapes)
+        found[frozenset((a, b))] = Push(a, b, np.array(arbiter.total_impulse) / dt)
+    for body in bodies:
+        if body.body_type == pymunk.Body.DYNAMIC:
+            body.each_arbiter(add)
+    return list(found.values())

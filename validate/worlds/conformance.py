@@ -1,0 +1,257 @@
+"""A reader's own engine in every described scene: where it agrees with the truth, with which order, what it refuses.
+
+No theory of this engine is known, and it never meets that of another one.  So only its convergence is judged: whether
+its error vanishes with its step.
+"""
+
+import importlib.util
+import sys
+from collections.abc import Callable
+from contextlib import contextmanager
+from html import escape
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from solutions.checks import BadInput
+from solutions.support.model import State, start_of
+
+from ..check import Verdict
+from ..measure.accuracy import ASYMPTOTIC, Outcome, finite, relative, shown_order
+from ..run.store import writable
+from .described import DESCRIBED
+
+MOST = {True: 500, False: 2000}              # most steps of a run, quick or not, where there are enough shorter runs
+RUNS = 4                                     # of each scene
+LEAST_ORDER = 0.7                            # from which on an error vanishes with the step: single runs scatter
+EXACT = 1e-9                                 # error of a run that has no error but round-off [-]
+STUCK = 3.0                                  # error over the last changes: above it runs converge to another motion
+SHOWN = "shown, not judged"
+REFUSES, FAILS = "refuses", "fails"
+
+
+class Reader(NamedTuple):
+    """A reader's engine."""
+    name: str
+    build: Callable          # (model, dt) → a world with step() and state()
+    refuses: Callable        # (model) → a reason, or ""
+
+
+class Row(NamedTuple):
+    """One scene."""
+    scene: str
+    title: str
+    steps: tuple             # of each run
+    errors: tuple            # relative, of each run; None where it failed
+    order: float | None      # that the errors show
+    verdict: str
+    words: str               # the reason
+    others: dict             # {name of an engine: its error with the most steps, or the reason why it has none}
+
+
+# ---------------------------------------------------------------------------------------------- a file
+
+def load_engine(path):
+    """Return the Reader of a file.  Raises BadInput for one that cannot be run or has no build(model, dt)."""
+    path, thing = Path(path), f"the engine file {str(path)!r}"
+    if not path.is_file():
+        raise BadInput(thing, "not there", "name a Python file with build(model, dt)")
+    spec = importlib.util.spec_from_file_location(f"engine_of_a_reader_{path.stem}", path)
+    module = importlib.util.module_from_spec(spec)
+    with beside(path):
+        try:
+            spec.loader.exec_module(module)
+        except (Exception, SystemExit) as error:             # it is a program, and may do anything
+            raise BadInput(thing, f"not a program that runs ({sentence(error)})", "mend it") from None
+    for name, default in (("build", None), ("refuses", lambda model: "")):
+        if not callable(getattr(module, name, default)):
+            raise BadInput(f"{name} in {thing}", "missing or not a function",
+                           f"define {'build(model, dt)' if name == 'build' else 'refuses(model)'}")
+    return Reader(path.stem, module.build, getattr(module, "refuses", lambda model: ""))
+
+
+@contextmanager
+def beside(path):
+    """Let a file import its neighbours for the length of the block."""
+    sys.path.insert(0, str(path.resolve().parent))
+    try:
+        yield
+    finally:
+        sys.path.pop(0)
+
+
+def sentence(error):
+    """Return an exception in one line."""
+    lines = str(error).strip().splitlines()
+    return f"{type(error).__name__}: {lines[0]}" if lines else type(error).__name__
+
+
+# ---------------------------------------------------------------------------------------------- runs
+
+def run_to_end(build, described, p, steps, **settings):
+    """Return the Outcome of a run of `described` with parameters p, and close its world."""
+    model, world = described.model(p), None
+    try:
+        with np.errstate(all="ignore"):
+            world = build(model, described.scene.duration / steps, **settings)
+            for _ in range(steps):
+                world.step()
+            return finite(np.array(described.observe(checked_state(world.state(), model), p), float))
+    except (Exception, SystemExit) as error:                 # a reader's program may do anything
+        return Outcome(None, sentence(error))
+    finally:
+        if hasattr(world, "close"):
+            world.close()
+
+
+def checked_state(state, model):
+    """Return a State.  Raises BadInput unless it is (x, q, v, omega) with the shapes of the Model."""
+    right = start_of(model)
+    try:
+        rows = [np.array(one, float) for one in state]
+    except (TypeError, ValueError):
+        raise BadInput("state()", type(state).__name__, "return (x, q, v, omega), four arrays") from None
+    if [row.shape for row in rows] != [row.shape for row in right]:
+        raise BadInput("the shapes of state()", [row.shape for row in rows],
+                       f"return (x, q, v, omega) with the shapes {[row.shape for row in right]}")
+    return State(*rows)
+
+
+def measured(reader, name, others, most):
+    """Return the Row of a scene."""
+    described = DESCRIBED[name]
+    scene, p = described.scene, described.scene.parameters
+    truth = np.array(scene.truth(p, scene.duration), float)
+    steps = max(tuple(n for n in scene.steps if n <= most)[-RUNS:], scene.steps[:RUNS], key=len)
+    about = {"scene": name, "title": scene.title}
+    beside = {product.name: error_of(product, described, p, truth, steps[-1]) for product in others}
+    try:
+        why = reader.refuses(described.model(p))
+    except (Exception, SystemExit) as error:
+        return Row(**about, steps=(), errors=(), order=None, verdict=FAILS, words=f"refuses(model): {sentence(error)}",
+                   others=beside)
+    if why:
+        return Row(**about, steps=(), errors=(), order=None, verdict=REFUSES, words=str(why), others=beside)
+    found = [run_to_end(reader.build, described, p, n) for n in steps]
+    errors = tuple(None if one.failure else relative(one.observed, truth) for one in found)
+    rows = [{"dt": scene.duration / n, "steps": n, "error": error} for n, error in zip(steps, errors)]
+    order = shown_order(rows, 10.0 * scene.truth_uncertainty)
+    changes = [None if a.failure or b.failure else relative(b.observed, a.observed) for a, b in pairwise(found)]
+    verdict, words = judged(errors, changes, order, scene.truth_uncertainty)
+    if found[-1].failure:
+        verdict, words = FAILS, found[-1].failure
+    elif described.shown:
+        verdict, words = SHOWN, described.shown
+    return Row(**about, steps=steps, errors=errors, order=order, verdict=verdict, words=words, others=beside)
+
+
+def error_of(product, described, p, truth, steps):
+    """Return the error of a known engine, or the reason why it has none."""
+    why = product.world.refuses(described.model(p))
+    if why:
+        return why
+    settings = (described.settings or {}).get(product.name, {})
+    found = run_to_end(product.world.build, described, p, steps, **settings)
+    return found.failure or relative(found.observed, truth)
+
+
+def judged(errors, changes, order, uncertainty):
+    """Return (verdict, reason) from the errors of runs and from how much each run differs from the one before."""
+    last = errors[-1]
+    if last is None:
+        return FAILS, ""
+    if last <= EXACT + 10.0 * uncertainty:
+        return Verdict.AGREES.value, "no error but round-off"
+    if order is not None and order >= LEAST_ORDER and last < ASYMPTOTIC:
+        return Verdict.AGREES.value, f"its error vanishes with order {order:.1f}"
+    latest = changes[-2:]
+    if latest and None not in latest and last > STUCK * max(latest):
+        return Verdict.DEPARTS.value, f"its runs converge to another motion, {100.0 * last:.2g} % away"
+    if last >= ASYMPTOTIC:
+        return SHOWN, "its shortest step is too long here to judge"
+    return SHOWN, "its runs show no order yet"
+
+
+# ---------------------------------------------------------------------------------------------- what a reader gets
+
+def conform(path, names, others, quick, out, console):
+    """Run a reader's engine in these scenes, print a table, write a page, and return the exit code.
+
+    It is 1 where the engine fails or departs.  Raises BadInput for a bad file or a scene without a Model.
+    """
+    reader = load_engine(path)
+    for name in names:
+        if name not in DESCRIBED:
+            raise BadInput(f"scene {name!r}", "not a Model yet", f"choose from: {', '.join(DESCRIBED)}")
+    rows = []
+    with beside(Path(path)):
+        for name in names or DESCRIBED:
+            rows.append(measured(reader, name, others, MOST[quick]))
+            console.print(f"{name}: {rows[-1].verdict}", highlight=False, soft_wrap=True)
+    console.print(table(reader, rows))
+    page = writable(Path(out)) / f"engine-{reader.name}.html"
+    page.write_text(page_of(reader, rows, others), encoding="utf-8")
+    console.print(f"{summary(rows)}  Page: {page}", highlight=False, soft_wrap=True)
+    return int(any(row.verdict in (FAILS, Verdict.DEPARTS) for row in rows))
+
+
+def summary(rows):
+    """Return in how many scenes there is each verdict, in a sentence."""
+    counts = {verdict: sum(row.verdict == verdict for row in rows)
+              for verdict in (Verdict.AGREES.value, Verdict.DEPARTS.value, FAILS, SHOWN, REFUSES)}
+    return f"{len(rows)} scenes: " + "; ".join(f"{verdict} in {n}" for verdict, n in counts.items() if n) + "."
+
+
+def number(value):
+    """Return an error, or a dash."""
+    return "–" if value is None else f"{value:.1e}"
+
+
+def table(reader, rows):
+    """Return the table for a terminal."""
+    made = Table(title=f"{reader.name} against the truth")
+    for name in ("scene", "steps", "error", "order", "verdict", "reason"):
+        made.add_column(name)
+    for row in rows:
+        steps, error = (str(row.steps[-1]), number(row.errors[-1])) if row.steps else ("–", "–")
+        order = "–" if row.order is None else f"{row.order:.1f}"
+        made.add_row(row.scene, steps, error, order, row.verdict, row.words)
+    return made
+
+
+STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;color:#222}
+table{border-collapse:collapse;width:100%}th,td{text-align:left;vertical-align:top;padding:.3rem .6rem;
+border-bottom:1px solid #ccc}td.n{white-space:nowrap}.agrees{color:#04663a}.departs,.fails{color:#a3121f}
+.refuses,.shown{color:#555}@media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}
+.agrees{color:#6fce9b}.departs,.fails{color:#ff8c94}.refuses,.shown{color:#aaa}}"""
+
+
+def page_of(reader, rows, others):
+    """Return the page, which needs no other file."""
+    heads = ["scene", "errors of its runs", "order", "verdict", *(f"error of {product}" for product in others)]
+    body = "".join(f"<tr>{cells(row)}</tr>\n" for row in rows)
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{escape(reader.name)}: conformance</title><style>{STYLE}</style></head><body>
+<h1>Conformance of {escape(reader.name)}</h1>
+<p>{escape(summary(rows))}</p>
+<p>Each scene is one Model, from which every engine is built. An error is relative to the truth at the end of the scene.
+No theory of this engine is known here, so only its convergence is judged: it agrees where its error vanishes with its
+step, and departs where its runs converge to another motion. The other engines ran with the most steps of a row.</p>
+<table><thead><tr>{"".join(f"<th>{escape(head)}</th>" for head in heads)}</tr></thead><tbody>
+{body}</tbody></table></body></html>
+"""
+
+
+def cells(row):
+    """Return the cells of a row."""
+    runs = "<br>".join(f"{n} steps: {number(error)}" for n, error in zip(row.steps, row.errors)) or "–"
+    order = "–" if row.order is None else f"{row.order:.2f}"
+    kind = row.verdict.partition(",")[0]
+    others = "".join(f'<td class="n">{number(one)}</td>' if isinstance(one, float) else f"<td>{escape(one)}</td>"
+                     for one in row.others.values())
+    return (f'<td>{escape(row.title)}</td><td class="n">{runs}</td><td class="n">{order}</td>'
+            f'<td><strong class="{kind}">{escape(row.verdict)}</strong><br>{escape(row.words)}</td>{others}')

@@ -1,0 +1,276 @@
+"""What a world derives from a Model: touching pairs, overlaps at the start, bounds of speed, other dimensions.
+
+The geometry is independent of the lessons.  It tries every direction in which two shapes could be separated.
+"""
+
+from itertools import product
+
+import numpy as np
+
+from solutions.support.model import (
+    WORLD,
+    Distance,
+    Drag,
+    Spring,
+    State,
+    can_move,
+    friction_of,
+    loads_at,
+    restitution_of,
+    rotation_of,
+    start_of,
+    touching_pairs,
+    world_place,
+)
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, core_of, size_of
+
+TOUCH = 1e-9                 # gap at which two bodies count as touching at the start, over their size [-]
+STICKY = 1e6                 # stands for infinite friction in an engine [-]: its product with 0 is 0
+PLANE = 1e-12                # allowed distance from a vertical plane, over the largest coordinate [-]
+
+
+# ---------------------------------------------------------------------------------------------- contacts
+
+def touches(model):
+    """Return whether any two bodies could ever touch."""
+    return bool(touching_pairs(model))
+
+
+def bounces(model):
+    """Return whether any pair has restitution."""
+    return any(restitution_of(model, *pair) > 0.0 for pair in touching_pairs(model))
+
+
+def rubs(model):
+    """Return whether any pair has friction."""
+    return any(friction_of(model, *pair) > 0.0 for pair in touching_pairs(model))
+
+
+def carries(model):
+    """Return whether a body moves that no impulse moves, such as a belt."""
+    return any(not can_move(body) and (np.any(body.v) or np.any(body.omega)) for body in model.bodies)
+
+
+def grip(body):
+    """Return the friction of a body as a finite number [-]."""
+    return min(float(body.mu), STICKY)
+
+
+def core(body):
+    """Return (corners (k, d) in the world, radius, edges (m, d)): the body is all within the radius of their hull."""
+    if len(body.x) == 2 or isinstance(body.shape, Ball):
+        corners, radius = core_of(body.shape)
+        corners = np.zeros((1, len(body.x))) if isinstance(body.shape, Ball) else corners
+        edges = np.roll(corners, -1, axis=0) - corners
+    elif isinstance(body.shape, Capsule):
+        corners, radius = np.outer((1.0, -1.0), (body.shape.half_length, 0.0, 0.0)), body.shape.radius
+        edges = np.eye(3)[:1]
+    else:
+        corners, radius, edges = np.array(list(product(*((-h, h) for h in body.shape.half)))), 0.0, np.eye(3)
+    R = rotation_of(body.q)
+    return corners @ R.T + body.x, radius, edges @ R.T
+
+
+def directions(first, second, edges):
+    """Return unit vectors, among them the one in which two convex cores are farthest apart.
+
+    It runs between two corners, or from a corner across an edge, or across two edges.
+    """
+    between = (first[:, None] - second).reshape(-1, first.shape[1])
+    edges = edges / np.maximum(np.linalg.norm(edges, axis=1, keepdims=True), np.finfo(float).tiny)
+    across = (between[:, None] - (between @ edges.T)[:, :, None] * edges).reshape(between.shape[0] * len(edges), -1)
+    found = np.concatenate((between, across))
+    if first.shape[1] == 3 and len(edges) > 1:
+        found = np.concatenate((found, np.cross(edges[:, None], edges).reshape(-1, 3)))
+    lengths = np.linalg.norm(found, axis=1)
+    found = found[lengths > TOUCH * np.max(lengths)] / lengths[lengths > TOUCH * np.max(lengths), None]
+    return np.concatenate((found, -found))
+
+
+def gap(a, b):
+    """Return (distance [m], n from b to a) of two bodies with shapes; below zero where they overlap."""
+    if isinstance(a.shape, HalfSpace):
+        distance, n = gap(b, a)
+        return distance, -n
+    corners, radius, edges = core(a)
+    if isinstance(b.shape, HalfSpace):
+        n = np.array(b.shape.normal)
+        return float(np.min(corners @ n)) + b.shape.offset - radius, n
+    other, more, its = core(b)
+    ways = directions(corners, other, np.concatenate((edges, its)))
+    apart = np.min(corners @ ways.T, axis=0) - np.max(other @ ways.T, axis=0)
+    best = int(np.argmax(apart))
+    return float(apart[best]) - radius - more, ways[best]
+
+
+def contacts_at_start(model):
+    """Return [(a, b, n from b to a), …]: the pairs that touch at the start and do not overlap."""
+    found = []
+    for i, j in touching_pairs(model):
+        a, b = model.bodies[i], model.bodies[j]
+        sizes = [size_of(body.shape) for body in (a, b) if not isinstance(body.shape, HalfSpace)]
+        close = TOUCH * max(sizes, default=0.0)
+        if len(sizes) == 2 and np.linalg.norm(np.subtract(a.x, b.x)) > sum(sizes) + close:
+            continue
+        distance, n = gap(a, b)
+        if sizes and abs(distance) <= close:
+            found.append((i, j, n))
+    return found
+
+
+def pressed_in(model, depth):
+    """Return x (n, d) at the start, each body `depth` inside the one that carries it: engines then see a contact.
+
+    It begins at the fixed bodies, so a tower sinks by depth, 2 depth, 3 depth …
+    """
+    x, touching = start_of(model).x, contacts_at_start(model)
+    shift = {k: np.zeros(model.d) for k, body in enumerate(model.bodies) if not can_move(body)}
+    while True:
+        new = {one: shift[other] - depth * way for a, b, n in touching for one, other, way in ((a, b, n), (b, a, -n))
+               if one not in shift and other in shift}
+        if not new:
+            break
+        shift |= new
+    return np.array([x[k] + shift.get(k, 0.0) for k in range(len(x))])
+
+
+# ---------------------------------------------------------------------------------------------- motion
+
+def fastest(model, T):
+    """Return an upper bound of the speed until T [m/s], from the first speed and the fall.  Loads are not in it."""
+    start = start_of(model)
+    first = max([np.linalg.norm(start.v[k]) for k, body in enumerate(model.bodies) if can_move(body)], default=0.0)
+    return first + np.linalg.norm(model.gravity) * T
+
+
+def acceleration_at_start(model):
+    """Return (a (n, d), α) at the start, without contacts and joints: for a leapfrog start."""
+    start = start_of(model)
+    F, tau = loads_at(model, 0.0, start)
+    a, alpha = np.zeros_like(F), np.zeros_like(tau)
+    for k, body in enumerate(model.bodies):
+        if can_move(body):
+            a[k] = np.asarray(model.gravity) + F[k] / body.m
+            alpha[k] = tau[k] / body.inertia if model.d == 2 else 0.0
+    return a, alpha
+
+
+def with_plain_springs(model):
+    """Return the model with a spring, of stiffness 1/α, for each Distance that has a compliance."""
+    start, springs = start_of(model), []
+    soft = [joint for joint in model.joints if isinstance(joint, Distance) and joint.compliance > 0.0]
+    for joint in soft:
+        length = np.linalg.norm(world_place(start, joint.a, joint.place_a) - world_place(start, joint.b, joint.place_b))
+        springs.append(Spring(*joint[:4], float(length), 1.0 / joint.compliance))
+    return model._replace(springs=model.springs + tuple(springs),
+                          joints=tuple(joint for joint in model.joints if joint not in soft))
+
+
+def tree(model):
+    """Return ({body: (body above or WORLD, number of a joint or None)}, numbers of the joints that close loops).
+
+    Every body hangs on the first joint that leads to a fixed body.  The first body of a group that nothing holds is
+    free.  A Distance carries nothing.
+    """
+    left = [n for n, joint in enumerate(model.joints) if not isinstance(joint, Distance)]
+    above = {k: (WORLD, None) for k, body in enumerate(model.bodies) if not can_move(body)}
+    loops = []
+    known = {WORLD, *above}
+    while left:
+        n = next((n for n in left if known & {model.joints[n].a, model.joints[n].b}), None)
+        if n is None:
+            above[model.joints[left[0]].a] = (WORLD, None)
+            known.add(model.joints[left[0]].a)
+            continue
+        left.remove(n)
+        a, b = model.joints[n].a, model.joints[n].b
+        if a in known and b in known:
+            loops.append(n)
+            continue
+        child, parent = (a, b) if b in known else (b, a)
+        above[child] = (parent, n)
+        known.add(child)
+    return {k: above.get(k, (WORLD, None)) for k in range(len(model.bodies))}, loops
+
+
+# ---------------------------------------------------------------------------------------------- other dimensions
+
+def in_plane(model):
+    """Return (Model in the plane, lift) of a model in space whose motion stays in a vertical plane; None otherwise.
+
+    lift(State in the plane) → State in space.
+    """
+    if model.d == 2 or model.joints or model.springs or not all(isinstance(load, Drag) for load in model.loads):
+        return None
+    start, up = start_of(model), -np.asarray(model.gravity)
+    if any(body.shape is not None for body in model.bodies) or np.any(start.omega):
+        return None
+    up = up / np.linalg.norm(up) if np.any(up) else np.array([0.0, 0.0, 1.0])
+    flat = start.v - np.outer(start.v @ up, up)
+    along = flat[np.argmax(np.linalg.norm(flat, axis=1))]
+    if not np.any(along):
+        along = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+    frame = np.stack((along / np.linalg.norm(along), up))
+    beside = [array - array @ frame.T @ frame for array in (start.v, start.x - start.x[0])]
+    scale = max(1.0, np.max(np.abs(start.v)), np.max(np.abs(start.x)))
+    if max(np.max(np.abs(rows)) for rows in beside) > PLANE * scale:
+        return None
+    bodies = tuple(body._replace(x=tuple(frame @ body.x), v=tuple(frame @ body.v), q=0.0, omega=0.0,
+                                 inertia=float(np.max(body.inertia))) for body in model.bodies)
+    base = start.x[0] - start.x[0] @ frame.T @ frame
+    lift = lambda state: State(state.x @ frame + base, start.q, state.v @ frame, start.omega)
+    return model._replace(bodies=bodies, gravity=tuple(frame @ model.gravity)), lift
+
+
+class Embedding:
+    """Between the dimensions of a model and those of an engine in space: (x, y) is there (x, 0, y), ω is (0, −ω, 0)."""
+
+    def __init__(self, d):
+        self.flat = d == 2
+
+    def point(self, p):
+        """Return a vector (3,) of the engine."""
+        return np.array((p[0], 0.0, p[1]) if self.flat else p, float)
+
+    def turning(self, omega):
+        """Return an angular velocity or a torque (3,) of the engine."""
+        return np.array((0.0, -omega, 0.0) if self.flat else omega, float)
+
+    def frame(self, q):
+        """Return R (3, 3) of the engine for an orientation of the model."""
+        if not self.flat:
+            return rotation_of(q)
+        c, s = np.cos(q), np.sin(q)
+        return np.array([(c, 0.0, -s), (0.0, 1.0, 0.0), (s, 0.0, c)])
+
+    def half(self, half):
+        """Return the half sizes (3,) of a box; one of the plane is as deep as it is large."""
+        return np.array((half[0], max(half), half[1]) if self.flat else half, float)
+
+    def deep(self, corners):
+        """Return the corners (2k, 3) of the prism of a polygon, as deep as it is large."""
+        depth = np.max(np.abs(corners))
+        return np.array([(x, y, z) for x, z in corners for y in (-depth, depth)])
+
+    def back(self, x, q, v, omega):
+        """Return the State of the model: from the engine's vectors and quaternions (w, x, y, z)."""
+        x, q, v, omega = (np.array(rows, float) for rows in (x, q, v, omega))
+        if not self.flat:
+            return State(x, q, v, omega)
+        return State(x[:, ::2], -2.0 * np.arctan2(q[:, 2], q[:, 0]), v[:, ::2], -omega[:, 1])
+
+    def push(self, F):
+        """Return a force (d,) of the model."""
+        return F[::2].copy() if self.flat else np.array(F, float)
+
+
+def round_only(model):
+    """Return whether every shape that can move is a ball, so that a fixed plane needs no edges."""
+    return all(isinstance(body.shape, Ball | HalfSpace | None) for body in model.bodies)
+
+
+def smallest(model):
+    """Return the size of the smallest body that can move [m]; ∞ without one."""
+    sizes = [float(np.linalg.norm(body.shape.half)) if isinstance(body.shape, Box) else size_of(body.shape)
+             for body in model.bodies if body.shape is not None and can_move(body)]
+    return min(sizes, default=np.inf)

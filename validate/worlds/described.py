@@ -1,0 +1,237 @@
+"""Scenes as Models: what they are made of and what is compared, for every world.
+
+Parameters and truth stay with the scenes.
+"""
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.support.model import WORLD, BallJoint, Body, Drag, Hinge, Spring, make_model, rotation_of
+from solutions.support.shapes import Ball, Box, HalfSpace
+
+from ..reference.impulses import APART, COPIES
+from ..reference.orientation import about, quaternion
+from ..reference.springs import square_net
+from ..scene import Scene
+from ..scenes.friction import incline, stick_slip
+from ..scenes.impulses import cradle, oblique_discs
+from ..scenes.integrators import kepler, linear_drag, oscillator, throw
+from ..scenes.integrators._common import planet
+from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
+from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
+from ..scenes.springs import spring_net
+
+FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+SLAB = (1.0, 0.1)            # half sizes of a block that slides [m]
+OF_PYMUNK = "its truth is a run of pymunk"
+
+
+class Described(NamedTuple):
+    """A scene whose Model is known."""
+    scene: Scene
+    model: Callable          # (p) → Model
+    observe: Callable        # (State, p) → what the scene's truth(p, T) has
+    settings: dict | None = None     # {name of an engine: settings that cannot be derived from the Model}
+    shown: str = ""          # why an engine is shown here and not judged
+
+
+def arrays(rows):
+    """Return an array as a tuple of floats."""
+    return tuple(map(float, rows))
+
+
+# ---------------------------------------------------------------------------------------------- points and springs
+
+def thrown(p):
+    return make_model([Body((0.0, 0.0, 0.0), 1.0, v=(p.vx, p.vy, p.vz))], (0.0, 0.0, -p.g))
+
+
+def falls_through_air(p):
+    return make_model([Body((0.0, 0.0), 1.0, v=(p.vx, p.vy))], (0.0, -p.g), loads=[Drag(p.k)])
+
+
+def on_a_spring(p):
+    """The other end of the spring is two metres away, so that it pulls along x only."""
+    return make_model([Body((p.x0, 0.0), p.m)], (0.0, 0.0),
+                      springs=[Spring(0, WORLD, (0.0, 0.0), (-2.0, 0.0), 2.0, p.k, p.c)])
+
+
+def planet_and_sun(p):
+    x, v = planet(p)
+
+    def attraction(t, x, q, v, omega):
+        return -p.mu * x / np.sum(x * x, axis=1)[:, None] ** 1.5, np.zeros(omega.shape)
+    return make_model([Body(arrays(x), 1.0, v=arrays(v))], (0.0, 0.0), loads=[attraction])
+
+
+def net_of_springs(p):
+    net = square_net(p)
+    bodies = [Body(arrays(x), np.inf if n in net.fixed else net.m, v=arrays(v))
+              for n, (x, v) in enumerate(zip(net.x, net.v))]
+    springs = [Spring(i, j, (0.0, 0.0), (0.0, 0.0), rest, net.k, net.k_d)
+               for (i, j), rest in zip(net.pairs.tolist(), net.rest) if not {i, j} <= set(net.fixed)]
+    free = np.array([n not in net.fixed for n in range(len(net.x))])[:, None]
+    wind = lambda t, x, q, v, omega: (free * net.wind, np.zeros(omega.shape))
+    return make_model(bodies, arrays(net.gravity), springs=springs, loads=[wind, *([Drag(net.k_v)] if net.k_v else [])])
+
+
+# ---------------------------------------------------------------------------------------------- friction
+
+def block(gravity, mu, v, loads=()):
+    """A slab on a floor, with gravity tilted."""
+    return make_model([Body((0.0, SLAB[1]), 1.0, Box(SLAB), mu, v=(v, 0.0)), FLOOR], gravity, loads=loads)
+
+
+def on_a_slope(p):
+    return block(incline.tilted(p), p.mu, p.v0)
+
+
+def driven(p):
+    def push(t, x, q, v, omega):
+        F = np.zeros(x.shape)
+        F[0, 0] = p.force / p.m * np.cos(p.omega * t)
+        return F, np.zeros(omega.shape)
+    return block((0.0, -p.g), p.mu, 0.0, [push])
+
+
+def bowled(p):
+    return make_model([Body((0.0, p.R), p.m, Ball(p.R), p.mu, v=(p.v0, 0.0), inertia=p.shape * p.m * p.R**2), FLOOR],
+                      (0.0, -p.g))
+
+
+def see_bowled(s, p):
+    return np.array([s.x[0, 0], s.v[0, 0], -p.R * s.omega[0]])
+
+
+# ---------------------------------------------------------------------------------------------- impacts
+
+def row_of_balls(p):
+    x, v, _ = cradle.start(p)
+    return make_model([Body((x[k, i, 0], APART * k), 1.0, Ball(p.R), e=1.0, v=arrays(v[k, i]))
+                       for k in range(COPIES) for i in range(cradle.BALLS)], (0.0, 0.0))
+
+
+def see_row(s, p):
+    x, v = copies(s, cradle.BALLS)
+    return cradle.seen(x[:, :, 0], v[:, :, 0], p)
+
+
+def two_discs(p):
+    """All bodies have √e, so that each pair has e."""
+    x, v, _ = oblique_discs.start(p)
+    return make_model([Body((x[k, i, 0], x[k, i, 1] + APART * k), m, Ball(p.R), e=np.sqrt(p.e), v=arrays(v[k, i, :2]))
+                       for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))], (0.0, 0.0))
+
+
+def see_discs(s, p):
+    return np.concatenate(copies(s, 2), axis=2).ravel()
+
+
+def copies(s, bodies):
+    """Return (x, v), each (COPIES, bodies, 2), of copies that stand APART."""
+    x = s.x - np.outer(np.repeat(np.arange(COPIES), bodies), (0.0, APART))
+    return x.reshape(COPIES, bodies, 2), s.v.reshape(COPIES, bodies, 2)
+
+
+# ---------------------------------------------------------------------------------------------- many contacts
+
+def rows_of_dominoes(p):
+    """All bodies have √μ, so that each pair has μ."""
+    bodies, mu = [], float(np.sqrt(p.mu))
+    for k, t in enumerate(dominoes.moments()):
+        for x, q, v, omega in zip(*dominoes.begin(p, t)):
+            bodies.append(Body((x[0] + shift_of_row(k, p), x[1]), dominoes.MASS, Box((0.5 * p.width, 0.5 * p.height)),
+                               mu, q=q, v=arrays(v), omega=omega, inertia=dominoes.inertia(p)))
+    return make_model([*bodies, FLOOR._replace(mu=mu)], (0.0, -p.g))
+
+
+def shift_of_row(k, p):
+    """Return how far row k is from its place, so that rows do not meet [m]."""
+    return k * p.pitch * (p.n + 5)
+
+
+def see_dominoes(s, p):
+    rows = len(dominoes.moments())
+    shift = np.repeat([shift_of_row(k, p) for k in range(rows)], p.n)
+    x = s.x[:-1] - np.stack((shift, np.zeros(len(shift))), axis=1)
+    return np.concatenate([dominoes.corners(x[k:k + p.n], s.q[k:k + p.n], p) for k in range(0, len(x), p.n)])
+
+
+def wedge(p):
+    """The wedge is a box that cannot turn."""
+    x, q = moving_wedge.places(p), -moving_wedge.slope(p)
+    return make_model([Body(arrays(x[0]), p.M, Box((moving_wedge.LONG, moving_wedge.THICK)), q=q, inertia=np.inf),
+                       Body(arrays(x[1]), p.m, Box((p.half, p.half)), q=q), FLOOR], (0.0, -p.g))
+
+
+def see_wedge(s, p):
+    return np.array([s.x[0, 0], *s.x[1], s.v[0, 0], *s.v[1]])
+
+
+def many_parts(p):
+    """All bodies have √μ.  The floor is a belt, the crank a body without mass that turns."""
+    (x, q, half, m, v, omega), (hammer, anchor, rest, k, c), drag, mu, g, belt = machine.parts(p)
+    root = float(np.sqrt(mu))
+    bodies = [Body(arrays(x[n]), m[n], Box(arrays(half[n])), root, q=q[n], v=arrays(v[n]), omega=omega[n])
+              for n in range(len(m))]
+    return make_model([*bodies, FLOOR._replace(v=(belt, 0.0), mu=root)], (0.0, -g),
+                      springs=[Spring(hammer, WORLD, (0.0, 0.0), arrays(anchor), rest, k, c)], loads=[Drag(drag)])
+
+
+# ---------------------------------------------------------------------------------------------- joints
+
+def chain(p):
+    ends = rod_chain.straight(p)
+    rods = [Body(arrays(0.5 * (a + b)), p.m, q=np.arctan2(*(b - a)[::-1]), inertia=rod_chain.inertia(p))
+            for a, b in pairwise(ends)]
+    return make_model(rods, (0.0, -p.g), [Hinge(k, k - 1 if k else WORLD, arrays(ends[k])) for k in range(p.rods)])
+
+
+def cradle_on_rods(p):
+    angles = rod_cradle.angles(p)
+    balls = [Body(arrays(x), 1.0, Ball(p.R), e=1.0, q=q, inertia=rod_cradle.moment(p))
+             for x, q in zip(rod_cradle.centres(angles, p), angles)]
+    return make_model(balls, (0.0, -p.g), [Hinge(k, WORLD, arrays(x)) for k, x in enumerate(rod_cradle.pivots(p))])
+
+
+# ---------------------------------------------------------------------------------------------- in space
+
+def free_top(p):
+    return make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=arrays(p.moments()), omega=arrays(p.omega()))],
+                      (0.0, 0.0, 0.0))
+
+
+def top_on_its_tip(p):
+    R, m = about(np.array([1.0, 0.0, 0.0]), p.tilt), heavy_top.mass(p)
+    across = p.I1 - m * heavy_top.LENGTH**2
+    body = Body(arrays(heavy_top.LENGTH * R[:, 2]), m, q=arrays(quaternion(R)), omega=arrays(p.spin * R[:, 2]),
+                v=(0.0, 0.0, 0.0), inertia=(across, across, p.I3))
+    return make_model([body], (0.0, 0.0, -heavy_top.G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
+
+
+# ---------------------------------------------------------------------------------------------- all of them
+
+SLIDES = {"pybullet": {"lasts": incline.T}}  # a contact that slides is kept
+DESCRIBED = {                # name of the scene: Described
+    "throw": Described(throw.SCENE, thrown, lambda s, p: s.x[0]),
+    "linear_drag": Described(linear_drag.SCENE, falls_through_air, lambda s, p: s.x[0]),
+    "oscillator": Described(oscillator.SCENE, on_a_spring, lambda s, p: s.x[0, :1]),
+    "kepler": Described(kepler.SCENE, planet_and_sun, lambda s, p: s.x[0]),
+    "spring_net": Described(spring_net.SCENE, net_of_springs, lambda s, p: s.x.ravel()),
+    "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
+    "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
+    "slide_then_roll": Described(slide_then_roll.SCENE, bowled, see_bowled),
+    "cradle": Described(cradle.SCENE, row_of_balls, see_row),
+    "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
+    "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
+                              {"pybullet": {"slop": 0.0, "lasts": moving_wedge.T}}),
+    "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
+    "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
+    "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),
+    "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
+    "asymmetric_top": Described(asymmetric_top.SCENE, free_top, lambda s, p: rotation_of(s.q[0]).ravel()),
+    "heavy_top": Described(heavy_top.SCENE, top_on_its_tip, lambda s, p: rotation_of(s.q[0])[:2, 2]),
+}
