@@ -28,11 +28,9 @@ from ..support.model import (
     Drag,
     State,
     Weld,
-    can_move,
     can_turn,
     friction_of,
     own_place,
-    restitution_of,
     start_of,
     touching_pairs,
 )
@@ -315,13 +313,3 @@ def run_parts(loop, t, state, dt, steps):
     steps = whole_number("number of steps", steps, 0)
     padded = [part.step for part in loop.parts] + [leave] * (6 - len(loop.parts))
     return advance_parts(*padded, loop.load, loop.bounds, loop.narrow, t, state, dt, steps, loop.p)
-
-
-def has_restitution(model):
-    """Return whether any pair of shapes bounces."""
-    return any(restitution_of(model, i, j) > 0.0 for i, j in touching_pairs(model))
-
-
-def movable(model):
-    """Return the numbers of the bodies that impulses move."""
-    return [k for k, body in enumerate(model.bodies) if can_move(body)]
