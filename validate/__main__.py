@@ -17,7 +17,7 @@ from rich.table import Table
 
 from solutions.checks import BadInput
 
-from .products import PRODUCTS, PYBULLET, product_named
+from .products import BUILDERS, PRODUCTS, PYBULLET, product_named
 from .run.processes import Ended, alone_in, ending_once, one_sentence, workers
 from .run.store import FULL_RUN, SUBSET, lessons_of, report_of_this_version, stored_report, writable, write_text
 from .subject import copies, modules, needs
@@ -90,7 +90,7 @@ def validate(
 def own_engines(files, named, scenes, quick, out):
     """Run engines of the reader beside known ones, and return the exit code."""
     from .worlds.conformance import conform
-    return max(conform(file, scenes or [], installed(named), quick, out, console) for file in files)
+    return max(conform(file, scenes or [], installed(named, BUILDERS), quick, out, console) for file in files)
 
 
 @contextmanager
@@ -300,9 +300,9 @@ def require_answers(of, names):
                        "give --of lessons --plain")
 
 
-def installed(wanted):
-    """Return the engines of these names, or all that are installed.  Raises BadInput for one that is not."""
-    chosen = tuple(product_named(name) for name in wanted) or PRODUCTS
+def installed(wanted, known=PRODUCTS):
+    """Return the known engines of these names, or all that are installed.  Raises BadInput for one that is not."""
+    chosen = tuple(product_named(name, known) for name in wanted) or known
     for product in chosen if wanted else ():
         if not product.installed():
             raise BadInput(f"engine {product.name!r}", "not installed", product.remedy)

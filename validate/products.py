@@ -51,9 +51,9 @@ PRODUCTS = PYMUNK, PYBULLET, MUJOCO         # of the scenes and of the report
 BUILDERS = *PRODUCTS, BOX2D                 # of worlds from a Model
 
 
-def product_named(name):
-    """Return the engine of that name.  Raises BadInput for an unknown one."""
-    for product in PRODUCTS:
+def product_named(name, known=PRODUCTS):
+    """Return the known engine of that name.  Raises BadInput for another one."""
+    for product in known:
         if product.name == name:
             return product
-    raise BadInput(f"engine {name!r}", "unknown", f"choose from: {', '.join(map(str, PRODUCTS))}")
+    raise BadInput(f"engine {name!r}", "unknown", f"choose from: {', '.join(map(str, known))}")

@@ -25,11 +25,9 @@ from solutions.support.model import (
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 
 from ..engines import quiet_import
-from ..scene import EngineRun
 from . import Push, World, unsupported
 from .derived import acceleration_at_start, grip, in_plane, with_plain_springs
 
-SWITCHES = ()                # its binding has no switch that could be thrown in a world that is ready
 UNITS = 0.01                 # its unit of length [m]: the slop is then 0.05 mm and not 5 mm
 SUBSTEPS = 4                 # per step, by default
 MOST_CORNERS = 8             # of a polygon
@@ -42,12 +40,6 @@ def module():
     b2 = quiet_import("pyb2d3")
     b2.set_length_units_per_meter(UNITS)
     return b2
-
-
-def empty_world():
-    """Make the EngineRun of a world without bodies."""
-    world = new_world(module(), (0.0, 0.0))
-    return EngineRun(lambda: world.step(1e-3, SUBSTEPS), lambda: None, lambda: None)
 
 
 def new_world(b2, gravity):
