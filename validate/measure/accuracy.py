@@ -15,7 +15,6 @@ from . import film, traces
 from .selection import select, with_overrides
 
 ASYMPTOTIC = 0.5             # limits above this are not compared with a run [-]
-REFERENCE = "the truth here is a run of this engine: a reference, which counts nowhere"
 
 
 class Outcome(NamedTuple):
