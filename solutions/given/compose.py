@@ -43,6 +43,10 @@ from .parts import (
     accelerate_rest,
     advance_parts,
     close,
+    contact_impulses,
+    contact_impulses_of_centres,
+    contact_impulses_of_pairs,
+    contact_impulses_with_joints,
     detect_few,
     detect_many,
     detect_unjoined,
@@ -52,10 +56,6 @@ from .parts import (
     move,
     move_and_turn,
     separate,
-    solve,
-    solve_centres,
-    solve_jointed,
-    solve_pairs,
 )
 
 FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
@@ -196,12 +196,12 @@ def solver(model, touching):
     """Return the part that solves the contacts."""
     rubs = {friction_of(model, i, j) for i, j in touching}
     if model.joints:
-        return Part(solve_jointed, "contacts and joints")
+        return Part(contact_impulses_with_joints, "contacts and joints")
     if rubs == {0.0} and not turns(model):
-        return Part(solve_centres, "contacts; nothing rubs and nothing turns")
+        return Part(contact_impulses_of_centres, "contacts; nothing rubs and nothing turns")
     if len(rubs) == 1:
-        return Part(solve, "contacts with one friction")
-    return Part(solve_pairs, "contacts with several frictions")
+        return Part(contact_impulses, "contacts with one friction")
+    return Part(contact_impulses_of_pairs, "contacts with several frictions")
 
 
 def shapes_of_loop(model):

@@ -14,6 +14,7 @@ from ..contact import kept_impulses, velocity_sweep_2d
 from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
 from ..support.contact_points import ContactSet
+from ..support.records import check_record
 from ..support.scenes import PileState
 from .joints import close_joints_2d, hold_joints_2d, without_joined
 
@@ -179,23 +180,23 @@ def swept(sweep, state, dt, p):
     return PileState(x, q, v, omega, contacts, J)
 
 
-def solve(load, bounds, narrow, t, state, dt, p):
+def contact_impulses(load, bounds, narrow, t, state, dt, p):
     """Return the state after the impulses of all contacts, with one friction for all."""
     return swept(velocity_sweep_2d, state, dt, p)
 
 
-def solve_pairs(load, bounds, narrow, t, state, dt, p):
+def contact_impulses_of_pairs(load, bounds, narrow, t, state, dt, p):
     """Return the same with a friction of each pair."""
     return swept(sweep_pairs_2d, state, dt, p)
 
 
-def solve_centres(load, bounds, narrow, t, state, dt, p):
+def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
     return swept(sweep_centres_2d, state, dt, p)
 
 
-def solve_jointed(load, bounds, narrow, t, state, dt, p):
-    """Return the same as solve_pairs, with joints that are closed after every sweep."""
+def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
+    """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
     x, q, v, omega, contacts, J = state
     v, omega = close_joints_2d(x, q, v, omega, dt, p)
     if contacts.a.size == 0:
@@ -291,6 +292,7 @@ def advance_parts(first, second, third, fourth, fifth, sixth, load, bounds, narr
 
     They are arguments of their own, so that compiled code is kept on disk for each set of parts.
     """
+    check_record(p, state)
     for n in range(steps):
         now = t + n * dt
         state = first(load, bounds, narrow, now, state, dt, p)

@@ -58,34 +58,38 @@ def test_the_parts_are_those_that_the_model_needs_and_each_has_a_reason():
     assert names(make_model([ball._replace(shape=None)], (0.0, 0.0))) == ["move"]
     assert names(make_model([ball._replace(shape=None)], DOWN)) == ["accelerate", "move"]
     assert names(make_model([ball._replace(omega=1.0)], DOWN)) == ["accelerate", "move_and_turn"]
-    assert names(make_model([ball, FLOOR], DOWN)) == ["accelerate", "detect_few", "separate", "solve_centres", "move"]
-    assert names(make_model([box, FLOOR], DOWN))[1:] == ["detect_few", "separate", "solve", "move_and_turn"]
+    assert names(make_model([ball, FLOOR], DOWN)) == ["accelerate", "detect_few", "separate",
+                                                  "contact_impulses_of_centres", "move"]
+    assert names(make_model([box, FLOOR], DOWN))[1:] == ["detect_few", "separate", "contact_impulses", "move_and_turn"]
     two = [box, box._replace(x=(3.0, 2.0), mu=0.1), FLOOR]
-    assert names(make_model(two, DOWN))[3] == "solve_pairs"
+    assert names(make_model(two, DOWN))[3] == "contact_impulses_of_pairs"
     hinge = [Hinge(0, WORLD, (0.5, 2.5))]
     assert names(make_model([box], DOWN, hinge)) == [
         "accelerate_half", "close", "move_and_turn", "accelerate_rest", "hold"]
-    assert names(make_model([box, FLOOR], DOWN, hinge))[3] == "solve_jointed"
+    assert names(make_model([box, FLOOR], DOWN, hinge))[3] == "contact_impulses_with_joints"
     many = [box._replace(x=(3.0 * k, 2.0)) for k in range(9)]
     assert names(make_model([*many, FLOOR], DOWN))[1] == "detect_many"
     assert all(part.why for part in compose(make_model(two, DOWN)).parts)
 
 
+BOUNCING = make_model([Body((0.0, 0.9), 1.0, Ball(0.5), e=0.5, v=(1.0, 0.0)), FLOOR], DOWN)
+TIPPING = make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN)
+
+
 @pytest.mark.parametrize(("model", "left_out", "fuller"), [
-    (make_model([Body((0.0, 0.9), 1.0, Ball(0.5), e=0.5, v=(1.0, 0.0)), FLOOR], DOWN),
-     "solve_centres", "solve"),
-    (make_model([Body((0.0, 0.9), 1.0, Ball(0.5), e=0.5, v=(1.0, 0.0)), FLOOR], DOWN), "move", "move_and_turn"),
-    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "solve", "solve_pairs"),
-    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "detect_few", "detect_many"),
-    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "separate", "leave"),
-    (make_model([Body((0.0, 0.9), 1.0, Box((0.5, 0.3)), mu=0.5, q=0.3), FLOOR], DOWN), "solve_pairs", "solve_jointed"),
+    (BOUNCING, "contact_impulses_of_centres", "contact_impulses"),
+    (BOUNCING, "move", "move_and_turn"),
+    (TIPPING, "contact_impulses", "contact_impulses_of_pairs"),
+    (TIPPING, "detect_few", "detect_many"),
+    (TIPPING, "separate", "leave"),
+    (TIPPING, "contact_impulses_of_pairs", "contact_impulses_with_joints"),
 ], ids=lambda value: value if isinstance(value, str) else "model")
 def test_what_is_left_out_changes_no_motion(model, left_out, fuller):
     """A part in its fuller form gives the same motion to round-off."""
     loop = compose(model)
     steps = [part.step.__name__ for part in loop.parts]
     if left_out not in steps:                                          # the fuller one of one pair begins another pair
-        steps[steps.index("solve")] = left_out
+        steps[steps.index("contact_impulses")] = left_out
     fuller_steps = [fuller if name == left_out else name for name in steps]
     ends = []
     for chosen in (steps, fuller_steps):

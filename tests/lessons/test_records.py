@@ -76,10 +76,14 @@ EXAMPLES = (
 NO_RULE = {
     "BodyState2D": "impact_2d checks what it divides by", "BodyState3D": "check_impacts checks it",
     "RigidBodyState": "an argument of an exercise, no loop takes it", "MassProperties": "a result",
-    "Contact": "a result", "Contacts": "a result", "Box": "made and checked by make_box", "Pairs": "a result",
+    "Contact": "a result", "Contacts": "a result", "Pairs": "a result",
     "Tree": "made by build_tree", "Arms": "made anew per step", "JointArms": "made anew per step",
     "StepMatrix": "made anew per step", "Impact": "made anew per impact", "Sliding": "made anew per impact",
-    "Suspects": "made anew per step"}
+    "Suspects": "made anew per step",
+    **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "HalfSpace", "Hinge", "Model",
+                     "Polygon", "Spring", "Weld"), "make_model checks it"),
+    **dict.fromkeys(("Composed", "Cores", "Loop", "Part"), "made by compose from a checked Model"),
+    "Settings": "compose checks it", "State": "a result"}
 
 
 # ---------------------------------------------------------------------------------------------- found in the code
@@ -128,6 +132,7 @@ def test_every_loop_that_takes_a_record_checks_it(course):
 
 
 MADE_OF_CHECKED_PARTS = {"make_plane": "a unit normal by division", "make_box": "a Box has no rule",
+                         "make_model": "its records have no rule; model_checks.py checks them",
                          "make_contacts": "check_contacts of contact_forces checks it"}
 
 

@@ -322,15 +322,17 @@ WORLDS = {
 
 @functools.cache
 def record_units():
-    """{record: {field: unit}} of all records in the lessons: the units are in brackets after each field."""
+    """{(record, its fields): {field: unit}} of all records in the lessons; units are in brackets after each field."""
     found = {}
     for path in modules.SOLUTIONS.rglob("*.py"):
         for name, body in re.findall(r"^class (\w+)\(NamedTuple\):\n((?:    .*\n|\n)+)", path.read_text(), re.M):
             fields = re.findall(r"^    (\w+): ([^#\n]*)(?:#(.*))?$", body, re.M)
-            found[name] = {field: (re.findall(r"(?<!\w)\[([^]]+)\]", said) or [""])[0]
-                           for field, kind, said in fields if kind.strip() != "int"}
-    for name, units in found.items():
-        units.update({field: unit for field, unit in found.get(LIKE.get(name), {}).items() if field in units})
+            found[name, tuple(field for field, *_ in fields)] = {
+                field: (re.findall(r"(?<!\w)\[([^]]+)\]", said) or [""])[0]
+                for field, kind, said in fields if kind.strip() != "int"}
+    of_name = {name: units for (name, _), units in found.items()}
+    for (name, _), units in found.items():
+        units.update({field: unit for field, unit in of_name.get(LIKE.get(name), {}).items() if field in units})
         units.update({field: UNIT_OF_FIELD[field] for field in units if field in UNIT_OF_FIELD})
     return found
 
@@ -360,7 +362,8 @@ def scaled(value, spec, world):
     What is no number or has no unit stays as it is, such as the number of a body.
     """
     if hasattr(value, "_fields"):
-        units = record_units().get(type(value).__name__, {name: by_name(name, "", "") for name in value._fields})
+        by_names = {name: by_name(name, "", "") for name in value._fields}
+        units = record_units().get((type(value).__name__, value._fields), by_names)
         return type(value)(*(scaled(one, units.get(name, ""), world) for name, one in value._asdict().items()))
     if isinstance(value, (tuple, list)) and not all(map(np.isscalar, value)):
         return type(value)(scaled(one, spec, world) for one in value)

@@ -24,7 +24,7 @@ from validate.reference.orientation import about
 from validate.reference.simulator import rocking
 from validate.reference.stored import agreed
 from validate.scene import PYBULLET, PYMUNK, EngineRun, Scene, engine, no_limit, ours
-from validate.scenes._common import check_positives, constantly
+from validate.scenes._common import check_positives
 from validate.scenes.drawing import outlines
 
 T = 1.0                      # [s]
@@ -278,9 +278,9 @@ RUNNERS = (
     ours(SETTLED_LOOP, order=ABOUT_1, limit=limit, predicted=BY_CHANCE, most_in_quick=200,
          finer_in_full=(2000, 5000, 10_000, 20_000)),
     engine(PYMUNK, "", partial(pymunk_make, iterations=50, slop=1e-6), "50 iterations, collision_slop 1e-6",
-           order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=constantly(True)),
+           order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
     engine(PYMUNK, "default", partial(pymunk_make, iterations=10, slop=0.1), "10 iterations, collision_slop 0.1",
-           order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=constantly(True)),
+           order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
     engine(PYBULLET, "", partial(pybullet_make, iterations=50, residual=0),
            "boxes 0.4 m deep, maximal coordinates; solverResidualThreshold 0, contactSlop 1e-6, 50 iterations",
            order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED),
