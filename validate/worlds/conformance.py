@@ -223,7 +223,7 @@ def table(reader, rows):
 
 
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;color:#222}
-table{border-collapse:collapse;width:100%}th,td{text-align:left;vertical-align:top;padding:.3rem .6rem;
+.wide{overflow-x:auto}table{border-collapse:collapse;width:100%}th,td{text-align:left;vertical-align:top;padding:.3rem .6rem;
 border-bottom:1px solid #ccc}td.n{white-space:nowrap}.agrees{color:#04663a}.departs,.fails{color:#a3121f}
 .refuses,.shown{color:#555}@media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}
 .agrees{color:#6fce9b}.departs,.fails{color:#ff8c94}.refuses,.shown{color:#aaa}}"""
@@ -241,8 +241,8 @@ def page_of(reader, rows, others):
 <p>Each scene is one Model, from which every engine is built. An error is relative to the truth at the end of the scene.
 No theory of this engine is known here, so only its convergence is judged: it agrees where its error vanishes with its
 step, and departs where its runs converge to another motion. The other engines ran with the most steps of a row.</p>
-<table><thead><tr>{"".join(f"<th>{escape(head)}</th>" for head in heads)}</tr></thead><tbody>
-{body}</tbody></table></body></html>
+<div class="wide"><table><thead><tr>{"".join(f"<th>{escape(head)}</th>" for head in heads)}</tr></thead><tbody>
+{body}</tbody></table></div></body></html>
 """
 
 
