@@ -223,10 +223,11 @@ def table(reader, rows):
 
 
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;color:#222}
-.wide{overflow-x:auto}table{border-collapse:collapse;width:100%}th,td{text-align:left;vertical-align:top;
-padding:.3rem .6rem;border-bottom:1px solid #ccc}td.n{white-space:nowrap}.agrees{color:#04663a}.departs,.fails{color:#a3121f}
-.refuses,.shown{color:#555}@media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}
-.agrees{color:#6fce9b}.departs,.fails{color:#ff8c94}.refuses,.shown{color:#aaa}}"""
+.wide{overflow-x:auto}table{border-collapse:collapse;width:100%}td.n{white-space:nowrap}
+th,td{text-align:left;vertical-align:top;padding:.3rem .6rem;border-bottom:1px solid #ccc}
+.agrees{color:#04663a}.departs,.fails{color:#a3121f}.refuses,.shown{color:#555}
+@media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}.agrees{color:#6fce9b}
+.departs,.fails{color:#ff8c94}.refuses,.shown{color:#aaa}}"""
 
 
 def page_of(reader, rows, others):
