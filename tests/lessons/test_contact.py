@@ -418,7 +418,7 @@ def residuals_of_guesses(A, b):
     for pushing in itertools.product((False, True), repeat=len(b)):
         on, lam = np.array(pushing), np.zeros(len(b))
         lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
-        residual = np.max(np.abs(np.minimum(np.diag(A) * lam, A @ lam + b)))
+        residual = max(abs(min(a * push, u)) for a, push, u in zip(np.diag(A), lam, A @ lam + b, strict=True))
         if abs(residual / np.max(-b) - 1.0) > 1e-6 and residual > ROUND_OFF:
             yield residual
 
