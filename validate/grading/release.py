@@ -60,6 +60,8 @@ ALWAYS = {
 AUTHORS = {
     "validate/subject/generate.py",                       # makes the lessons from the answers
     "validate/speed/benchmark.py",                      # times the answers
+    "validate/worlds/conformance.py",                   # judges a reader's engine, in scenes of all lessons
+    "validate/worlds/described.py",
     "docs/grading.md",                            # for instructors
     "docs/instructors.md",
     "docs/plan.md",
