@@ -1,8 +1,8 @@
 """Given with lesson 10.  Our loop, put together from what a Model contains.
 
 compose(model) returns a Loop: the parts that the model needs, in the lecture's order, each with the reason why it is
-there.  What a model does not have, no part knows: without shapes nothing is searched for, without joints nothing is
-closed, and what cannot turn is not turned.  run_parts runs it.
+there.  A loop has no part for what its model lacks: without shapes it does not search for contacts, without joints it
+closes none, and bodies that cannot turn are only moved.  run_parts runs it.
 *Left out:* space; there make_bodies and the steps of lesson 10 serve.
 """
 
@@ -66,7 +66,7 @@ class Settings(NamedTuple):
     """How a model is solved; nothing here changes the motion that ever shorter steps approach."""
     sweeps: int = 100        # over all contacts in a step, at most
     settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]
-    margin: float = 0.0      # gap up to which a contact is found [m]; 0: a tenth of the smallest size of a shape
+    margin: float | None = None   # gap up to which a contact is found [m]; None: a tenth of the smallest shape's size
 
 
 class Composed(NamedTuple):
@@ -238,7 +238,7 @@ def rows_of(model, settings):
     inv_mass = np.array([1.0 / body.m for body in bodies] + [0.0])
     inv_inertia = np.array([1.0 / body.inertia for body in bodies] + [0.0])
     sizes = [size_of(body.shape) for body in bodies[:n]]
-    margin = positive_number("margin [m]", settings.margin or 0.1 * min(sizes, default=1.0))
+    margin = 0.1 * min(sizes, default=1.0) if settings.margin is None else settings.margin
     rubs = {friction_of(model, i, j) for i, j in touching_pairs(model)}
     joints = joints_of(model, row, inv_mass)
     ends, arms, laws = springs_of(model, row, len(bodies))
@@ -246,7 +246,8 @@ def rows_of(model, settings):
         inv_mass, inv_inertia, cores_of(bodies[:n]), lines_of(bodies[n:n + h]),
         np.array(model.gravity), rubs.pop() if len(rubs) == 1 else 0.0,
         np.array([body.mu for body in bodies] + [0.0]), np.array([body.e for body in bodies] + [0.0]),
-        pairs_of(model, row, n), settings.sweeps, float(settings.settled), margin, SLOP * min(sizes, default=1.0),
+        pairs_of(model, row, n), settings.sweeps, float(settings.settled), positive_number("margin [m]", margin),
+        SLOP * min(sizes, default=1.0),
         joints, ends, arms, laws, float(sum(load.k for load in model.loads if isinstance(load, Drag))))
     return p, PileState(x, q, v, omega, no_contacts(n, 2), np.zeros((0, 2))), row
 

@@ -8,6 +8,8 @@ and is made of exercises and given functions of lessons 9 and 10.  p is a Compos
 *Left out:* space; there the steps of lesson 10 serve.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..contact import kept_impulses, velocity_sweep_2d
@@ -20,6 +22,13 @@ from .joints import close_joints_2d, hold_joints_2d, without_joined
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
+
+
+class Smooth(NamedTuple):
+    """Bodies without friction, as velocity_sweep_2d reads them."""
+    inv_mass: np.ndarray     # (rows,) [1/kg]
+    inv_inertia: np.ndarray  # (rows,) [1/(kg m²)]
+    mu: float                # 0 [-]
 
 
 # ---------------------------------------------------------------------------------------------- forces
@@ -97,9 +106,9 @@ def detect_unjoined(load, bounds, narrow, t, state, dt, p):
 def parting_aims(contacts, v, omega, arms, dt, p):
     """Return u_n (m,) [m/s] below which no contact may leave: each pair has its own restitution.
 
-    A contact that is open may close, −gap/dt.  One that has closed leaves with −e u_n, if it comes faster than what
-    gravity adds in TRUE_IMPACT steps; what comes more slowly rests.  One with e > 0 that comes fast and is still open
-    has to close first, so nothing stops it in this step.
+    An open contact may close: −gap/dt.  A closed one leaves with −e u_n if it comes faster than what gravity adds in
+    TRUE_IMPACT steps; a slower one rests.  A fast contact with e > 0 that is still open is not stopped in this step,
+    because it has to close before it bounces.
     """
     u_n, aim = normal_velocities_2d(v, omega, contacts, arms), np.empty(contacts.a.size)
     rests = TRUE_IMPACT * dt * np.sqrt(p.gravity[0] ** 2 + p.gravity[1] ** 2)
@@ -124,7 +133,8 @@ def sweep_pairs_2d(v, omega, J, aim, give, contacts, arms, p):
         u_n, u_t = n_x * u_x + n_y * u_y, n_x * u_y - n_y * u_x
         J_n, J_t = n_x * J[k, 0] + n_y * J[k, 1], n_x * J[k, 1] - n_y * J[k, 0]
         J_n = max(0.0, J_n + (aim[k] - u_n) / arms.k_n[k])
-        limit = p.mu_of[a] * p.mu_of[b] * J_n if J_n > 0.0 else 0.0
+        rubs = J_n > 0.0 and p.mu_of[a] > 0.0 and p.mu_of[b] > 0.0
+        limit = p.mu_of[a] * p.mu_of[b] * J_n if rubs else 0.0
         J_t = min(max(J_t - u_t / arms.k_t[k], -limit), limit)
         d_x, d_y = J_n * n_x - J_t * n_y - J[k, 0], J_n * n_y + J_t * n_x - J[k, 1]
         J[k, 0], J[k, 1] = J[k, 0] + d_x, J[k, 1] + d_y
@@ -214,8 +224,9 @@ def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
 def separate(load, bounds, narrow, t, state, dt, p):
     """Return the state with bodies moved out of each other, and with the velocities that they have.
 
-    Sweeps without friction give velocities that remove PUSH_OUT of what is deeper than p.slop and open no other gap
-    wrongly.  The bodies move with them for dt and then lose them, so nothing gains kinetic energy.
+    Sweeps without friction find velocities that remove the share PUSH_OUT of each overlap deeper than p.slop.  Open
+    contacts may close.  The bodies move with these velocities for dt and then lose them, so nothing gains kinetic
+    energy.
     *Source:* split impulses, as in Bullet.
     """
     x, q, v, omega, contacts, J = state
@@ -226,32 +237,15 @@ def separate(load, bounds, narrow, t, state, dt, p):
         deep = -contacts.gap[k] - p.slop
         aim[k] = PUSH_OUT * deep / dt if deep > 0.0 else -max(contacts.gap[k], 0.0) / dt
     push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
+    smooth = Smooth(p.inv_mass, p.inv_inertia, 0.0)
     for _ in range(p.sweeps):
         before = J_push
-        push, spin, J_push = sweep_smooth_2d(push, spin, J_push, aim, contacts, arms, p)
+        push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, np.zeros(aim.size), contacts, arms, smooth)
         if is_settled(J_push, before, p):
             break
     gap = contacts.gap + dt * normal_velocities_2d(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
     return PileState(x + dt * push, q + dt * spin, v, omega, moved, J)
-
-
-def sweep_smooth_2d(v, omega, J, aim, contacts, arms, p):
-    """Return (v, omega, J) after a sweep over contacts without friction."""
-    v, omega, J = v.copy(), omega.copy(), J.copy()
-    for k in range(contacts.a.size):
-        a, b, n_x, n_y = contacts.a[k], contacts.b[k], contacts.n[k, 0], contacts.n[k, 1]
-        lever_a = arms.r_a[k, 0] * n_y - arms.r_a[k, 1] * n_x
-        lever_b = arms.r_b[k, 0] * n_y - arms.r_b[k, 1] * n_x
-        u_n = n_x * (v[a, 0] - v[b, 0]) + n_y * (v[a, 1] - v[b, 1]) + omega[a] * lever_a - omega[b] * lever_b
-        old = n_x * J[k, 0] + n_y * J[k, 1]
-        change = max(0.0, old + (aim[k] - u_n) / arms.k_n[k]) - old
-        J[k, 0], J[k, 1] = (old + change) * n_x, (old + change) * n_y
-        v[a, 0], v[a, 1] = v[a, 0] + p.inv_mass[a] * change * n_x, v[a, 1] + p.inv_mass[a] * change * n_y
-        v[b, 0], v[b, 1] = v[b, 0] - p.inv_mass[b] * change * n_x, v[b, 1] - p.inv_mass[b] * change * n_y
-        omega[a] += p.inv_inertia[a] * lever_a * change
-        omega[b] -= p.inv_inertia[b] * lever_b * change
-    return v, omega, J
 
 
 # ---------------------------------------------------------------------------------------------- joints and motion
@@ -283,7 +277,7 @@ def move_and_turn(load, bounds, narrow, t, state, dt, p):
 
 
 def leave(load, bounds, narrow, t, state, dt, p):
-    """Return the state: it stands where a model needs no further part."""
+    """Return the state unchanged.  It fills the places of a loop that has fewer than six parts."""
     return state
 
 

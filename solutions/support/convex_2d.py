@@ -1,10 +1,12 @@
 """Given.  Contact points of convex shapes of any kind in the plane, and of lines.
 
-A shape is a *core*, a convex polygon, and a radius: all points within the radius of the core.  A disc is one corner
-with a radius, a capsule is two, and a box or another polygon has the radius 0.  So one function serves every pair.
+Each shape has a *core*, which is a convex polygon, and a radius.  It contains all points within the radius of its core.
+The core of a disc is one corner, and that of a capsule has two.  Boxes and other polygons have the radius 0.  So one
+function serves every pair.
 
-Cores that are apart touch along the line between their nearest points.  Cores that overlap touch along the normal of
-the edge that they have to move least along (separating axes).  Where edges face each other there are two contacts.
+Cores that are apart touch along the line between their nearest points.  Where cores overlap, the
+normal is that of the edge along which the shortest motion separates them (separating axes).
+Where edges face each other there are two contacts.
 *Source:* Catto, Box2D's manifolds: a reference edge, and the other body's edge clipped to it.
 *Left out:* what is curved but not round; holes.
 """

@@ -6,8 +6,8 @@ worlds of `validate/worlds/` are built from it: our own loop, pymunk, pybullet, 
 d = 2: vectors are (x, y), an orientation is an angle [rad], and an angular velocity is a number.
 d = 3: vectors are (x, y, z), an orientation is a unit quaternion (w, x, y, z), an angular velocity is a vector (world).
 
-Two bodies touch with friction μ = μ_a μ_b and restitution e = e_a e_b.  So what carries others has 1, and the numbers
-of the other body count.  pymunk and pybullet have the same law.
+Two bodies touch with friction μ = μ_a μ_b and restitution e = e_a e_b.  Give floors and other supports 1; then the
+numbers of the other body are those of the pair.  pymunk and pybullet have the same law.
 *Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
 """
 
@@ -25,6 +25,7 @@ from .model_checks import (
     orientation,
     vector,
 )
+from .quaternions import rotate
 from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, moments_of_shape, outline_of
 
 WORLD = -1                   # in a joint or a spring: the world, which does not move
@@ -201,10 +202,7 @@ def rotation_of(q):
     """Return R (d, d) of an angle or of a unit quaternion: columns are the axes of the body in the world."""
     if np.ndim(q) == 0:
         return np.array([(np.cos(q), -np.sin(q)), (np.sin(q), np.cos(q))])
-    w, x, y, z = q
-    return np.array([(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-                     (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-                     (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))])
+    return np.stack([rotate(np.asarray(q), axis) for axis in np.eye(3)], axis=1)
 
 
 def own_place(model, k, place):
@@ -277,8 +275,9 @@ def touching_pairs(model):
 
 
 def friction_of(model, i, j):
-    """Return μ of a pair of bodies [-]."""
-    return model.bodies[i].mu * model.bodies[j].mu
+    """Return μ of a pair of bodies [-]; 0 where one of them has none, also where the other has ∞."""
+    a, b = model.bodies[i].mu, model.bodies[j].mu
+    return a * b if a > 0.0 and b > 0.0 else 0.0
 
 
 def restitution_of(model, i, j):

@@ -2,7 +2,16 @@
 
 import numpy as np
 
-from ..checks import BadInput, WrongShape, check_unit, finite_array, finite_number, number, positive_number
+from ..checks import (
+    BadInput,
+    WrongShape,
+    check_not_negative,
+    check_unit,
+    finite_array,
+    finite_number,
+    number,
+    positive_number,
+)
 from .records import check_principal_moments
 from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, polygon_centre
 
@@ -135,6 +144,5 @@ def check_spring(k, spring, free, d):
 def not_negative(thing, value):
     """Return value as a float.  Raises BadInput unless it is finite, and zero or more."""
     value = finite_number(thing, value)
-    if value < 0.0:
-        raise BadInput(thing, value, "give zero or more")
+    check_not_negative(thing, value)
     return value

@@ -239,7 +239,18 @@ def test_what_the_loop_cannot_run_is_named(model, why):
         compose(model)
 
 
-@pytest.mark.parametrize("settings", [{"sweeps": 0}, {"settled": -1.0}, {"margin": -0.1}, {"settled": np.nan}])
+@pytest.mark.parametrize("settings", [
+    {"sweeps": 0}, {"settled": -1.0}, {"margin": -0.1}, {"margin": 0.0}, {"settled": np.nan}])
 def test_settings_that_cannot_be_are_refused(settings):
     with pytest.raises(BadInput):
         compose(make_model([Body((0.0, 1.0), 1.0, Ball(0.5)), FLOOR], DOWN), Settings(**settings))
+
+
+def test_no_friction_beside_an_infinite_one_is_no_friction():
+    """A block without friction on a floor that prevents all slip slides as on ice; beside it another block sticks."""
+    floor = FLOOR._replace(mu=np.inf)
+    block = Body((0.0, 0.2), 1.0, Box((1.0, 0.2)), v=(1.0, 0.0))
+    bodies = [floor, block, block._replace(x=(10.0, 0.2), mu=0.5)]
+    s = run(make_model(bodies, DOWN), 0.5, 250)
+    assert s.x[1, 0] == pytest.approx(0.5, abs=1e-9)
+    assert s.v[2, 0] == pytest.approx(0.0, abs=1e-6)

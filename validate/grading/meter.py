@@ -6,7 +6,7 @@ Busy neighbours therefore cost nothing.  Without /proc, all time counts that pas
 import time
 from pathlib import Path
 
-WAKE = 1e-3                  # each message wakes one process and then the other, which takes up to so long [s]
+WAKE = 1e-3                  # longest time that a message takes to wake the other process [s]
 LOOK = 0.05                  # so often we look how a worker is that has not answered [s]
 MOST = 4.0 * LOOK            # most sleep counted per look, because this process may have waited for the processor [s]
 
