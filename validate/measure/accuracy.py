@@ -9,6 +9,7 @@ from solutions.checks import BadInput
 
 from ..check import Role, Verdict, jsonable
 from ..methods import engine_look
+from ..reference.stored import agreed
 from ..scene import ROUND_OFF, parameter_table
 from ..subject.modules import report_text
 from . import film, traces
@@ -37,6 +38,7 @@ def errors(name, plan):
     return jsonable({
         "scene": name, "quick": plan.quick, "title": scene.title, "lesson": scene.lesson, "story": scene.story,
         "moves": scene.moves, "refinement": scene.refinement, "T": scene.duration,
+        "agreed": any(agreed(name, p) for p in scene.cases.values()),
         "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
         **parity(selection, first),

@@ -39,7 +39,7 @@ def right(results, stability):
         "agree": count[Verdict.AGREES], "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
         "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
-        "truths": words.truths_by_engines(results),
+        "truths": words.truths_by_engines(results), "agreed": words.truths_by_agreement(results),
         "orders": len(ordered), "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
         "exact": sum(c["expected"] == EXACT and Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in every),
     }

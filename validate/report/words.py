@@ -102,6 +102,11 @@ def truths_by_engines(results):
     return found
 
 
+def truths_by_agreement(results):
+    """Return the results of the scenes whose truth is the motion on which our loop and an engine agree."""
+    return [result for result in results if result["agreed"]]
+
+
 def own_errors(curve):
     """Return [(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
     own = curve.get("own_law")

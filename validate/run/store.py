@@ -11,7 +11,7 @@ from solutions.checks import BadInput
 from ..products import PRODUCTS
 from ..subject import modules
 
-FORMAT = 2                   # of stored results: raise it when a report of before cannot be read any more
+FORMAT = 3                   # of stored results: raise it when a report of before cannot be read any more
 FULL_RUN = modules.ROOT / "validate" / "report" / "full_run.json"        # by `validate summary --keep`
 SUBSET = "subset"            # folder, inside the report's, for scenes that cannot join that report
 
