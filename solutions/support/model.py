@@ -308,20 +308,25 @@ def model_energy(model, state):
 def picture_of(model, state, width=3.0):
     """Return (points (k, 2) [m], links) of the outlines of all shapes in the plane, for a film.
 
-    A half-space is a line, `width` [m] to both sides of its body's place at the start.
+    A half-space is a line, `width` [m] to both sides of the point of it that is nearest to the origin.  A body without
+    a shape is a line through the places of its joints, such as a rod, or a point.
     """
     points, links = [], []
-    for body, x, q in zip(model.bodies, state.x, state.q):
+    for k, (body, x, q) in enumerate(zip(model.bodies, state.x, state.q)):
         if isinstance(body.shape, HalfSpace):
             n = np.array(body.shape.normal)
             middle = np.array(body.x) - body.shape.offset * n
             line = middle + width * np.outer((-1.0, 1.0), (n[1], -n[0]))
-            links.append((len(points), len(points) + 1))
+            closed = False
         elif body.shape is not None:
             line = x + outline_of(body.shape, 16)[:-1] @ rotation_of(q).T
-            k, last = len(points), len(points) + len(line) - 1
-            links += [*((i, i + 1) for i in range(k, last)), (last, k)]
+            closed = True
         else:
-            line = x[None]
+            held = [own_place(model, k, joint.place) for joint in model.joints
+                    if k in (joint.a, joint.b) and not isinstance(joint, Distance)]
+            line = x + np.array(held or [np.zeros(2)]) @ rotation_of(q).T
+            closed = False
+        first, last = len(points), len(points) + len(line) - 1
+        links += [*((i, i + 1) for i in range(first, last)), *[(last, first)] * closed]
         points += list(line)
     return np.array(points), links

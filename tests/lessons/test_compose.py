@@ -23,6 +23,8 @@ from solutions.support.model import (
     Spring,
     Weld,
     make_model,
+    picture_of,
+    start_of,
 )
 from solutions.support.shapes import polygon_centre
 
@@ -254,3 +256,13 @@ def test_no_friction_beside_an_infinite_one_is_no_friction():
     s = run(make_model(bodies, DOWN), 0.5, 250)
     assert s.x[1, 0] == pytest.approx(0.5, abs=1e-9)
     assert s.v[2, 0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_rod_without_a_shape_is_drawn_between_its_joints():
+    rod = Body((1.5, 0.0), 1.0, inertia=0.1, q=0.3)
+    model = make_model([rod, Body((2.0, 0.0), 1.0, Ball(0.1))], DOWN,
+                       [Hinge(0, WORLD, (1.0, 0.0)), Hinge(1, 0, (2.0, 0.0))])
+    points, links = picture_of(model, start_of(model))
+    assert points[:2] == pytest.approx(np.array([(1.0, 0.0), (2.0, 0.0)]))
+    assert links[0] == (0, 1)
+    assert np.hypot(*(points[2:] - (2.0, 0.0)).T) == pytest.approx(0.1)
