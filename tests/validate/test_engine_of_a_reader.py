@@ -129,6 +129,17 @@ def test_an_engine_that_fails_is_named_with_its_first_line(capsys, tmp_path, tex
     assert words in page.replace("&#x27;", "'")
 
 
+def test_an_engine_that_hangs_is_ended(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(conformance, "WITHIN", 0.3)
+    hangs = (
+        "def build(model, dt):\n    while True:\n"
+        "        try:\n            1 / 0\n        except Exception:\n            pass\n"
+    )
+    code, said, _, page = run(capsys, tmp_path, hangs, *of("throw", "cradle"))
+    assert code == 1 and verdicts(said) == {"throw": conformance.FAILS, "cradle": conformance.FAILS}
+    assert "still running after 0.3 s" in page
+
+
 def test_an_engine_may_import_its_neighbours_and_closes_its_worlds(capsys, tmp_path):
     (tmp_path / "neighbour_of_mine.py").write_text(EXAMPLE)
     text = ("from neighbour_of_mine import World as Theirs, refuses\nopened = []\nclass World(Theirs):\n"

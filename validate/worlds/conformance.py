@@ -22,6 +22,7 @@ from solutions.support.model import State, start_of
 from ..check import Verdict
 from ..measure.accuracy import ASYMPTOTIC, Outcome, finite, relative, shown_order
 from ..run.store import writable
+from ..subject.loading import TooLong, alarm
 from .described import DESCRIBED
 
 MOST = {True: 500, False: 2000}              # most steps of a run, quick or not, where there are enough shorter runs
@@ -29,6 +30,7 @@ RUNS = 4                                     # of each scene
 LEAST_ORDER = 0.7                            # from which on an error vanishes with the step: single runs scatter
 EXACT = 1e-9                                 # error of a run that has no error but round-off [-]
 STUCK = 3.0                                  # error over the last changes: above it runs converge to another motion
+WITHIN = 60.0                                # in which a reader's engine must end all runs of a scene [s]
 SHOWN = "shown, not judged"
 REFUSES, FAILS = "refuses", "fails"
 
@@ -135,7 +137,12 @@ def measured(reader, name, others, most):
                    others=beside)
     if why:
         return Row(**about, steps=(), errors=(), order=None, verdict=REFUSES, words=str(why), others=beside)
-    found = [run_to_end(reader.build, described, p, n) for n in steps]
+    try:
+        with alarm(WITHIN):
+            found = [run_to_end(reader.build, described, p, n) for n in steps]
+    except TooLong as error:
+        return Row(**about, steps=(), errors=(), order=None, verdict=FAILS,
+                   words=f"its runs of {steps[0]:,} to {steps[-1]:,} steps are {error}", others=beside)
     errors = tuple(None if one.failure else relative(one.observed, truth) for one in found)
     rows = [{"dt": scene.duration / n, "steps": n, "error": error} for n, error in zip(steps, errors)]
     order = shown_order(rows, 10.0 * scene.truth_uncertainty)
