@@ -12,6 +12,9 @@ import numpy as np
 from ..checks import UNIT, BadInput, WrongShape
 
 FLAT_BODY_TOLERANCE = 1e-12  # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
+SMALL = 2000                 # numbers in a state up to which a checked record is remembered [-]
+MOST_KNOWN = 64              # records that are remembered [-]
+CHECKED = set()              # the content of records that were found right
 ROUND = 1e-9                 # allowed difference of the moments of a round body, over the largest [-]
 
 
@@ -72,8 +75,32 @@ def check_record(p, state):
 
     state: the array whose rows p describes (x; the angles of an arm), or a PileState, which is checked as well.
     Compiled code passes over this call.  validate/subject/modules.py makes it in plain Python before the compiled loop
-    starts.
+    starts.  A small record that was checked before is known by its content, because a check takes as long as fifty
+    compiled steps.
     """
+    known = content(p), state.shape if isinstance(state, np.ndarray) else content(state)
+    if known in CHECKED:
+        return
+    check_all(p, state)
+    if np.size(getattr(state, "x", state)) <= SMALL:
+        if len(CHECKED) == MOST_KNOWN:
+            CHECKED.clear()
+        CHECKED.add(known)
+
+
+def content(value):
+    """Return a key that only values of the same types with the same content share, such as a record edited by hand and
+    then set back.
+    """
+    if isinstance(value, np.ndarray):
+        return value.dtype.char, value.shape, value.tobytes()
+    if isinstance(value, tuple):
+        return type(value), *map(content, value)
+    return (type(value), value) if type(value).__hash__ else object()      # a list equals nothing here
+
+
+def check_all(p, state):
+    """Raise BadInput unless a record can be and fits the state, as check_record does."""
     rule = RULES.get(getattr(p, "_fields", None))
     sizes = {}
     if hasattr(state, "_fields"):

@@ -243,6 +243,23 @@ def refused(said, record, state, **changed):
         check_record(record._replace(**changed), state)
 
 
+def test_a_record_that_was_right_is_checked_again_after_a_change():
+    """Right records are remembered by their content."""
+    rope = modules.bind("pbd").make_constraint_network(
+        np.array([[0.0, 0.0], [1.0, 0.0]]), 1.0, [0], [(0, 1)], 0.0, 1.0, (0.0, -9.81), 3)
+    x = np.zeros((2, 2))
+    check_record(rope, x)
+    rope.rest[0] = -1.0
+    with pytest.raises(BadInput, match="length"):
+        check_record(rope, x)
+    rope.rest[0] = 1.0
+    check_record(rope, x)
+    with pytest.raises((BadInput, WrongShape)):
+        check_record(rope, np.zeros((3, 2)))
+    with pytest.raises(BadInput, match="length"):
+        check_record(rope._replace(rest=[1.0]), x)
+
+
 def test_moments_are_those_that_a_body_can_have():
     solid, ball, state = rotation.RigidBody(1.0, moments), rotation.RollingBall(1.0, equal, 0.1, 0.3, down), still
     refused("no distribution of mass", solid, state, I_body=np.array([1.0, 1.0, 5.0]))

@@ -33,7 +33,7 @@ class Plan(NamedTuple):
 
     def time_limits(self):
         """Return {speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.25, 1.0)
+        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.1, 0.4)
         return {"plain": ours, "compiled": ours, "engine": engine}
 
     def repeats(self):

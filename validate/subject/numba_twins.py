@@ -63,8 +63,8 @@ class CachedDispatch:
 
     def __call__(self, *arguments):
         # a lesson's function may take another
-        arguments = [a.twin if isinstance(a, CachedDispatch | CheckedFirst) else a for a in arguments]
-        kinds = tuple(map(_kind, arguments))
+        arguments = [a.twin if type(a) in WRAPPED else a for a in arguments]
+        kinds = tuple([_kind(a) for a in arguments])
         if kinds not in self.known:
             from numba import typeof
             exact = tuple(map(typeof, arguments))
@@ -90,6 +90,9 @@ class CheckedFirst:
         return getattr(self.twin, name)
 
 
+WRAPPED = {CachedDispatch, CheckedFirst}
+
+
 def passed_over(p, state):
     """Stand in for check_record where compiled code calls it: CheckedFirst has made the call before."""
 
@@ -102,12 +105,18 @@ def cached_dispatch(function):
 
 
 def _kind(argument):
-    """Return the properties of an argument that decide which machine code it needs."""
-    if isinstance(argument, np.ndarray):
+    """Return the properties of an argument that decide which machine code it needs.
+
+    Every call asks for them, so what is frequent comes first.
+    """
+    kind = type(argument)
+    if kind is float or kind is int:
+        return kind
+    if kind is np.ndarray:
         return argument.dtype, argument.ndim, argument.flags.num
     if isinstance(argument, tuple):
-        return type(argument), *map(_kind, argument)
-    return argument if hasattr(argument, "py_func") else type(argument)
+        return kind, *[_kind(one) for one in argument]
+    return argument if hasattr(argument, "py_func") else kind
 
 
 @cache
