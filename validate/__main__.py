@@ -246,10 +246,11 @@ def piles(
     rounds: ROUNDS = 15,
     growth: Annotated[bool, typer.Option("--growth", help="How the cost of a step grows.")] = False,
     memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
+    figure: Annotated[Path | None, typer.Option(help="File for a picture of time against overlap.")] = None,
 ):
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""
     from .speed.piles import measure
-    measure(kinds or [], bodies, rounds, growth, memory)
+    measure(kinds or [], bodies, rounds, growth, memory, figure)
 
 
 @app.command("targets")

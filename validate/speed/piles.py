@@ -1,8 +1,9 @@
 """Piles of lesson 9 compared with engines, as ratios measured in one run: `validate piles [KIND …]`.
 
-Kinds: discs, boxes (in the plane, against pymunk), spheres, bricks (in space, against pybullet).  Both run the same
-bodies from the same settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping.  Times are CPU times of
-one thread.  Overlaps of both are found by lesson 6's geometry, that is by the contacts of lesson 9.
+Kinds: discs, boxes (in the plane), spheres, bricks (in space).  Ours and an engine run the same bodies from the same
+settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping, in a process of their own.  Times are CPU times
+of all its threads.  An engine runs with its defaults, and tuned until its bodies overlap about as little as ours.
+Overlaps are judged by `reference/overlaps.py`, which uses no code of the lessons.
 
 The cost of a step should grow as n to the power of 1, within a tenth, from 100 to 10,000 bodies; all sizes are timed in
 turn.  The memory is that of the whole process, compiler included, with 10,000 spheres: at most 4 GiB.
@@ -10,14 +11,23 @@ turn.  The memory is that of the whole process, compiler included, with 10,000 s
 
 import sys
 import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+from typing import NamedTuple
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from scipy.spatial.transform import Rotation
 
 from ..engines.contact import DT, KINDS, BulletPile, PymunkPile, fallen
+from ..products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER, Product
+from ..reference.overlaps import overlaps
 from ..scene import check_known
 from ..subject import modules
+from .opponents import Box2DPile, MuJoCoPile, RapierPile
 
 BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
@@ -25,13 +35,34 @@ SIZES = (100, 316, 1000, 3162, 10_000)  # bodies of the piles whose cost is comp
 LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
 GROWTH = (0.9, 1.1)          # goal: the power of n with which the cost of a step grows [-]
 ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
-REACH = 1e-3                 # gaps up to this are looked at when overlaps are measured [m]
-RIVALS = {                   # {kind: {label: (engine, iterations, goal: greatest ratio of times)}}
-    "discs": {"pymunk, 10 iterations": (PymunkPile, 10, 0.5)},
-    "boxes": {"pymunk, 10 iterations": (PymunkPile, 10, 0.5)},
-    "spheres": {"pybullet, 10 iterations": (BulletPile, 10, 0.25), "pybullet, 50 iterations": (BulletPile, 50, 0.1)},
-    "bricks": {"pybullet, 10 iterations": (BulletPile, 10, 0.5), "pybullet, 50 iterations": (BulletPile, 50, 0.3)},
-}
+
+
+class Rival(NamedTuple):
+    """An engine with its settings."""
+    product: Product
+    settings: str            # for people
+    make: Callable           # (kind, state, pile) → what has run(steps) and places()
+    goal: dict               # {kind: greatest ratio of times, ours over its}, where its bodies overlap as little
+
+
+PLANE = (
+    Rival(PYMUNK, "10 iterations", partial(PymunkPile, iterations=10), {"discs": 0.5, "boxes": 0.5}),
+    Rival(BOX2D, "defaults: 4 substeps, 30 Hz, slop 5 mm", Box2DPile, {}),
+    Rival(BOX2D, "2 substeps", partial(Box2DPile, substeps=2), {}),
+    Rival(BOX2D, "tuned: 4 substeps, 240 Hz, slop 0.5 mm", partial(Box2DPile, hertz=240.0, unit=0.1),
+          {"discs": 0.6, "boxes": 0.6}),
+)
+SPACE = (
+    Rival(PYBULLET, "10 iterations", partial(BulletPile, iterations=10), {"spheres": 0.25, "bricks": 0.5}),
+    Rival(PYBULLET, "50 iterations", partial(BulletPile, iterations=50), {"spheres": 0.1, "bricks": 0.3}),
+    Rival(RAPIER, "defaults: 4 iterations, 30 Hz, slop 1 mm", RapierPile, {}),
+    Rival(RAPIER, "2 iterations", partial(RapierPile, iterations=2), {}),
+    Rival(RAPIER, "tuned: 4 iterations, 120 Hz, slop 0.1 mm", partial(RapierPile, hertz=120.0, slop=1e-4),
+          {"spheres": 0.2, "bricks": 0.5}),
+    Rival(MUJOCO, "20 iterations of CG, contacts as stiff as two steps allow", MuJoCoPile, {}),
+)
+RIVALS = {2: PLANE, 3: SPACE}            # {dimension: engines}
+SETTLE_RIVAL = 480           # steps in which an engine settles from our state [-]
 
 
 def functions(lesson, kind):
@@ -55,40 +86,53 @@ class Ours:
         return self.state.x, self.state.q
 
 
-def overlaps(lesson, kind, pile, x, q):
-    """Return (largest, mean) overlap [mm] of all contacts that overlap."""
-    _, bounds, contacts = functions(lesson, kind)
-    low, high, turn = bounds(x, q, pile.half)
-    gap = contacts(x, turn, pile.half, pile.planes, lesson.near_pairs(low - REACH, high + REACH, pile.planes),
-                   REACH).gap
-    deep = -1e3 * gap[gap < 0.0]
-    return (deep.max(), deep.mean()) if len(deep) else (0.0, 0.0)
+def found_overlaps(kind, pile, x, q):
+    """Return (largest, mean) overlap [mm] of all pairs that overlap."""
+    n = len(pile.half)
+    depths = 1e3 * overlaps(x[:n], directions(q[:n]), pile.half, kind.shape == "round", pile.planes)
+    return (depths.max(), depths.mean()) if len(depths) else (0.0, 0.0)
+
+
+def directions(q):
+    """Return matrices (n, d, d) from angles (n,) [rad] or quaternions (n, 4), w first."""
+    if q.ndim == 1:
+        return np.stack((np.cos(q), -np.sin(q), np.sin(q), np.cos(q)), axis=1).reshape(-1, 2, 2)
+    return Rotation.from_quat(q[:, [1, 2, 3, 0]]).as_matrix()
 
 
 def cpu_time(work):
-    """Return milliseconds per step of one block."""
-    began = time.thread_time()
+    """Return milliseconds per step of one block, of all threads of this process."""
+    began = time.process_time()
     work.run(BLOCK)
-    return 1e3 * (time.thread_time() - began) / BLOCK
+    return 1e3 * (time.process_time() - began) / BLOCK
 
 
-def compare(lesson, name, n, rounds):
-    """Return rows (label, ratio, low, high, goal, ms, ms, overlaps) of one kind of pile, one for each engine."""
+class Race(NamedTuple):
+    """Ours and an engine in turn."""
+    ratios: np.ndarray       # (rounds,) times, ours over the engine's, sorted [-]
+    ours: float              # median time of a step [ms]
+    engine: float
+    overlap: tuple           # (largest, mean) of ours [mm]
+    overlap_engine: tuple
+
+
+def race(name, n, rival, rounds):
+    """Return the Race of one kind of pile against one engine."""
     kind = KINDS[name]
     state, pile = fallen(kind, n)
-    ours = Ours(lesson, kind, state, pile)
+    ours = Ours(modules.bind("contact", compiled=True), kind, state, pile)
     ours.run(round(SETTLE / DT))
-    for label, (engine, iterations, goal) in RIVALS[name].items():
-        try:
-            other = engine(kind, ours.state, pile, iterations)
-        except ImportError:
-            print(f"{name}: {label} is not installed here, so it is skipped", file=sys.stderr)
-            continue
-        other.run(240)
-        times = np.array([(cpu_time(ours), cpu_time(other)) for _ in range(rounds)])
-        ratios = np.sort(times[:, 0] / times[:, 1])
-        yield (label, np.median(ratios), ratios[rounds // 4], ratios[-1 - rounds // 4], goal, *np.median(times, axis=0),
-               *overlaps(lesson, kind, pile, *ours.places()), *overlaps(lesson, kind, pile, *other.places()))
+    other = rival.make(kind, ours.state, pile)
+    other.run(SETTLE_RIVAL)
+    times = np.array([(cpu_time(ours), cpu_time(other)) for _ in range(rounds)])
+    return Race(np.sort(times[:, 0] / times[:, 1]), *np.median(times, axis=0).tolist(),
+                found_overlaps(kind, pile, *ours.places()), found_overlaps(kind, pile, *other.places()))
+
+
+def alone(function, *arguments):
+    """Return what a function returns in a new process: some settings of Box2D hold for a whole process."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
+        return process.submit(function, *arguments).result()
 
 
 def landed(lesson, name, n):
@@ -132,29 +176,60 @@ def remember(lesson, n=10_000):
           f"{before:.2f} GiB before; goal: {ROOM:g} GiB")
 
 
-def race(lesson, names, bodies, rounds):
-    """Print the time of a step and the overlap, ours and each engine's."""
-    table = Table("pile", "engine", "time, ours / engine", "middle half", "goal", "ours [ms]", "engine [ms]",
-                  "overlap, ours [mm]", "engine [mm]")
+def compare(names, bodies, rounds):
+    """Return {kind: [(rival, its Race)]} of all engines that are installed; name those that are not."""
+    found = {}
     for name in names:
-        for row in compare(lesson, name, bodies, rounds):
-            label, ratio, low, high, goal, ours, other, most, mean, most_other, mean_other = row
-            table.add_row(f"{bodies} {name}", label, f"{ratio:.3f}", f"{low:.3f}–{high:.3f}", f"{goal:g}",
-                          f"{ours:.3f}", f"{other:.3f}",
-                          f"{most:.2f}, mean {mean:.3f}", f"{most_other:.2f}, mean {mean_other:.3f}")
-    Console(width=160).print(table)
+        rivals = RIVALS[KINDS[name].d]
+        for product in dict.fromkeys(rival.product for rival in rivals if not rival.product.installed()):
+            print(f"{name}: {product} is not installed here, so it is skipped: {product.remedy}", file=sys.stderr)
+        found[name] = [(rival, alone(race, name, bodies, rival, rounds))
+                       for rival in rivals if rival.product.installed()]
+    return found
 
 
-def measure(kinds, bodies, rounds, growth, memory):
+def show(races, bodies):
+    """Print the time of a step and the overlap, ours and each engine's."""
+    table = Table("pile", "engine", "settings", "time, ours / engine", "middle half", "goal", "ours [ms]",
+                  "engine [ms]", "overlap, ours [mm]", "engine [mm]")
+    for name, rows in races.items():
+        for rival, one in rows:
+            quarter, goal = len(one.ratios) // 4, rival.goal.get(name)
+            depths = (f"{most:.2f}, mean {mean:.3f}" for most, mean in (one.overlap, one.overlap_engine))
+            table.add_row(f"{bodies} {name}", rival.product.name, rival.settings, f"{np.median(one.ratios):.3f}",
+                          f"{one.ratios[quarter]:.3f}–{one.ratios[-1 - quarter]:.3f}", f"{goal:g}" if goal else "–",
+                          f"{one.ours:.3f}", f"{one.engine:.3f}", *depths)
+    Console(width=200).print(table)
+
+
+def draw(races, bodies, path):
+    """Draw time against overlap of all engines and of ours, one picture for each kind: the lower left is best."""
+    import matplotlib.pyplot as plt
+    figure, panels = plt.subplots(1, len(races), figsize=(4.4 * len(races), 4.2), squeeze=False, layout="constrained")
+    for panel, (name, rows) in zip(panels[0], races.items()):
+        panel.scatter(*zip(*[(one.overlap[1], one.ours) for _, one in rows]), color="#0072B2", marker="o", label="ours")
+        for rival, one in rows:
+            panel.scatter(one.overlap_engine[1], one.engine, color=rival.product.colour, marker=rival.product.marker,
+                          label=f"{rival.product}, {rival.settings.partition(':')[0]}")
+        panel.set(xscale="log", yscale="log", title=f"{bodies:,} {name}", xlabel="mean overlap [mm]",
+                  ylabel="CPU time of a step [ms]")
+        panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.18))
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def measure(kinds, bodies, rounds, growth, memory, figure=None):
     """Print the memory, the growth, or else the races of some kinds of piles; of all without names.
 
-    Raises BadInput for an unknown kind.
+    figure: a file for a picture of the races.  Raises BadInput for an unknown kind.
     """
     check_known("pile", kinds, KINDS)
-    lesson = modules.bind("contact", compiled=True)
     if memory:
-        remember(lesson)
+        remember(modules.bind("contact", compiled=True))
     if growth:
-        grow(lesson, kinds or KINDS, rounds)
+        grow(modules.bind("contact", compiled=True), kinds or KINDS, rounds)
     if not (memory or growth):
-        race(lesson, kinds or KINDS, bodies, rounds)
+        races = compare(kinds or KINDS, bodies, rounds)
+        show(races, bodies)
+        if figure:
+            draw(races, bodies, figure)
