@@ -12,6 +12,7 @@ from validate.measure.accuracy import Outcome, judged
 from validate.measure.races import races
 from validate.methods import INTEGRATORS, RK4, VERLET
 from validate.scene import PYMUNK, Departure, Method, Runner, no_limit, ours
+from validate.scenes._common import cases_with
 from validate.subject import modules
 
 PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)
@@ -92,6 +93,15 @@ def test_a_case_that_the_scene_has_not_is_refused():
         replace(scene, runners=(runner,))
     with pytest.raises(BadInput, match="faling"):
         replace(scene, slow_cases=("faling",))
+
+
+def test_a_runner_names_only_cases_that_there_are():
+    """A misspelt pair of shapes would otherwise leave its case to the other runners."""
+    cases = modules.bind_scene("distances").cases
+    supports = cases_with("pair", ("ball, ball", "box, plane"), cases)
+    assert [name for name, p in cases.items() if supports(p)] == ["ball, ball", "box, plane"]
+    with pytest.raises(BadInput, match="'ball, bal', is unknown"):
+        cases_with("pair", ("ball, ball", "ball, bal"), cases)
 
 
 def test_a_limit_may_be_one_number_or_one_for_each_order():
