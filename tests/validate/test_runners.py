@@ -10,7 +10,7 @@ from validate import measure, methods
 from validate.check import Verdict, Whose
 from validate.measure.accuracy import Outcome, judged
 from validate.measure.races import races
-from validate.methods import INTEGRATORS, RK4, VERLET
+from validate.methods import INTEGRATORS, VERLET
 from validate.scene import PYMUNK, Departure, Method, Runner, no_limit, ours
 from validate.scenes._common import cases_with
 from validate.subject import modules
@@ -40,14 +40,28 @@ def test_a_method_is_a_function_of_its_lesson():
     assert METHODS and not lacking
 
 
-def test_a_new_label_changes_ink_and_nothing_else():
-    """Runge–Kutta 4 keeps its prediction under every name."""
-    scene = modules.bind_scene("quadratic_drag")
-    renamed = tuple(replace(r, who=r.who._replace(label="RK4")) if r.who is RK4 else r for r in scene.runners)
-    before, after = (measure.errors("quadratic_drag", PLAIN._replace(changes=changes))
+def test_new_labels_change_ink_and_nothing_else():
+    """Every method keeps its prediction, and every setting of an engine its law, under every name."""
+    scene, plan = modules.bind_scene("quadratic_drag"), PLAIN._replace(live=(PYMUNK,))
+    renamed = tuple(renamed_runner(r, n) for n, r in enumerate(scene.runners))
+    before, after = (next(iter(measure.errors("quadratic_drag", plan._replace(changes=changes))["cases"].values()))
                      for changes in ((), (("runners", renamed),)))
-    assert of_ours(before) == of_ours(after)
-    assert "RK4" in [curve["label"] for curve in after["cases"]["falling"]["ours"]]
+    for part, name in (("ours", "method 2"), ("engines", "pymunk, setting")):
+        assert facts(before[part]) == facts(after[part])
+        assert any(curve["label"].startswith(name) for curve in after[part])
+
+
+def renamed_runner(runner, n):
+    """The same runner under another name; a record of pybullet is found by its name."""
+    if not runner.is_engine:
+        return replace(runner, who=runner.who._replace(label=f"method {n}"))
+    return replace(runner, who=runner.who._replace(variant=f"setting {n}")) if runner.who.product == PYMUNK else runner
+
+
+def facts(curves):
+    """Everything about curves but ink."""
+    return [{key: value for key, value in curve.items() if key not in ("label", "variant", "line", "marker")}
+            for curve in curves]
 
 
 def test_without_its_prediction_a_curve_is_still_judged_by_its_limit():
@@ -56,6 +70,11 @@ def test_without_its_prediction_a_curve_is_still_judged_by_its_limit():
     result = measure.errors("quadratic_drag", PLAIN._replace(changes=(("runners", without),)))
     for curve in of_ours(result):
         assert curve["verdict"] == "agrees" and all(row["predicted"] is None for row in curve["rows"])
+
+
+def test_a_runner_whose_prediction_is_left_out_is_refused():
+    with pytest.raises(TypeError, match="predicted"):
+        ours(VERLET, limit=limit)
 
 
 @pytest.mark.parametrize(("field", "value", "says"), [
