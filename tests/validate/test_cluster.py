@@ -1,4 +1,4 @@
-"""`validate --executor`: the same results as here, whatever happens to a worker.
+"""`validate --executor`: the same results as here, also where a worker dies.
 
 The scheduler and two workers are real processes on the loopback.
 """
