@@ -119,7 +119,7 @@ def test_reports_without_common_records_are_refused_by_their_formats(report, old
     new = {**copy.deepcopy(report), "run": {"format": FORMAT}}
     report["run"] = old_format
     del first_curve(report)["verdict"]
-    with pytest.raises(BadInput, match=f"formats are {names} and {FORMAT}"):
+    with pytest.raises(BadInput, match=f"with the formats {names} and {FORMAT}:"):
         changes(report, new)
 
 

@@ -34,7 +34,7 @@ def changes(old, new):
         return [*verdicts(old, new), *findings(old, new), *orders_and_errors(old, new), *times(old, new)]
     except (KeyError, TypeError, ValueError):
         formats = " and ".join(map(format_of, (old, new)))
-        raise BadInput("the two reports", f"not comparable: their formats are {formats}",
+        raise BadInput("this pair of reports", f"not comparable, with the formats {formats}",
                        "make one of them again") from None
 
 

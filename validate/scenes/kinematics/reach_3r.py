@@ -180,7 +180,7 @@ RUNNERS = (
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
            departure=Departure("it stops at 0.1 mm from the place, in any direction, or after 20 iterations, and its "
-                               "damping is ½ m² for an arm of any size", default_law, Whose.DEFAULT)),
+                               "damping is ½ for an arm of any size", default_law, Whose.DEFAULT)),
 )
 
 
