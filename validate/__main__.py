@@ -156,12 +156,11 @@ def compare(
     new: Annotated[Path, typer.Argument(help="Folder of the later report.")],
 ):
     """Print what changed between two reports; exit with 1 when something became worse."""
-    from .report.compare import KINDS, changes
+    from .report.compare import KINDS, changes, format_of
     before, after = stored_report(old), stored_report(new)
-    try:
-        found = changes(before, after)
-    except (KeyError, TypeError, ValueError):
-        raise BadInput("one of the reports", "of another version of the workbook", "make it again") from None
+    found = changes(before, after)
+    if format_of(before) != format_of(after):
+        console.print(f"Formats of the reports: {format_of(before)} and {format_of(after)}.", highlight=False)
     for kind in KINDS:
         of_kind = [change for change in found if change.kind == kind]
         console.print(f"[bold]{kind}[/bold]: {len(of_kind)} changed, {sum(c.worse for c in of_kind)} worse",

@@ -18,6 +18,7 @@ from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401 
 EXACT = "exact"              # an order: no error but round-off
 LATE_LEAPFROG = "1 to 2"     # an order: leapfrog whose first velocity belongs to half a step before or after
 ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
+LINK_LOOKS = ("rod", "spring", "spring and damper")          # of the links in a picture
 
 
 class Method(NamedTuple):
@@ -171,7 +172,7 @@ class Scene:
     published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
     sanity_checks: Callable | None = None    # () → Findings about the truth alone
     links: Callable | None = None            # (p) → pairs of points that the picture joins
-    link_look: str = "rod"                   # how they are drawn: rod, spring, or spring and damper
+    link_look: str = "rod"                   # how they are drawn: one of LINK_LOOKS
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
     film_of_truth: str = "truth"  # its label in the film, where the truth is not known
     our_film: Callable | None = None         # (p) → (seconds, frames) of our last run, where only its end is judged
@@ -192,6 +193,7 @@ class Scene:
         for runner in self.runners:
             check_known(f"a case of {runner.label!r} in scene {self.title!r}", runner.slow_cases, self.cases)
         check_known(f"a slow case of scene {self.title!r}", self.slow_cases, self.cases)
+        check_known(f"field 'link_look' of scene {self.title!r}", (self.link_look,), LINK_LOOKS)
         if self.cases and self.bodies and not self.poses:
             raise BadInput(f"field 'poses' of scene {self.title!r}", "missing", "say where each body of `bodies` is")
 

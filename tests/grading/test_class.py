@@ -202,18 +202,23 @@ def test_code_in_the_sandbox_does_not_tell_where_the_tests_lie():
     assert shipping.function_of(code, names, values)(0.0, 2.0, 0.0, 3.0) == -6.0
 
 
+def score_of(lesson, text):
+    """The score of a file of answers that is graded in a box."""
+    place = remote.box_of(lesson, text.encode(), 60.0)
+    try:
+        place.open()
+        return points.score(points.grade(lesson, remote.lesson_in(place, lesson), seed="another"))
+    finally:
+        place.close()
+
+
 def test_a_right_answer_is_right_in_longer_numbers():
     text = example.worked("integrators") + (
         "\n\ndef as_others(function):\n"
         "    return lambda *a: tuple(np.asarray(part, np.longdouble) for part in function(*a))\n\n\n"
         "euler_step, midpoint_step, rk4_step = map(as_others, (euler_step, midpoint_step, rk4_step))\n"
     )
-    place = remote.box_of("integrators", text.encode(), 60.0)
-    try:
-        place.open()
-        score = points.score(points.grade("integrators", remote.lesson_in(place, "integrators"), seed="another"))
-    finally:
-        place.close()
+    score = score_of("integrators", text)
     assert all(score[exercise][0] == score[exercise][1] for exercise in ("1.1", "1.2", "1.3"))
 
 
@@ -240,10 +245,4 @@ def test_the_vector_form_of_a_product_serves_the_exercises_that_use_it():
     text = example.worked("rotation") + (
         "\n\ndef product(a, b):\n    vector = a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])\n"
         "    return np.array([a[0] * b[0] - np.dot(a[1:], b[1:]), *vector])\n")
-    place = remote.box_of("rotation", text.encode(), 60.0)
-    try:
-        place.open()
-        score = points.score(points.grade("rotation", remote.lesson_in(place, "rotation"), seed="another"))
-    finally:
-        place.close()
-    assert all(earned == possible for earned, possible in score.values())
+    assert all(earned == possible for earned, possible in score_of("rotation", text).values())

@@ -3,26 +3,23 @@
 Without the package distributed these tests fail, with the remedy; they are never skipped.
 """
 
-import contextlib
 import importlib.util
-import json
 import pickle
 import shutil
 import subprocess
 import sys
-import time
 
 import psutil
 import pytest
 
 from solutions.checks import BadInput
+from tests.dask_here import UP_WITHIN, client_of, cluster_of, until, worker
 from validate.grading import cluster, marking
 from validate.grading.submissions import Submission
 from validate.subject.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("cluster")
 LESSON = "inertia_tensors"   # its tests are the quickest
-UP_WITHIN = 60.0             # [s]: a scheduler needs 1, a worker 2, on a machine that does nothing else
 
 
 @pytest.fixture(autouse=True)
@@ -32,48 +29,8 @@ def _with_dask(request):
                     "pip install -c constraints.txt -e '.[cluster]'", pytrace=False)
 
 
-def started(kind, *arguments, folder=ROOT):
-    module = f"distributed.cli.dask_{kind}"
-    command = [sys.executable, "-m", module, "--host", "127.0.0.1", "--no-dashboard", *map(str, arguments)]
-    return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-
-def worker(address, folder=ROOT):
-    return started("worker", address, "--no-nanny", "--nthreads", 1, folder=folder)
-
-
-@contextlib.contextmanager
-def cluster_of(count, tmp_path):
-    """(address, [process of a worker, …]), with all those workers at work."""
-    told = tmp_path / "scheduler.json"
-    processes = [started("scheduler", "--port", 0, "--scheduler-file", told)]
-    try:
-        until(lambda: told.is_file() and told.read_text())
-        address = json.loads(told.read_text())["address"]
-        processes += [worker(address) for _ in range(count)]
-        with client_of(address) as client:
-            client.wait_for_workers(count, timeout=UP_WITHIN) if count else None
-        yield address, processes[1:]
-    finally:
-        for process in processes:
-            process.kill()
-            process.wait()
-
-
-def client_of(address):
-    from distributed import Client
-    return Client(address, timeout=UP_WITHIN, set_as_default=False)
-
-
 def left_over(dask_scheduler):
     return len(dask_scheduler.tasks), sum(name.startswith("Client-") for name in dask_scheduler.clients)
-
-
-def until(true):
-    limit = time.monotonic() + UP_WITHIN
-    while not true():
-        assert time.monotonic() < limit
-        time.sleep(0.05)
 
 
 @pytest.fixture(scope="module")

@@ -67,3 +67,23 @@ def collection(worked):
         return mutant
 
     return keep(False), keep(True), edit, mutants
+
+
+def of_variants(wrong):
+    """Return wrongs(exercise, factory, {story: the argument that differs}) and alike(exercise, story, factory, *such).
+
+    `alike` makes several wrong answers with one story: they return different numbers, or no input tells them apart.
+    """
+    def wrongs(exercise, factory, ideas):
+        for story, part in ideas.items():
+            wrong(exercise, story)(factory(**part))
+
+    def alike(exercise, story, factory, *parts):
+        for part in parts:
+            wrong(exercise, story)(factory(**part))
+    return wrongs, alike
+
+
+def same(value):
+    """Return the value: the default of a factory's step that a wrong answer leaves out or changes."""
+    return value

@@ -5,31 +5,16 @@ import numpy as np
 from solutions import contact as worked
 from solutions.checks import Diverged
 
-from . import collection, variants
+from . import collection, of_variants, same, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
-
-
-def wrongs(exercise, factory, ideas):
-    """Wrong answers, {story: the argument of the factory that differs from its default}."""
-    for story, part in ideas.items():
-        wrong(exercise, story)(factory(**part))
+wrongs, alike = of_variants(wrong)
 
 
 def edits(exercise, ideas):
     """Wrong answers, {story: (part of a line of the worked answer, what takes its place)}."""
     for story, (old, new) in ideas.items():
         edit(exercise, story, old, new)
-
-
-def alike(exercise, story, factory, *parts):
-    """Wrong answers with one story, written in several ways that return different numbers."""
-    for part in parts:
-        wrong(exercise, story)(factory(**part))
-
-
-def same(value):
-    return value
 
 
 # 9.1 ------------------------------------------------------------------------------------------------------------

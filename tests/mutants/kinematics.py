@@ -8,25 +8,10 @@ import numpy as np
 from solutions import kinematics as worked
 from solutions.checks import BadInput
 
-from . import collection, variants
+from . import collection, of_variants, same, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
-
-
-def wrongs(exercise, factory, ideas):
-    """Wrong answers, {story: the argument of the factory that differs from its default}."""
-    for story, part in ideas.items():
-        wrong(exercise, story)(factory(**part))
-
-
-def alike(exercise, story, factory, *parts):
-    """Wrong answers with one story, because no input of the tests tells them apart."""
-    for part in parts:
-        wrong(exercise, story)(factory(**part))
-
-
-def same(value):
-    return value
+wrongs, alike = of_variants(wrong)
 
 
 # 11.1 -----------------------------------------------------------------------------------------------------------

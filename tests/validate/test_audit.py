@@ -6,14 +6,13 @@ import json
 import pytest
 
 from validate import __main__ as command
-from validate import measure, report
+from validate import report
 from validate.measure.races import races
-from validate.measure.selection import Plan
 from validate.measure.timing import times_to_error
 from validate.report import plots
 from validate.report.audit import audit
-from validate.run.run import about
-from validate.stability.examine import all_cases, examine, stored
+
+from .small_report import small_report
 
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 
@@ -22,13 +21,8 @@ pytestmark = pytest.mark.xdist_group("coverage")          # a report has the tab
 def made(tmp_path_factory):
     """A small report: one scene with its engines, one stability case."""
     folder = tmp_path_factory.mktemp("report")
-    plan = Plan(speeds=("plain",))
-    results = []
-    for name in ("throw", "tensors"):
-        errors = measure.errors(name, plan)
-        results.append(as_if_compiled({**errors, "times": measure.times(name, plan, errors)}))
-    cases = [stored(examine(case, compiled=False)) for case in all_cases() if case.slug == "thin-bodies"]
-    data = json.loads(json.dumps({"run": about(plan), "scenes": results, "stability": cases}))
+    data = small_report(("throw", "tensors"), ("thin-bodies",))
+    data = json.loads(json.dumps({**data, "scenes": [as_if_compiled(result) for result in data["scenes"]]}))
     write(folder, data)
     return folder, data
 

@@ -189,7 +189,7 @@ def test_the_zips_of_a_course_can_be_released(taught):
 def test_the_weeks_of_a_lesson_hold_every_exercise_once_in_whole_sections_and_its_own_scenes():
     assert weeks.WEEKS.keys() == course.lessons().keys()
     for name, lesson in course.lessons().items():
-        parts = [part for week in weeks.WEEKS[name] for part in (week.before, week.after)]
+        parts = [part for week in weeks.WEEKS[name] for part in week.parts(name)]
         numbers = [number for first, last in parts for number in range(first, last + 1)]
         assert numbers == list(range(1, len(lesson.exercises) + 1)), name
         assert sum(weeks.hours(name, *part) for part in parts) == lesson.head.writing, name
@@ -204,8 +204,9 @@ def test_the_weeks_of_a_lesson_hold_every_exercise_once_in_whole_sections_and_it
 
 def test_two_weeks_with_a_lesson_are_those_of_the_long_course():
     for name, own in weeks.WEEKS.items():
+        number, parts = course.lessons()[name].number, [week.parts(name) for week in own]
         planned = [week.exercises() for week in plan.COURSES[-1].weeks if week.lesson == name]
-        assert [[f"{course.lessons()[name].number}.{n}" for n in (week.before[0], week.after[1])] for week in own] == \
+        assert [[f"{number}.{before[0]}", f"{number}.{after[1]}"] for before, after in parts] == \
             [[chosen[0].number, chosen[-1].number] for chosen in planned]
 
 

@@ -1,4 +1,4 @@
-"""`validate --executor`: the same results as here, whatever happens to a worker.
+"""`validate --executor`: the same results as here, also where a worker dies.
 
 The scheduler and two workers are real processes on the loopback.
 """
@@ -9,7 +9,6 @@ import multiprocessing
 import os
 import pickle
 import shutil
-import subprocess
 import sys
 import threading
 import time
@@ -19,6 +18,7 @@ import psutil
 import pytest
 
 from solutions.checks import BadInput
+from tests.dask_here import UP_WITHIN, cluster_of, until, worker
 from validate import measure
 from validate.__main__ import main
 from validate.report.compare import changes
@@ -26,43 +26,8 @@ from validate.run import cluster, processes
 from validate.subject.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("sweep on a cluster")
-UP_WITHIN = 60.0             # [s]: a scheduler needs 1, a worker 2, on a machine that does nothing else
+THREADS = 2                  # of each worker, which makes one call at a time all the same
 SCENES = ("stopping_block", "stick_slip", "incline")      # of one lesson, whose stability cases are short
-
-
-def started(kind, *arguments, folder=ROOT):
-    command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", "--host", "127.0.0.1", "--no-dashboard",
-               *map(str, arguments)]
-    return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-
-def worker(address, folder=ROOT):
-    return started("worker", address, "--no-nanny", "--nthreads", 2, folder=folder)
-
-
-@contextlib.contextmanager
-def cluster_of(count, tmp_path):
-    """(address, [process of a worker, …]), with all those workers at work."""
-    told = tmp_path / "scheduler.json"
-    begun = [started("scheduler", "--port", 0, "--scheduler-file", told)]
-    try:
-        until(lambda: told.is_file() and told.read_text())
-        address = json.loads(told.read_text())["address"]
-        begun += [worker(address) for _ in range(count)]
-        with contextlib.closing(cluster.connected(address)) as client:
-            until(lambda: len(cluster.workers_of(client)) == count)
-        yield address, begun[1:]
-    finally:
-        for process in begun:
-            process.kill()
-            process.wait()
-
-
-def until(true, within=UP_WITHIN):
-    limit = time.monotonic() + within
-    while not true():
-        assert time.monotonic() < limit
-        time.sleep(0.05)
 
 
 def validate(out, *more):
@@ -83,7 +48,7 @@ def raw(out):
 @pytest.mark.long
 def test_a_killed_worker_changes_nothing_in_the_report_but_times(tmp_path):
     assert validate(tmp_path / "here") == 0
-    with cluster_of(2, tmp_path) as (address, workers):
+    with cluster_of(2, tmp_path, THREADS) as (address, workers):
         kept, killed = tmp_path / "there" / "results", []
 
         def kill():                                                    # when something is measured, but not all of it
@@ -105,7 +70,7 @@ def test_a_killed_worker_changes_nothing_in_the_report_but_times(tmp_path):
 
 @pytest.mark.long
 def test_what_is_timed_has_a_machine_for_itself_and_other_calls_have_all_workers(tmp_path):
-    with cluster_of(2, tmp_path) as (address, _), cluster.cluster(address, "solutions") as pool:
+    with cluster_of(2, tmp_path, THREADS) as (address, _), cluster.cluster(address, "solutions") as pool:
         def measuring(alone):
             return {found for _, found in pool.each(dict.fromkeys(range(6), (process,)), alone=alone)}
         assert len(measuring(True)) == 1 and len(measuring(False)) == 2
@@ -126,10 +91,10 @@ def test_a_workbook_that_differs_is_refused(tmp_path):
     copy = tmp_path / "workbook"
     for package in ("solutions", "lessons", "validate", "tests"):
         shutil.copytree(ROOT / package, copy / package, ignore=shutil.ignore_patterns("__pycache__"))
-    with cluster_of(0, tmp_path) as (address, _):
+    with cluster_of(0, tmp_path, THREADS) as (address, _):
         with pytest.raises(BadInput, match="a scheduler without workers"), cluster.cluster(address, "solutions"):
             pass
-        process = worker(address, folder=copy)
+        process = worker(address, copy, THREADS)
         try:
             with contextlib.closing(cluster.connected(address)) as client:
                 until(lambda: cluster.workers_of(client))
@@ -146,7 +111,7 @@ def test_a_workbook_that_differs_is_refused(tmp_path):
 
 @pytest.mark.long
 def test_a_measuring_process_that_is_killed_is_replaced(tmp_path):
-    with cluster_of(1, tmp_path) as (address, workers), cluster.cluster(address, "solutions") as pool:
+    with cluster_of(1, tmp_path, THREADS) as (address, workers), cluster.cluster(address, "solutions") as pool:
         coming = pool.each(dict.fromkeys(range(3), (time.sleep, 0.5)))
         came = [next(coming)]
         psutil.Process(workers[0].pid).children()[0].kill()

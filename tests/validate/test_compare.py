@@ -5,8 +5,10 @@ import json
 
 import pytest
 
+from solutions.checks import BadInput
 from validate import __main__ as command
 from validate.report.compare import changes
+from validate.run.store import FORMAT
 
 
 def row(label, speed, seconds):
@@ -98,6 +100,46 @@ def test_times_are_compared_at_the_pace_of_the_engines_and_beyond_their_ranges(r
         for key in ("seconds", "low", "high"):
             one[key] *= factor
     assert kinds(report, new) == expected
+
+
+@pytest.mark.parametrize("old_format", [{}, {"format": 2}, {"format": FORMAT}])
+def test_a_report_of_an_older_format_is_compared_by_what_both_record(report, old_format):
+    new = copy.deepcopy(report)
+    report["run"], new["run"] = old_format, {"format": FORMAT}
+    new["scenes"][0]["agreed"] = False                         # older formats have no such record
+    assert kinds(report, new) == []
+    first_curve(new).update(verdict="departs", order=1.5)
+    first_curve(new)["rows"][2]["error"] *= 2.0
+    new["stability"][0]["findings"][0]["holds"] = False
+    assert kinds(report, new) == [(kind, True) for kind in ("verdicts", "findings", "orders", "errors")]
+
+
+@pytest.mark.parametrize(("old_format", "names"), [({}, "older than 2"), ({"format": 2}, "2")])
+def test_reports_without_common_records_are_refused_by_their_formats(report, old_format, names):
+    new = {**copy.deepcopy(report), "run": {"format": FORMAT}}
+    report["run"] = old_format
+    del first_curve(report)["verdict"]
+    with pytest.raises(BadInput, match=f"with the formats {names} and {FORMAT}:"):
+        changes(report, new)
+
+
+def test_a_curve_of_an_engine_that_is_no_longer_known_is_gone(report):
+    new = copy.deepcopy(report)
+    new["scenes"][0]["times"]["rows"] = []
+    engine = new["scenes"][0]["cases"]["one"]["engines"].pop()
+    report["scenes"][0]["cases"]["one"]["engines"] = [{**engine, "product": "an engine of before"}]
+    assert kinds(report, new) == [("verdicts", True)]
+
+
+def test_the_command_says_when_the_formats_differ(report, tmp_path, capsys):
+    for name, run in (("old", {"format": 2}), ("new", {"format": FORMAT})):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "report.json").write_text(json.dumps({**report, "run": run}))
+    for pair, says in ((("old", "new"), True), (("new", "new"), False)):
+        with pytest.raises(SystemExit) as ended:
+            command.main(["compare", *(str(tmp_path / name) for name in pair)])
+        assert ended.value.code == 0
+        assert (f"Formats of the reports: 2 and {FORMAT}." in capsys.readouterr().out) == says
 
 
 def test_the_command_ends_with_1_when_something_became_worse(report, tmp_path, capsys):

@@ -136,7 +136,7 @@ def test_an_engine_that_hangs_is_ended(capsys, tmp_path, monkeypatch):
         "        try:\n            1 / 0\n        except Exception:\n            pass\n"
     )
     code, said, _, page = run(capsys, tmp_path, hangs, *of("throw", "cradle"))
-    assert code == 1 and verdicts(said) == {"throw": conformance.FAILS, "cradle": conformance.FAILS}
+    assert code == 1 and verdicts(said) == {"throw": "fails", "cradle": "fails"}
     assert "still running after 0.3 s" in page
 
 
@@ -150,7 +150,7 @@ def test_an_engine_may_import_its_neighbours_and_closes_its_worlds(capsys, tmp_p
 
 
 def test_a_name_with_markup_does_no_harm_to_the_page():
-    row = conformance.Row("s", "<b>", (1,), (None,), None, "fails", "<script>", {"pymunk": "<i>"})
+    row = conformance.Row("s", "<b>", (1,), (None,), None, conformance.Judgement.FAILS, "<script>", {"pymunk": "<i>"})
     reader = conformance.Reader("<u>", None, None)
     page = conformance.page_of(reader, [row], ["<p>"])
     assert not re.search(r"<(script|b|i|u)>", page)

@@ -7,16 +7,15 @@ from itertools import pairwise
 
 import pytest
 
-from validate import measure, report
+from validate import report
 from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
-from validate.measure.selection import Plan
 from validate.report import films, numbers, plots, races, words
 from validate.report.answers import answers
-from validate.run.run import about
-from validate.stability.examine import all_cases, examine, stored
 from validate.subject import modules
+
+from .small_report import small_report
 
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 
@@ -27,14 +26,7 @@ ADDRESSES = ("href", "src")
 def made(tmp_path_factory):
     """(folder, data) of a small report: a motion with an engine that follows its own law, numbers, a case, a map."""
     folder = tmp_path_factory.mktemp("report")
-    plan = Plan(speeds=("plain",))
-    results = []
-    for name in ("throw", "tensors"):
-        errors = measure.errors(name, plan)
-        results.append({**errors, "times": measure.times(name, plan, errors)})
-    cases = [stored(examine(case, compiled=False)) for case in all_cases()
-             if case.slug in ("thin-bodies", "amplification")]
-    data = json.loads(json.dumps({"run": about(plan), "scenes": results, "stability": cases}))
+    data = small_report(("throw", "tensors"), ("thin-bodies", "amplification"))
     for name, text in report.texts(data["scenes"], data["stability"], data["run"]).items():
         (folder / name).write_bytes(text.encode())
     for plot, name, shown, _ in report.pictures(data["scenes"], data["stability"]):

@@ -13,7 +13,7 @@ import pytest
 from solutions import integrators
 from solutions.checks import BadInput
 from validate import measure, methods
-from validate.check import Verdict, is_right
+from validate.check import Verdict, is_right, states
 from validate.measure.accuracy import ASYMPTOTIC, engine_curve, relative, run_to_end, theory
 from validate.measure.selection import select
 from validate.report import words
@@ -45,7 +45,8 @@ def test_a_truth_reproduces_what_was_published(name):
     scene = modules.bind_scene(name)
     p = scene.parameters
     for t, expected, tolerance in scene.published_states:
-        assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
+        finding = states(f"the truth at {t} s", scene.truth(p, t), expected, tolerance)
+        assert finding.holds, finding
 
 
 @scenes([n for n in SCENES if modules.bind_scene(n).sanity_checks],

@@ -51,7 +51,7 @@ def swept(A, b):
 
 
 def silent(A, b, mu):
-    """What sweeps have reached, whatever it is."""
+    """The impulses after a hundred sweeps, settled or not."""
     J = np.zeros(b.size)
     for _ in range(100):
         J = worked.cone_sweep(A, b, J, mu)

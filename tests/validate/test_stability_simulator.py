@@ -109,7 +109,7 @@ def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
 
 
 def scaled(value, factor):
-    """The same result, a little larger or smaller, whatever it consists of."""
+    """The same result, a little larger or smaller: a number, an array, or a tuple of them."""
     return tuple(scaled(part, factor) for part in value) if isinstance(value, tuple) else factor * np.asarray(value)
 
 

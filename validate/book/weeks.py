@@ -10,7 +10,11 @@ from . import course, plan
 class Week(NamedTuple):
     """A week with a lesson.  The exercises before and after the lab are whole sections of its notebook."""
     before: tuple            # (first, last) exercise that students write before the lab
-    after: tuple             # and after it
+    after: tuple             # and after it; 0 means the last exercise of the lesson
+
+    def parts(self, name):
+        """Return the ranges (first, last) of exercises before and after the lab."""
+        return [(first, last or len(course.lessons()[name].exercises)) for first, last in (self.before, self.after)]
     lecture: str             # 90 minutes
     show: tuple              # scenes of the report for the lecture
     lab: str                 # 60 minutes
@@ -19,7 +23,7 @@ class Week(NamedTuple):
 
 WEEKS = {
     "integrators": (Week(
-        (1, 6), (7, 10),
+        (1, 6), (7, 0),
         "Ask why only one of the three planets stays. Draw the slopes of Euler, midpoint and Runge–Kutta into one "
         "figure. The order is the slope of the error over the step. Then exchange Euler's two lines.",
         ("kepler", "oscillator"),
@@ -28,7 +32,7 @@ WEEKS = {
         "What is the longest stable step of symplectic Euler and of Runge–Kutta without damping? Theory says 2/ω and "
         "2.83/ω. Then move the slider."),),
     "springs": (Week(
-        (1, 9), (10, 13),
+        (1, 9), (10, 0),
         "Ask why only one cloth keeps its shape. Go through the forces of the lesson; show why springs alone never "
         "move the centre of mass, and which springs of a cloth are no threads.",
         ("hanging_springs", "spring_net"),
@@ -36,7 +40,7 @@ WEEKS = {
         "How many more steps does a hundred times the stiffness cost? Ten times as many, because ω dt < 2. Why has "
         "the implicit step no such limit?"),),
     "friction": (Week(
-        (1, 7), (8, 16),
+        (1, 7), (8, 0),
         "Ask why one of the two blocks crawls. The normal force, the cone of all forces that a support can give, "
         "static friction (an inequality) and kinetic friction (a law).",
         ("incline", "stopping_block"),
@@ -44,7 +48,7 @@ WEEKS = {
         "From which μ does the block hold (tan θ)? If friction is one more force for Euler's method, by how much does "
         "the velocity swing at the end (μ g dt)?"),),
     "inertia_tensors": (Week(
-        (1, 10), (11, 17),
+        (1, 10), (11, 0),
         "Ask why the angular momentum of the dumbbell is not parallel to its angular velocity. Derive the tensor from "
         "L = Σ m r × (ω × r). Its eigenvectors are the principal axes.",
         ("tensors",),
@@ -53,7 +57,7 @@ WEEKS = {
         "How far from the origin may a body of one metre be until the naive integrals have no correct digit? Estimate "
         "it from 10⁻¹⁶ D⁵ (a kilometre), then run the cell."),),
     "rotation": (Week(
-        (1, 10), (11, 18),
+        (1, 10), (11, 0),
         "Ask why only one of the bricks turns over. The state (x, R, P, L) and its derivative; why ω wanders while L "
         "stands still; quaternions and half the angle.",
         ("asymmetric_top", "heavy_top"),
@@ -70,7 +74,7 @@ WEEKS = {
         "nearest. They are the cases of 6.7 and 6.8.",
         "*Break it*: which share of the balls gets through a wall? Derive 1 − (R + w/2)/(v h), then run the cell."),
         Week(
-        (9, 11), (12, 17),
+        (9, 11), (12, 0),
         "The broad phase: why all pairs are too many, boxes that hold bodies, and their tree. The narrow phase of "
         "convex bodies: separating axes and GJK.",
         ("pairs", "distances"),
@@ -78,7 +82,7 @@ WEEKS = {
         "6.14.",
         "*Make it*: each group writes a rule for a polite crowd, and the notebook judges it.")),
     "impulses": (Week(
-        (1, 11), (12, 17),
+        (1, 11), (12, 0),
         "Ask who paid for the rod's energy. The impulse as the limit of a stiff spring; restitution; K, the response "
         "of the relative velocity to an impulse.",
         ("bounces", "oblique_discs"),
@@ -94,14 +98,14 @@ WEEKS = {
         "8.4 is the longest answer of the lesson. Write down the linear system of a chain of two links first.",
         "How far too low does a chain hang, for a given step and number of sweeps (8.8)? Predict it, then measure."),
         Week(
-        (12, 14), (15, 18),
+        (12, 14), (15, 0),
         "The stiffness of PBD depends on the step; a compliance does not, once the sweeps have converged. A rigid "
         "body as a point with an effective inverse mass.",
         ("cloth",),
         "A push at one end of a rod: which share moves it, and which share turns it? On paper, before 8.15 to 8.17.",
         "*Break it*: eight sweeps or eight substeps? Predict how much stiffer each makes a chain (8 and 64 times).")),
     "contact": (Week(
-        (1, 8), (9, 16),
+        (1, 8), (9, 0),
         "Ask what is wrong with a solver that lets ten boxes sink. All contacts in one matrix; the complementarity "
         "problem; projected Gauss–Seidel and its contraction.",
         ("stack", "mass_ratio"),
@@ -109,7 +113,7 @@ WEEKS = {
         "How fast does the upper one of two boxes sink (g Δt ρᵐ/(1 − ρᵐ))? Predict it, then look at ten boxes and at "
         "the three cures."),),
     "simulator": (Week(
-        (1, 7), (8, 16),
+        (1, 7), (8, 0),
         "Ask how you would know that the dominoes are right. The loop, and the lesson from which each part comes. A "
         "scene leaves out what it does not need.",
         ("machine", "rocking_block"),
@@ -117,7 +121,7 @@ WEEKS = {
         "How fast may a disc fall until the floor misses it? Why does a ball spiral outwards on a turntable, and by "
         "how much per step?"),),
     "kinematics": (Week(
-        (1, 8), (9, 16),
+        (1, 8), (9, 0),
         "Ask what the flailing arm does not know. Forward kinematics is a sum; the columns of the Jacobian; its "
         "ellipse; the two solutions of an arm of two links.",
         ("reach_2r", "singular_arm"),
@@ -156,14 +160,15 @@ def table(name, report):
     notebook = f"[notebook](../notebooks/{course.notebook_of(name).stem})"
     weeks, parts = WEEKS[name], []
     for number, week in enumerate(weeks, 1):
+        before, after = week.parts(name)
         shown = ", ".join(f'<a href="../report/{scene}.html">{modules.bind_scene(scene).title}</a>' if report
                           else modules.bind_scene(scene).title for scene in week.show)
         rows = [
             ("Monday, 90 minutes", f"Lecture. {week.lecture}", f"{notebook}, *The idea*; report: {shown}"),
-            ("Tuesday, Wednesday", f"Students write {work(name, *week.before)}.", f"[functions](../lessons/{name})"),
+            ("Tuesday, Wednesday", f"Students write {work(name, *before)}.", f"[functions](../lessons/{name})"),
             ("Wednesday, 60 minutes", f"Lab. {week.lab}", "*Where students go wrong*, below"),
             ("Thursday, 45 minutes", f"Together. {week.together}", notebook),
-            ("Thursday to Sunday", f"Students write {work(name, *week.after)}.", f"[functions](../lessons/{name})"),
+            ("Thursday to Sunday", f"Students write {work(name, *after)}.", f"[functions](../lessons/{name})"),
         ]
         if number == len(weeks):
             rows.append(("Sunday, 23:59", f"Students hand in `lessons/{name}.py`, and bring answers to the *Three "

@@ -106,7 +106,7 @@ class Bullet:
         self.pb.stepSimulation()
 
     def make_in_a_call(self, substeps):
-        """Let a call from Python make so many steps."""
+        """Set the number of steps that a call from Python makes."""
         self.pb.setPhysicsEngineParameter(fixedTimeStep=substeps * self.dt, numSubSteps=substeps)
 
     def close(self):

@@ -75,7 +75,7 @@ def pymunk_planet(p, dt, ahead=0.0):
 
 
 def mujoco_planet(p, dt):
-    """Call the attraction in every stage of Runge–Kutta's step."""
+    """Make an EngineRun of a planet; MuJoCo calls the attraction in every stage of Runge–Kutta's step."""
     mu, (x, v) = p.mu, perihelion(p)
 
     def pull(x, v):

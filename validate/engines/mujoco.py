@@ -1,4 +1,4 @@
-"""MuJoCo, a live witness of order 4, also where pybullet has no wheel: joints by angles and soft contacts.
+"""MuJoCo, a live engine of order 4, also where pybullet has no wheel: joints by angles and soft contacts.
 
 Bodies on joints and free bodies have no constraint here that a step could violate.  Runge–Kutta 4 turns a body by
 the method of Munthe-Kaas, so its error is of order 4.  MuJoCo's default is the semi-implicit Euler step.
@@ -73,7 +73,7 @@ def inertial(m, moments, place=(0.0, 0.0, 0.0)):
 # ---------------------------------------------------------------------------------------------- points
 
 def sliding(m, d, inside="", **joint):
-    """A body of m [kg] that moves along the first d axes, with attributes of the joints, such as their damping."""
+    """Return the XML of a body of m [kg] that slides along the first d axes; joint: attributes of its joints."""
     attributes = "".join(f' {name}="{text(value)}"' for name, value in joint.items())
     slides = "".join(f'<joint type="slide" axis="{text(axis)}"{attributes}/>' for axis in np.eye(3)[:d])
     return f"{slides}{inertial(m, np.ones(3))}{inside}"

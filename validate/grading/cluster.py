@@ -20,7 +20,7 @@ from collections import deque
 from importlib.metadata import version
 
 from solutions.checks import BadInput
-from validate.run.scheduler import CONNECT_WITHIN, connected, workers_of
+from validate.run.scheduler import CONNECT_WITHIN, connected, in_a_line, refusal, without_workbook, workers_of
 from validate.subject import modules
 
 from . import children, local, marking, sandbox
@@ -63,19 +63,6 @@ def fit(client, address, settings):
         unfit = without_workbook(answer) if isinstance(answer, Exception) else answer[0]
         if unfit:
             raise refusal(f"the worker at {worker}", unfit)
-
-
-def without_workbook(error):
-    return f"without a workbook that runs ({in_a_line(error)})"
-
-
-def in_a_line(error):
-    return " ".join(f"{type(error).__name__}: {error}".split())
-
-
-def refusal(thing, unfit):
-    remedy = "give it the workbook and the locked versions that are here, start it again, and repeat the command"
-    return BadInput(thing, unfit, remedy)
 
 
 def parcel(submission, settings, first=None):

@@ -1,8 +1,10 @@
 """Measurement of one scene: errors, orders and verdicts, then error against run time.
 
-`selection.py` says what is to be done, `accuracy.py` compares it with the truth, `timing.py` times it, `full_loop.py`
-puts in what it leaves out, `film.py` films it. `record.py` writes and `traces.py` reads what pybullet did, for machines
-without it.
+`selection.py` selects cases, methods, engines and steps.  `accuracy.py` compares runs with the truth, `timing.py` times
+them, and `races.py` makes ratios of the times, with the cost of calls (`calls.py`) and of compilation
+(`compilation.py`).  `full_loop.py` includes the parts that a scene omits; `switches.py` switches parts of engines off.
+`film.py` makes the film.  `record.py` writes and `traces.py` reads the runs of pybullet, for machines without it, and
+`agreement.py` computes a truth on which two codes agree.
 """
 
 from . import accuracy, timing

@@ -100,7 +100,7 @@ def run_to_end(scene, step, p, steps, asked=False):
         if asked:
             raise
         return Outcome(None, f"refused: {e}")
-    except (Exception, SystemExit) as e:  # a subject's code may do anything: say it, and go on
+    except (Exception, SystemExit) as e:  # a subject's code may raise anything: report it, and go on
         return Outcome(None, f"{type(e).__name__}: {str(e).strip().splitlines()[0] if str(e).strip() else ''}")
     return finite(observed)
 
@@ -270,10 +270,9 @@ def surprise_in(row, law):
 
 
 def shown_order(rows, floor):
-    """Order over the finest four runs that are clear of the truth's uncertainty and of round-off; None for fewer
-    than three.
+    """Return the order over the finest four runs whose error exceeds the truth's uncertainty and round-off.
 
-    Runs before one that was lost do not count: what is right in them is right by luck.
+    Runs coarser than the last failed one are ignored.  None if fewer than three runs are left.
     """
     lost = [k for k, r in enumerate(rows) if r["error"] is None or r["error"] >= ASYMPTOTIC]
     clear = [(r["dt"], r["error"]) for r in rows[lost[-1] + 1 if lost else 0:]

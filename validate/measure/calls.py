@@ -1,4 +1,4 @@
-"""What a call of an engine from Python costs.
+"""The cost of a call of an engine from Python.
 
 A race of ours is one call from Python, and an engine's is one call per step.  So an empty world is stepped twice: by
 one call per step, and by a loop of the engine's own.  The difference is the cost of a call.
@@ -75,7 +75,7 @@ OWN_LOOPS = {PYMUNK: chipmunk_loop, PYBULLET: bullet_loop, MUJOCO: mujoco_loop}
 
 @cache
 def costs_of_calls(live):
-    """[{product, seconds, how, called, alone}] of the engines that run here; measured once.
+    """Return [{product, seconds, how, called, alone}] of the engines that run here; measured once.
 
     seconds  the cost of a call from Python, per step [s]; never below zero
     called   repeats of the time per step of an empty world, one call each [s]

@@ -1,7 +1,7 @@
-"""How long numba takes to compile one method of ours for one scene, and to load it from its cache.
+"""The time that numba takes to compile one method of ours for one scene, and to load it from its cache.
 
-The races time compiled loops, so a reader must know what comes before them.  Both are times of the processor: the
-machine may do something else.
+The races time compiled loops, so a reader must know what comes before them.  Both are times of the processor, because
+other programs may run on the machine.
 """
 
 import time
@@ -13,8 +13,8 @@ from .races import HEADLINE
 def compilation(selection, p, races):
     """Return {"label", "cold", "cached"} [s] of the method that runs our race at the headline's error.
 
-    None where plain Python runs it, or where there is no such race.  Both are times of a first run without that of a
-    second one, in a process in which numba runs already.
+    Return None where plain Python runs it, or where there is no such race.  Both are times of a first run minus that of
+    a second one, in a process in which numba runs already.
 
     cold: with an empty cache;    cached: with all that the method needs in the cache
     """

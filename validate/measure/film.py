@@ -71,7 +71,7 @@ def in_space(scene, shown, p, seconds):
 
 
 def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False, walls=()):
-    """Return what the 3D player plays.
+    """Return the data of the 3D player.
 
     bodies    shapes of validate/scenes/drawing.py
     runs      {label: (role, poses)}; poses (frames, bodies, 7): position x, y, z [m] and unit quaternion w, x, y, z

@@ -23,7 +23,7 @@ NEAR = 1e-9                  # gap up to which the loop finds contacts [m]
 SMALL = 0.01                 # radius of a point over the least distance of two of them, or over 1 m [-]
 SWEEPS = 10                  # an engine's usual number; in the plane one contact needs one
 IN_SPACE = 60                # of a contact that rubs in space: each leaves half of a slip [-]
-GRIP = 100.0                 # friction with which what touches stops, however obliquely it comes [-]
+GRIP = 100.0                 # friction that stops every contact, however oblique the impact [-]
 STOPPED = 1e-14              # speed that is left over the speed before [-]: round-off
 SLENDER = 1e-11              # moment of a string's point about itself over m l² [-]: below SAME, far above round-off
 LEAST = 50                   # steps of a run
@@ -104,10 +104,9 @@ def sprung_floor(lessons):
 def stopped_ball(lessons):
     """Make the whole loop in place of discrete_step of lesson 6.
 
-    It has a ball that stops on a plane or, seen along its axis, on a cylinder.  The loop finds at the beginning of
-    a step what the lesson finds at the end of the one before; between the two nothing moves.  A ball whose speed is
-    round-off has
-    stopped: the lesson takes no more steps of it.
+    It has a ball that stops on a plane or, seen along its axis, on a cylinder.  The loop finds a contact at the
+    beginning of a step, and the lesson at the end of the step before; between the two nothing moves.  A ball whose
+    speed is round-off has stopped: the lesson takes no more steps of it.
     """
     whole = []
 
@@ -227,7 +226,7 @@ def rolling_ball(lessons):
 
 
 FULL = {SYMPLECTIC_EULER: points, SLIDING: block, GYROSCOPIC: turning_body, ROLLING: rolling_ball,
-        PENALTY: sprung_floor, DISCRETE: stopped_ball, RATTLE: strings}      # what the whole loop is for these methods
+        PENALTY: sprung_floor, DISCRETE: stopped_ball, RATTLE: strings}      # the whole loop in place of each method
 
 
 def made_when_called(make):

@@ -1,9 +1,9 @@
 """Races: the times that an engine and our methods take to the same error, and what their ratio is made of.
 
 A race is run to fixed errors, and to the smallest error at which the engine was timed.  The time to an error is read on
-the curve of error against run time, between two runs.  An error that already the coarsest run of a side meets, or that
-a side never reaches, is said as such.  Only curves that agree with the truth take part: any other curve reaches an
-error by luck.
+the curve of error against run time, between two runs.  The report says where the coarsest run of a side is accurate
+enough already, and where a side never reaches the error.  Only curves that agree with the truth take part: any other
+curve reaches an error by luck.
 """
 
 from enum import StrEnum
@@ -158,7 +158,7 @@ def race(field, level):
 def to_the_best(rows):
     """Return (the smallest error of an engine, its Reach); (None, None) where all of its timed runs are lost.
 
-    Of settings that come as near, the fastest one runs.  An engine that errs by round-off only runs to EXACTLY.
+    If several settings come as near, the fastest one runs.  An engine that errs by round-off only runs to EXACTLY.
     """
     kept = [row for row in rows if row["error"] < ASYMPTOTIC]
     if not kept:

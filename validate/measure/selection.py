@@ -18,7 +18,7 @@ from ..scene import Scene
 from ..subject import modules
 
 REPEATS = 9                  # of a timed run; fewer only of long ones in plain Python
-NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
+NOTEBOOK = 0.02              # longest time of a timed run in a notebook [s]
 
 
 class Plan(NamedTuple):
@@ -32,18 +32,21 @@ class Plan(NamedTuple):
     changes: tuple = ()                      # for a notebook: (field, value) pairs that replace fields of the Scene
 
     def time_limits(self):
-        """Return {speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
+        """Return {speed: the longest time of a single timed run [s]}.
+
+        A quick run leaves longer ones to --full, and a full run leaves them out.
+        """
         ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.1, 0.4)
         return {"plain": ours, "compiled": ours, "engine": engine}
 
     def repeats(self):
-        """Return number of timed repeats; fewer where a reader is waiting."""
+        """Return the number of timed repeats; fewer in a notebook, where the reader is waiting."""
         return 3 if self.most_steps else REPEATS
 
     def enough(self):
         """Return how many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.
 
-        Finer runs take most of the time, and a fault shows as well before them.
+        Finer runs take most of the time, and the coarser ones show a fault as well.
         """
         return 4 if self.quick and not self.most_steps else np.inf
 
@@ -90,7 +93,7 @@ class Selection(NamedTuple):
         return speeds_of(self.scene, self.plan, runner)
 
     def rank(self, runner):
-        """Sort methods by it: those of high order come first, and of one order those that are compiled."""
+        """Return a key that sorts methods: high orders first, and within an order compiled methods first."""
         return -runner.who.order, self.speeds(runner)[-1:] != ("compiled",)
 
     def bound(self, runner, speed):

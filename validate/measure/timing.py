@@ -26,8 +26,8 @@ WARM_UPS, PROBE = 2, 64
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SAME = 1e-9                  # relative difference of two motions that count as the same [-]
 LONG = 0.04                  # a timed loop that takes longer is warmed up once [s]
-ENOUGH = 0.3                 # in plain Python a loop is repeated until it has run for so long, or as often as all [s]
-LEAST_REPEATS = 3            # but at least so often [-]
+ENOUGH = 0.3                 # a loop in plain Python is repeated for this long, or REPEATS times [s]
+LEAST_REPEATS = 3            # fewest repeats of such a loop [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 SHORTEST_LOOK = 0.1          # the system counts hundredths of a second: a shorter look at them is no measurement [s]
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
@@ -44,8 +44,9 @@ class Timed(NamedTuple):
 
 @with_overrides
 def times(name, plan, result):
-    """Run times of the first case, joined with the errors already found:
-    [{label, speed, steps, error, seconds, low, high, repeats}].
+    """Return the run times of the first case with the errors found before, and what follows from them.
+
+    The rows are [{label, speed, steps, error, seconds, low, high, repeats}].
     """
     selection = select(name, plan)
     scene, (case, p) = selection.scene, selection.first
@@ -75,8 +76,9 @@ def times(name, plan, result):
 
 
 def worth_timing(selection, case):
-    """Return {label: {steps: row}} of the runs that are worth timing:
-    those not lost, and in a quick run every second one of the sweep, from the first.
+    """Return {label: {steps: row}} of the runs that are worth timing.
+
+    Lost runs are not.  A quick run times every second one of the sweep, from the first.
     """
     quick = selection.plan.quick and not selection.plan.most_steps
     chosen = selection.scene.steps[::2]
@@ -157,7 +159,7 @@ def used_by_others(before, after):
 # ---------------------------------------------------------------------------------------------- the clock
 
 def interleaved(items, time_limits, repeats=REPEATS):
-    """[(item, {seconds, low, high, repeats})]: medians of interleaved repeats, their intervals, and all of them.
+    """Return [(item, {seconds, low, high, repeats})]: medians of interleaved repeats, their intervals, and all of them.
 
     Runs longer than `time_limits[speed]` are left out.
     """
@@ -183,7 +185,8 @@ def interval(repeats):
     """Return {"low", "high"}: ends between which the median of many more repeats lies, with a chance of 96 %.
 
     Of nine repeats these are the second and the eighth by size: 1 − 2 (1 + 9)/2⁹.  Of fewer they are the first and the
-    last.  *Source:* the sign test; any distribution will do.
+    last.  This holds for any distribution.
+    *Source:* the sign test.
     """
     ordered = sorted(repeats)
     skip = 1 if len(ordered) >= REPEATS else 0
@@ -265,7 +268,7 @@ def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full)
 # ---------------------------------------------------------------------------------------------- reading the diagram
 
 def times_to_error(rows):
-    """[{label, speed, seconds}]: of each curve its times to the TARGETS, None where its runs do not get there."""
+    """Return [{label, speed, seconds}]: times of each curve to the TARGETS, None where its runs do not get there."""
     groups = {}
     for row in rows:
         groups.setdefault((row["label"], row["speed"]), []).append(row)

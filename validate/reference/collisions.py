@@ -113,9 +113,8 @@ def detection_errors(T, place, when, band, swept=None):
     def predicted_error(p, dt):
         """The time of each impact is known, and so is its phase in a step.
 
-        A test after each step detects a ball at the
-        first multiple of dt at which it is inside.  It misses a ball that has left by then.  A swept ball also stops
-        where its smaller sphere touches, if that is earlier in the step.
+        A test after each step detects a ball at the first multiple of dt at which it is inside.  It misses a ball that
+        has left by then.  A swept ball also stops where its smaller sphere touches, if that is earlier in the step.
         """
         v, (enters, leaves) = place(p)[1], when(p, p.r)
         found = found_after(enters, leaves, dt, T)
@@ -145,7 +144,8 @@ def hull_nearest(a, b, weight=1e3):
     They minimise |Σ α a − Σ β b| over α, β ≥ 0 with Σ α = Σ β = 1.  The two sums enter as rows with the given
     weight, a penalty that leaves a relative error of about 1/weight².  That answer is only the start.  The points
     with a non-zero weight span flat parts of the two bodies, and the nearest points of these solve a linear system
-    exactly. *Source:* Lawson and Hanson 1974, chapter 23.
+    exactly.
+    *Source:* Lawson and Hanson 1974, chapter 23.
     """
     one, none = np.ones(len(a)), np.zeros(len(a))
     sums = np.vstack((np.hstack((one, np.zeros(len(b)))), np.hstack((none, np.ones(len(b))))))

@@ -161,8 +161,8 @@ def four_bars(loops, angle, omega, masses=None):
 def four_bars_motion(mechanism, g, t):
     """Return (angle, rate) of the cranks of four_bars at t; all cranks stay parallel, so one angle describes them.
 
-    I θ̈ = −G cos θ,   I = Σ m/3 of the cranks + Σ m of the couplers,   G = (Σ ½ m of the cranks + Σ m of the
-    couplers) g
+    I θ̈ = −G cos θ,   I = Σ m/3 of the cranks + Σ m of the couplers
+    G = (Σ ½ m of the cranks + Σ m of the couplers) g
     """
     cranks, couplers = np.sum(mechanism.m[:-1:2]), np.sum(mechanism.m[1:-1:2])
     rate = (0.5 * cranks + couplers) * g / (cranks / 3.0 + couplers)
@@ -216,9 +216,7 @@ def bricard_state(psi):
 def bricard_motion(g, t):
     """Return (centres (5, 3) [m] at t, ψ, ψ̇), released from the cube, with gravity along −y.
 
-    Lagrange's equation for ψ.
-
-    I(ψ) ψ̈ + ½ I′ ψ̇² + V′ = 0, with derivatives by complex steps.
+    Lagrange's equation for ψ is  I(ψ) ψ̈ + ½ I′ ψ̇² + V′ = 0,  with derivatives by complex steps.
     """
     moments = np.where(EDGES[:5] != 0.0, THICK, 1.0) / 12.0
 

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def cross_matrix(a):
-    """Return (3, 3): times b it is a × b."""
+    """Return the matrix (3, 3) that maps b to a × b."""
     x, y, z = a
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 

@@ -105,10 +105,11 @@ def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
 def rope_lag(n, l, m, g, T, late=0.0, ahead=0.0):
     """Return |∂x/∂dt| [m/s] of all points at T: the error of a first-order method to first order in dt.
 
-    The projection method takes the links' forces at the end of each step,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt²
-    (g + W Jᵀ(xₙ₊₁) λₙ₊₁). Relative to the middle, tensions pull along e + dt ė (late = 1).  Its start,
-    x₁ − x₀ = dt² a, is that of the velocity ½dt later (ahead = ½).  pymunk takes the links' directions in the
-    middle of that difference (late = 0) and moves before it pulls, x₁ = x₀: ahead = −½.
+    The projection method takes the links' forces at the end of each step,
+        xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² (g + W Jᵀ(xₙ₊₁) λₙ₊₁).
+    Relative to the middle, tensions pull along e + dt ė (late = 1).  Its start, x₁ − x₀ = dt² a, is that of the
+    velocity ½dt later (ahead = ½).  pymunk takes the links' directions in the middle of that difference (late = 0)
+    and moves before it pulls, x₁ = x₀: ahead = −½.
     """
     # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: 0.01 m/s
     h = 1e-4
@@ -379,8 +380,7 @@ class RopeMotion(NamedTuple):
         def predicted_error(p, dt):
             """pymunk moves the points first and then corrects each link within one step.
 
-            In a rope of several links its sweeps do
-            not converge: the band is wider by half of the error.
+            In a rope of several links its sweeps do not converge: the band is wider by half of the error.
             """
             return widened(law(p), dt, self.floor(p, dt), UNFINISHED)
         return predicted_error

@@ -143,9 +143,9 @@ class ErrorLaw:
 
     It is exact to round-off as long as the table is run with the same number of steps, up to `finest`.  For more
     steps it is an expansion of three terms, such as  e(h) = C hᵏ + D hᵏ⁺¹ + E hᵏ⁺²,  through the three finest runs
-    of the table. Its uncertainty is the amount by which the expansion through the three runs before misses the
-    finest one. *Source:* Hairer, Nørsett, Wanner 1993, II.8: the error of a one-step method has an expansion in
-    powers of h.
+    of the table.  Its uncertainty is the amount by which the expansion through the three runs before misses the
+    finest one.
+    *Source:* Hairer, Nørsett, Wanner 1993, II.8: the error of a one-step method has an expansion in powers of h.
     """
 
     def __init__(self, run, law, powers, T, finest, doublings=MOST_DOUBLINGS):

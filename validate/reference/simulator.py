@@ -88,7 +88,8 @@ def rods_step(theta, p, h, C, inertia, w):
     """Return (θ, p) after h by the discrete Lagrangian  ½ m |Δx|²/h + ½ I |Δθ|²/h − ½ h (V + V').
 
     RATTLE takes the same step in Cartesian coordinates.  In angles nothing has to be projected: p = −∂L/∂θ gives
-    the new θ by Newton's method, and p' = ∂L/∂θ'. *Source:* Marsden and West 2001, 3.5.
+    the new θ by Newton's method, and p' = ∂L/∂θ'.
+    *Source:* Marsden and West 2001, 3.5.
     """
     here = np.sum(C * np.sin(theta[:, None] - theta), axis=1) + 0.5 * h * h * w * np.sin(theta)
     now = theta + h * np.linalg.solve(C * np.cos(theta[:, None] - theta) + inertia * np.eye(theta.size), p)

@@ -186,9 +186,9 @@ def net_limits(make, T, truth, uncertainty):
     """Return the field `limit` of a net: by_mode, with √2 times its frequencies at rest, but none above the largest.
 
     Released without tension, threads oscillate between zero and twice their rest tension.  Tension holds a slow
-    mode, so its ω² oscillates between zero and twice its value.  A spring's stiffness is k along it and k (1 −
-    rest/l) < k across, so no mode of any shape of the net exceeds √(k/m) |B|. make(p) → ReferenceNetwork;
-    truth(p, t);    uncertainty: of the truth, relative [-]
+    mode, so its ω² oscillates between zero and twice its value.  A spring's stiffness is k along it and
+    k (1 − rest/l) < k across, so no mode of any shape of the net exceeds √(k/m) |B|.
+    make(p) → ReferenceNetwork;    truth(p, t);    uncertainty: of the truth, relative [-]
     """
     def limits(p, dt):
         """Each mode on its own, with a margin for large motion; every engine here is symplectic Euler, order 1."""
@@ -245,8 +245,8 @@ def pymunk_net_model(net, h, steps, iterations=10):
     Points move with their old velocities; the springs pull at the new positions; then e^(−k_v h/m) reduces all
     velocities, and gravity acts.  Then each damper in sequence moves the rate of its spring towards its target, by
     the fraction  1 − e^(−k_d h/m'),  1/m' = Σ 1/m of the free ends.  The target is zero on the first visit, and
-    then the rate that the last visit left.  One round of visits is one triangular system. *Source:* Chipmunk 7,
-    cpSpaceStep.c and cpDampedSpring.c.
+    then the rate that the last visit left.  One round of visits is one triangular system.
+    *Source:* Chipmunk 7, cpSpaceStep.c and cpDampedSpring.c.
     """
     held = np.array([net.free()[i] or net.free()[j] for i, j in net.pairs])
     B, free, x, v = net.spring_matrix()[held], net.free()[:, None], net.x, net.v

@@ -14,7 +14,7 @@ _computing: list[dict] = []  # [{key: number}] of the block `computed_anew`
 
 @cache
 def numbers(scene):
-    """{key: number} that were stored for a scene."""
+    """Return {key: number} that were stored for a scene."""
     return kept(scene).get("numbers", {})
 
 

@@ -7,6 +7,7 @@ tuples in world coordinates.  The numbers are plain floats, because arrays of th
 
 from collections.abc import Callable
 from functools import cache
+from itertools import accumulate, chain, pairwise
 from math import cos, sin, sqrt, tan
 from typing import NamedTuple
 
@@ -234,9 +235,14 @@ def kicked(free):
     return step
 
 
+FIVE = GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA     # shares of Suzuki's substeps
+ENDS = 0.0, 1.0                                          # times of the torques of one step
+ENDS_OF_FIVE = tuple(chain.from_iterable(pairwise(accumulate(FIVE, initial=0.0))))
+
+
 def composed(step):
     def five(torque, q, L, I, h):
-        for share in (GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA):
+        for share in FIVE:
             q, L = step(torque, q, L, I, share * h)
         return q, L
     return five
@@ -249,6 +255,7 @@ class Turn(NamedTuple):
     order: int
     step: Callable
     powers: tuple | None = None          # the first three powers of h in its error; without them order, order + 1, …
+    torques: tuple = (0.0,)              # the times in a step at which it takes the torque [h]
 
 
 MATRIX = Turn(1, kept_L(by_columns))
@@ -256,11 +263,11 @@ AXIS_ANGLE = Turn(1, kept_L(exactly))
 QUATERNION = Turn(1, kept_L(nearly))
 GYROSCOPIC = Turn(1, kept_omega(False, nearly))
 IMPLICIT_GYROSCOPIC = Turn(1, kept_omega(True, nearly))
-RUNGE_KUTTA = Turn(4, classical)
-MIDPOINT_TURN = Turn(2, kicked(free_midpoint), EVEN[2])
-SPLITTING = Turn(2, kicked(free_splitting), EVEN[2])
-COMPOSED_SPLITTING = Turn(4, composed(SPLITTING.step), EVEN[4])
-COMPOSED_MIDPOINT = Turn(4, composed(MIDPOINT_TURN.step), EVEN[4])
+RUNGE_KUTTA = Turn(4, classical, torques=(0.0, 0.5, 0.5, 1.0))
+MIDPOINT_TURN = Turn(2, kicked(free_midpoint), EVEN[2], ENDS)
+SPLITTING = Turn(2, kicked(free_splitting), EVEN[2], ENDS)
+COMPOSED_SPLITTING = Turn(4, composed(SPLITTING.step), EVEN[4], ENDS_OF_FIVE)
+COMPOSED_MIDPOINT = Turn(4, composed(MIDPOINT_TURN.step), EVEN[4], ENDS_OF_FIVE)
 # the engines: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω; Runge–Kutta 4
 EXPLICIT_TERM = Turn(1, kept_omega(False, exactly))
 IMPLICIT_TERM = Turn(1, kept_omega(True, exactly))

@@ -3,14 +3,17 @@
 from statistics import median
 from typing import NamedTuple
 
+from solutions.checks import BadInput
+
 from ..check import Verdict
-from ..products import product_named
+from ..products import PRODUCTS
 
 GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.REFERENCE}
 ORDER = 0.05                 # a smaller change of an order is noise of the fit [-]
 ERROR = 0.01                 # a smaller relative change of an error is not listed [-]
 ROUND_OFF = 1e-11            # relative errors below this are round-off, and differ from machine to machine [-]
 SLOWER = 1.3                 # ratio of times, after both reports are brought to one speed, from which it is listed [-]
+FIRST_FORMAT = 2             # the first that a report names
 KINDS = ("verdicts", "findings", "orders", "errors", "times")
 
 
@@ -23,8 +26,21 @@ class Change(NamedTuple):
 
 
 def changes(old, new):
-    """Return every Change from one report to another; both are the content of a report.json."""
-    return [*verdicts(old, new), *findings(old, new), *orders_and_errors(old, new), *times(old, new)]
+    """Return every Change from one report to another; both are the content of a report.json, of any format.
+
+    Raises BadInput where their formats do not have the same records.
+    """
+    try:
+        return [*verdicts(old, new), *findings(old, new), *orders_and_errors(old, new), *times(old, new)]
+    except (KeyError, TypeError, ValueError):
+        formats = " and ".join(map(format_of, (old, new)))
+        raise BadInput("this pair of reports", f"not comparable, with the formats {formats}",
+                       "make one of them again") from None
+
+
+def format_of(report):
+    """Return the format of a report's records, in words; the first one had no number."""
+    return str(report["run"].get("format", f"older than {FIRST_FORMAT}"))
 
 
 def curves(report):
@@ -44,8 +60,8 @@ def verdicts(old, new):
             yield Change("verdicts", place, f"is new: {now['verdict']}", Verdict(now["verdict"]) is Verdict.DEPARTS)
         elif now is None:
             products = {c.get("product") for c in after.values()}
-            name = was.get("product")
-            optional = bool(name) and name not in products and product_named(name).optional
+            left_out = {product.name for product in PRODUCTS if product.optional} - products
+            optional = was.get("product") in left_out
             gone = "was left out" if optional else "is gone"
             yield Change("verdicts", place, f"{gone}; it was: {was['verdict']}", not optional)
         elif was["verdict"] != now["verdict"]:
@@ -58,7 +74,7 @@ def because(curve):
 
 
 def findings(old, new):
-    """Findings of the stability cases that hold in one report only, and cases or findings that only one report has."""
+    """Yield findings that hold in one report only, and stability cases or findings that only one report has."""
     before, after, skipped = by_case(old), by_case(new), not_run(new)
     for place in dict.fromkeys([*before, *after]):
         was, now = before.get(place, {}), after.get(place, {})
@@ -81,7 +97,7 @@ def findings(old, new):
 
 
 def not_run(report):
-    """{(lesson/slug, quantity)} of the findings that the machine of a report could not make."""
+    """Return {(lesson/slug, quantity)} of the findings that the machine of a report could not make."""
     return {(f"{case['lesson']}/{case['slug']}", one["quantity"]) for case in report["stability"]
             for one in case.get("not_run", ())}
 

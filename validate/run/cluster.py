@@ -1,8 +1,8 @@
 """`validate --executor tcp://HOST:PORT`: measure on a running Dask cluster.
 
-A worker measures in a process of its own, as a run on this machine does, and one call at a time, whatever its
---nthreads.  What is timed goes to one worker of each machine, so that nothing of the run is beside it.  What a dead
-worker was measuring is measured again elsewhere.  A cluster runs any code sent to its ports: keep it in a network of
+A worker measures in a process of its own, as a run on this machine does.  It makes one call at a time, also if its
+--nthreads is larger.  Timed calls go to one worker of each machine, so that no other call of the run disturbs them.
+A call of a worker that dies is repeated elsewhere.  A cluster runs any code sent to its ports: keep it in a network of
 your own.
 """
 
@@ -23,7 +23,7 @@ from solutions.checks import BadInput
 from ..subject import modules
 from .processes import Affinity, outcome
 from .run import processor
-from .scheduler import CONNECT_WITHIN, connected, workers_of
+from .scheduler import CONNECT_WITHIN, connected, in_a_line, refusal, without_workbook, workers_of
 from .store import installed_versions, sources
 
 WORKERLESS = 30.0            # time that a cluster may be without any worker [s]: a nanny starts a new one in 2
@@ -150,19 +150,6 @@ def taken_back(busy, there):
 
 def one_of_each_machine(workers):
     return list({worker.rpartition(":")[0]: worker for worker in sorted(workers, reverse=True)}.values())
-
-
-def without_workbook(error):
-    return f"without a workbook that runs ({in_a_line(error)})"
-
-
-def in_a_line(error):
-    return " ".join(f"{type(error).__name__}: {error}".split())
-
-
-def refusal(thing, unfit):
-    remedy = "give it the workbook and the locked versions that are here, start it again, and repeat the command"
-    return BadInput(thing, unfit, remedy)
 
 
 def makeup(of):

@@ -2,7 +2,7 @@
 
 A scene runs its methods and what it names of a lesson; a case runs what it names of the lesson that it is given.
 Both run all functions that these call in turn.  The table says where a wrong answer can show, and that no exercise is
-without such a place; whether the place notices is what the seeded faults of the tests show.
+without such a place.  The seeded faults of the tests show whether the place notices it.
 """
 
 import ast

@@ -25,7 +25,7 @@ except ImportError:                                                  # Windows
     import msvcrt
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
-QUIET = 2.0  # after Ctrl-C, another one is ignored for so long [s]
+QUIET = 2.0  # after Ctrl-C, another one is ignored for this long [s]
 PR_SET_PDEATHSIG = 1                                                 # of Linux's <sys/prctl.h>
 
 # BadInput is constructed from the parts of its sentence; an exception is unpickled from the sentence itself
@@ -181,7 +181,7 @@ def workers(count):
 
 def work(pipe):
     """Answer calls until the run closes the pipe or ends."""
-    gc.set_threshold(50_000, 50, 50)                                 # compiling makes much and drops little: 5 % sooner
+    gc.set_threshold(50_000, 50, 50)         # compiling allocates much and frees little: this is 5 % faster
     for each in ENDING:
         signal.signal(each, signal.SIG_IGN)
     if sys.platform == "linux":                                      # during compiled code the thread below cannot run

@@ -57,7 +57,7 @@ def measure_errors(store, names, plan, pool, bars):
 
 
 def measure_times(store, names, plan, pool, bars):
-    """Run times, one scene after the other on a machine and nothing beside them, in a process that knows its lesson."""
+    """Measure run times, one scene at a time on a machine, in a process that has loaded its lesson if there is one."""
     todo = [n for n in names if not store.has("times", n)]
     bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
     calls = {("times", name): (measure.times, name, plan, {"cases": store.get("errors", name)["cases"]})
@@ -68,7 +68,7 @@ def measure_times(store, names, plan, pool, bars):
 
 
 def report_on(store, names, plan, pool, bars, measuring=None):
-    """Write the report of all scenes that were measured with this code and this plan; the path of its front page."""
+    """Write the report of all scenes that were measured with this code and this plan; return its front page."""
     from .. import report  # brings matplotlib along
     shown = modules.in_course_order(store.scenes())
     results, stability = store.results(shown), store.stability(shown)

@@ -30,3 +30,19 @@ def workers_of(client):
         return dict(client.nthreads()) if client.status == "running" else {}
     except Exception:                                                  # Dask raises errors of many kinds when cut off
         return {}
+
+
+def without_workbook(error):
+    """Return, in words, that a worker cannot run the workbook."""
+    return f"without a workbook that runs ({in_a_line(error)})"
+
+
+def in_a_line(error):
+    """Return an error with its kind in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def refusal(thing, unfit):
+    """Return the BadInput for a scheduler or a worker that may not take part."""
+    remedy = "give it the workbook and the locked versions that are here, start it again, and repeat the command"
+    return BadInput(thing, unfit, remedy)

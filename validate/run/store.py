@@ -164,7 +164,7 @@ def stored_report(folder):
     """Return the content of a report's report.json, of any version.  Raises BadInput for a folder that is none."""
     try:
         report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-        return {part: report[part] for part in ("run", "scenes", "stability")}
+        return {"run": dict(report["run"]), "scenes": report["scenes"], "stability": report["stability"]}
     except (OSError, ValueError, KeyError, TypeError):
         raise BadInput(f"folder {str(folder)!r}", "not a report", "name the folder that `validate` wrote") from None
 
@@ -172,7 +172,7 @@ def stored_report(folder):
 def report_of_this_version(folder):
     """Return the same.  Raises BadInput for a report whose results are stored in another form than today's."""
     report = stored_report(folder)
-    if not isinstance(report["run"], dict) or report["run"].get("format") != FORMAT:
+    if report["run"].get("format") != FORMAT:
         raise BadInput(f"report {str(folder)!r}", "of another version of the workbook", "make it again")
     return report
 

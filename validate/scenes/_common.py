@@ -3,7 +3,7 @@
 from typing import Any
 
 from solutions.checks import check_positive
-from validate.scene import EXACT, EngineRun, by_order
+from validate.scene import EXACT, EngineRun, by_order, check_known
 
 # fields of a scene in which nothing moves and nothing can be refined
 ANSWER: dict[str, Any] = {"moves": False, "duration": 1.0, "steps": (1,), "refinement": ""}
@@ -13,6 +13,15 @@ def check_positives(p, *names):
     """Raise BadInput unless these parameters of a case are positive."""
     for name in names:
         check_positive(name, getattr(p, name))
+
+
+def cases_with(parameter, names, cases):
+    """Return the field `supports` of a Runner that can do the cases in which a parameter is one of these names.
+
+    Raises BadInput for a name that the parameter has in no case.
+    """
+    check_known(f"parameter {parameter!r} of a runner", names, {getattr(p, parameter): p for p in cases.values()})
+    return lambda p: getattr(p, parameter) in names
 
 
 def measured(*parts):

@@ -32,13 +32,17 @@ def net(n_springs, seed=1):
     return x, np.zeros_like(x), mesh
 
 
-def numpy_forces_add_at(x, v, mesh):
-    """Compute spring forces in plain NumPy style: all springs at once, np.add.at for the ends."""
+def pulls(x, v, mesh):
+    """Return the forces (s, d) of all springs on their first ends, in plain NumPy style."""
     r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
     length = np.sqrt(np.sum(r * r, axis=1))
     tension = mesh.k * (length - mesh.rest) + mesh.k_d * np.sum(r * u, axis=1) / length
-    pull = (tension / length)[:, None] * r
-    force = np.zeros_like(x)
+    return (tension / length)[:, None] * r
+
+
+def numpy_forces_add_at(x, v, mesh):
+    """Compute the forces on all points, with np.add.at for the ends."""
+    pull, force = pulls(x, v, mesh), np.zeros_like(x)
     np.add.at(force, mesh.i, pull)
     np.subtract.at(force, mesh.j, pull)
     return force
@@ -46,10 +50,7 @@ def numpy_forces_add_at(x, v, mesh):
 
 def numpy_forces_bincount(x, v, mesh):
     """Compute the same with the fastest scatter that NumPy has for few columns."""
-    r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
-    length = np.sqrt(np.sum(r * r, axis=1))
-    tension = mesh.k * (length - mesh.rest) + mesh.k_d * np.sum(r * u, axis=1) / length
-    pull = (tension / length)[:, None] * r
+    pull = pulls(x, v, mesh)
     columns = [
         np.bincount(mesh.i, pull[:, c], len(x)) - np.bincount(mesh.j, pull[:, c], len(x)) for c in range(x.shape[1])
     ]

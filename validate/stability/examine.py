@@ -28,7 +28,7 @@ def subject_of(case, of="solutions", compiled=True):
 
 
 def examine(case, of="solutions", compiled=True):
-    """The findings and the picture of one case."""
+    """Return the findings and the picture of one case."""
     with np.errstate(all="ignore"):              # overflow is what an unstable run does
         found, picture = found_by(case, subject_of(case, of, compiled))
         return Examined(case.slug, case.title, case.lesson, found, picture, found.not_run)

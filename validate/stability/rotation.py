@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from solutions.checks import Diverged
+from validate import methods
 from validate.methods import TURNS
 from validate.reference import turns
 from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
@@ -31,8 +32,11 @@ from validate.stability.case import (
 
 EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
-KEEP_L = [m.function for m in TURNS if not m.function.endswith("gyroscopic_step")]
-KEEP_ENERGY = "midpoint_step", "composed_midpoint_step", "splitting_step", "composed_splitting_step"
+TURN = {method.function: method.table for method in TURNS}           # the same steps, written again
+KEEP_L = [m.function for m in TURNS if m not in (methods.GYROSCOPIC, methods.IMPLICIT_GYROSCOPIC)]
+COMPOSED = [m.function for m in (methods.COMPOSED_MIDPOINT, methods.COMPOSED_SPLITTING)]
+KEEP_ENERGY = [m.function for m in (methods.MIDPOINT_TURN, methods.COMPOSED_MIDPOINT, methods.SPLITTING,
+                                    methods.COMPOSED_SPLITTING)]
 AT_START = np.array([1.0, 0.0, 0.0, 0.0])
 
 
@@ -74,7 +78,7 @@ def energies(lesson, method, I, omega, dt, ts):
 
 def substeps(method):
     """Return the number of rotations of which a step of a method consists."""
-    return 5 if method.startswith("composed") else 1
+    return 5 if method in COMPOSED else 1
 
 
 # ---------------------------------------------------------------------------------------------- drift of energy
@@ -455,23 +459,6 @@ def loads_and_derivatives(lesson, check):
 
 # ---------------------------------------------------------------------------------------------- one step
 
-GAMMA = turns.GAMMA
-EARLIER = np.cumsum([0.0, GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA])        # times of Suzuki's substeps [dt]
-FIVE = tuple(np.stack((EARLIER[:-1], EARLIER[1:]), axis=1).ravel())
-SECOND_WRITING = {           # step of the lesson: the same in the reference, and the times of its torques [dt]
-    "matrix_step": (turns.MATRIX, (0.0,)),
-    "axis_angle_step": (turns.AXIS_ANGLE, (0.0,)),
-    "quaternion_step": (turns.QUATERNION, (0.0,)),
-    "gyroscopic_step": (turns.GYROSCOPIC, (0.0,)),
-    "implicit_gyroscopic_step": (turns.IMPLICIT_GYROSCOPIC, (0.0,)),
-    "runge_kutta_step": (turns.RUNGE_KUTTA, (0.0, 0.5, 0.5, 1.0)),
-    "midpoint_step": (turns.MIDPOINT_TURN, (0.0, 1.0)),
-    "splitting_step": (turns.SPLITTING, (0.0, 1.0)),
-    "composed_midpoint_step": (turns.COMPOSED_MIDPOINT, FIVE),
-    "composed_splitting_step": (turns.COMPOSED_SPLITTING, FIVE),
-}
-
-
 def random_motion(lesson, rng):
     """Return a free body with unequal moments under a torque (t, q, L, body) of time and orientation, and a step of it.
 
@@ -486,16 +473,17 @@ def random_motion(lesson, rng):
 
 
 def written_again(method, on, n=1):
-    """Return [(R, L)] before and after each of n steps of a motion by the reference, which does not depend on time.
+    """Return [(R, L)] before and after each of n steps of a motion by the reference.
 
-    So its k-th torque of a step is that of the k-th time in SECOND_WRITING.
+    The torque of the reference depends on the orientation only.  Its k-th call in a step gets the torque of the k-th
+    time in `torques`.
     """
-    step, times = SECOND_WRITING[method]
+    turn = TURN[method]
     w, x, y, z = on.q
     q, L, states = (complex(w, -z), complex(-y, -x)), tuple(on.L), [(on.R, on.L)]
     for k in range(n):
-        clock = iter(on.t + (k + np.array(times)) * on.dt)
-        q, L = step.step(lambda M, clock=clock: on.tau(next(clock), np.array(M)), q, L, on.body.I_body, on.dt)
+        clock = iter(on.t + (k + np.array(turn.torques)) * on.dt)
+        q, L = turn.step(lambda M, clock=clock: on.tau(next(clock), np.array(M)), q, L, on.body.I_body, on.dt)
         states.append((np.array(turns.matrix(q)), np.array(L)))
     return states
 

@@ -27,6 +27,33 @@ def length(r):
     return np.sqrt(np.sum(r * r))
 
 
+def gravity_error(lesson, rng):
+    """Return the relative error of Newton's attraction at two random places, from U = −G m_a m_b/r."""
+    x_a, x_b, (m_a, m_b, G) = rng.normal(size=3), 3.0 + rng.normal(size=3), rng.uniform(0.5, 2.0, 3)
+    truth = -gradient(lambda x: -G * m_a * m_b / length(x_b - x), x_a)
+    return length(lesson.universal_gravity(x_a, x_b, m_a, m_b, G) - truth) / length(truth)
+
+
+def constraint_errors(lesson, rng):
+    """Return {name: relative error} of soft constraints and contacts on a random sphere, from U = ½k C²."""
+    centre, x, v = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
+    R, k, k_d = rng.uniform(0.5, 2.0, 3)
+    surface = lambda x: length(x - centre) - R
+    C, slope = surface(x), gradient(surface, x)
+    rate = slope @ v
+    pull = -gradient(lambda x: 0.5 * k * surface(x) ** 2, x)
+    power = lesson.soft_constraint_force(C, rate, slope, k, k_d) @ v
+    deep, slow = -abs(C), 0.5 * k * abs(C) / k_d                 # the damper alone would pull from 2 `slow` on
+    contact = lambda C, rate: lesson.soft_contact_force(C, rate, slope, k, k_d)
+    return {
+        "soft": length(lesson.soft_constraint_force(C, 0.0, slope, k, k_d) - pull) / (k * abs(C)),
+        "power": abs(power - pull @ v + k_d * rate**2) / (k * abs(C * rate) + k_d * rate**2),
+        "contact": length(contact(deep, slow) - 0.5 * k * abs(C) * slope) / (k * abs(C)),
+        "free": np.max([*(length(contact(gap, -10.0 * slow)) for gap in (abs(C), NEARLY, 0.0)),
+                        length(contact(deep, 3.0 * slow))]),
+    }
+
+
 @case("forces", "Forces are derivatives of energies", compiled=False)
 def forces(lesson, check):
     """Compare forces with derivatives of energies: U = −G m_a m_b/r for gravity, U = ½k C² for a soft constraint.
@@ -34,36 +61,14 @@ def forces(lesson, check):
     The damper of the constraint takes k_d Ċ² of power.
     """
     rng = np.random.default_rng(21)
-    errors = {name: [] for name in ("gravity", "soft", "power", "contact", "free")}
-    for _ in range(CASES):
-        x_a, x_b, (m_a, m_b, G) = rng.normal(size=3), 3.0 + rng.normal(size=3), rng.uniform(0.5, 2.0, 3)
-        truth = -gradient(lambda x, b=x_b, k=G * m_a * m_b: -k / length(b - x), x_a)
-        errors["gravity"].append(length(lesson.universal_gravity(x_a, x_b, m_a, m_b, G) - truth) / length(truth))
-
-        centre, x, v = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
-        R, k, k_d = rng.uniform(0.5, 2.0, 3)
-        surface = lambda x, c=centre, R=R: length(x - c) - R
-        C, slope = surface(x), gradient(surface, x)
-        rate = slope @ v
-        pull = -gradient(lambda x, k=k, C=surface: 0.5 * k * C(x) ** 2, x)
-        errors["soft"].append(length(lesson.soft_constraint_force(C, 0.0, slope, k, k_d) - pull) / (k * abs(C)))
-        power = lesson.soft_constraint_force(C, rate, slope, k, k_d) @ v
-        errors["power"].append(abs(power - pull @ v + k_d * rate**2) / (k * abs(C * rate) + k_d * rate**2))
-
-        deep, slow = -abs(C), 0.5 * k * abs(C) / k_d             # the damper alone would pull from 2 `slow` on
-        pushed = lesson.soft_contact_force(deep, slow, slope, k, k_d)
-        errors["contact"].append(length(pushed - 0.5 * k * abs(C) * slope) / (k * abs(C)))
-        errors["free"].append(max(length(lesson.soft_contact_force(abs(C), -10.0 * slow, slope, k, k_d)),
-                                  length(lesson.soft_contact_force(NEARLY, -10.0 * slow, slope, k, k_d)),
-                                  length(lesson.soft_contact_force(0.0, -10.0 * slow, slope, k, k_d)),
-                                  length(lesson.soft_contact_force(deep, 3.0 * slow, slope, k, k_d))))
+    errors = [{"gravity": gravity_error(lesson, rng), **constraint_errors(lesson, rng)} for _ in range(CASES)]
     for name, claim in (
             ("gravity", "Newton's attraction is the derivative of −G m_a m_b/r."),
             ("soft", "A soft constraint without damper is the derivative of ½k C²."),
             ("power", "Its damper takes the power k_d Ċ²."),
             ("contact", "A soft contact pushes with −(k C + k_d Ċ) as long as that is a push."),
             ("free", "A soft contact neither pulls nor acts at a distance.")):
-        check.agree(claim, f"{name}: largest error [-]", max(errors[name]), ROUNDED)
+        check.agree(claim, f"{name}: largest error [-]", np.max([one[name] for one in errors]), ROUNDED)
     weight = lesson.universal_gravity(np.zeros(3), np.array([0.0, 0.0, -RADIUS]), 1.0, EARTH, G_SI)
     # G is known to 2.2e-5, and so is the mass of the Earth; their product is known to 2e-9.
     check.agree("Near the ground a kilogram weighs GM/R².", "weight of a kilogram: relative error [-]",
@@ -131,6 +136,31 @@ def angular_spring(lesson, check):
     check.agree("They have no moment.", "sum of the moments over the largest force [m]", moment, ROUNDED)
 
 
+def convex_stiffness(r, k, rest):
+    """Return (force, positive part of −∂F/∂r) of a spring along r (3,), by derivatives along the imaginary axis."""
+    push = lambda r: k * (length(r) - rest) * r / length(r)
+    hessian = np.array([push(r + IMAGINARY * 1j * e).imag for e in np.eye(3)]) / IMAGINARY
+    values, axes = np.linalg.eigh(hessian)
+    return push(r), axes * np.maximum(values, 0.0) @ axes.T
+
+
+def dense_net(x, v, pairs, k, k_d, rest):
+    """Return (K (d, d), D (d, d), F (n, 3), blocks (s, 3, 3)) of a net, d = 3n: −∂F/∂x, −∂F/∂v, forces, parts of K."""
+    n = len(x)
+    K, D, F, blocks = np.zeros((3 * n, 3 * n)), np.zeros((3 * n, 3 * n)), np.zeros((n, 3)), []
+    for s, (i, j) in enumerate(pairs):
+        r, u = x[j] - x[i], v[j] - v[i]
+        push, positive = convex_stiffness(r, k[s], rest[s])
+        along = r / length(r)
+        ends = np.kron(np.eye(n)[i] - np.eye(n)[j], np.eye(3))
+        K += ends.T @ positive @ ends
+        D += ends.T @ (k_d[s] * np.outer(along, along)) @ ends
+        F[i] += push + k_d[s] * (u @ along) * along
+        F[j] -= push + k_d[s] * (u @ along) * along
+        blocks.append(positive)
+    return K, D, F, np.array(blocks)
+
+
 @case("large-step", "The linearly implicit step of a mesh", compiled=False)
 def large_step(lesson, check):
     """Compare the large step with (M + h k_v − h ∂F/∂v − h² ∂F/∂x) Δv = h (M a + h ∂F/∂x v), solved densely.
@@ -140,28 +170,15 @@ def large_step(lesson, check):
     """
     rng, stiffness, steps = np.random.default_rng(24), 0.0, 0.0
     pairs = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 4), (3, 4)])
-    i, j = pairs.T
     for _ in range(CASES // 5):
         x, v, m = rng.normal(size=(5, 3)), rng.normal(size=(5, 3)), rng.uniform(0.5, 2.0, 5)
         k, k_d, rest = rng.uniform(50.0, 200.0, 7), rng.uniform(0.5, 2.0, 7), rng.uniform(0.5, 2.0, 7)
         gravity, wind, k_v, h = rng.normal(size=3), rng.normal(size=3), rng.uniform(0.1, 1.0), rng.uniform(0.05, 0.2)
         v[0] = 0.0
         network = lesson.make_spring_network(x, m, [0], pairs, k, k_d, gravity, wind, k_v)._replace(rest=rest)
-        K, D, F = np.zeros((15, 15)), np.zeros((15, 15)), np.zeros((5, 3))
-        blocks, _ = lesson.spring_stiffness(x, network)
-        for s in range(7):
-            r, u = x[j[s]] - x[i[s]], v[j[s]] - v[i[s]]
-            push = lambda r, s=s, k=k, rest=rest: k[s] * (length(r) - rest[s]) * r / length(r)
-            hessian = np.array([push(r + IMAGINARY * 1j * e).imag for e in np.eye(3)]) / IMAGINARY
-            values, axes = np.linalg.eigh(hessian)
-            positive = axes * np.maximum(values, 0.0) @ axes.T
-            stiffness = np.maximum(stiffness, np.max(np.abs(blocks[s] - positive)) / k[s])
-            n = r / length(r)
-            ends = np.kron(np.eye(5)[i[s]] - np.eye(5)[j[s]], np.eye(3))
-            K += ends.T @ positive @ ends
-            D += ends.T @ (k_d[s] * np.outer(n, n)) @ ends
-            F[i[s]] += push(r) + k_d[s] * (u @ n) * n
-            F[j[s]] -= push(r) + k_d[s] * (u @ n) * n
+        K, D, F, positive = dense_net(x, v, pairs, k, k_d, rest)
+        blocks = np.array(lesson.spring_stiffness(x, network)[0])
+        stiffness = np.maximum(stiffness, np.max(np.abs(blocks - positive) / k[:, None, None]))
         M, free = np.repeat(m, 3), np.repeat(np.arange(5) > 0, 3)
         right = h * (M * np.tile(gravity, 5) + (F + wind - k_v * v).ravel() - h * K @ v.ravel())
         A = np.diag(M + h * k_v) + h * D + h * h * K

@@ -22,7 +22,7 @@ class World(NamedTuple):
     """A Model in an engine."""
     step: Callable           # () → None: advance by dt
     state: Callable          # () → State of all bodies, as the Model numbers them; an angle may lack whole turns
-    pushes: Callable         # () → [Push, …] of the last step: all that the engine tells of contacts and joints
+    pushes: Callable         # () → [Push, …] of the last step: all that the engine reports of contacts and joints
     close: Callable = lambda: None
 
 

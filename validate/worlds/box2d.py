@@ -178,6 +178,6 @@ def add_joints(world, model, bodies):
 
 
 def pushes(model, joints):
-    """Return the forces of joints.  Its binding tells no forces of contacts."""
+    """Return the forces of joints.  Its binding reports no forces of contacts."""
     return [Push(joint.a, joint.b, np.array(tuple(made.get_constraint_force()), float), n)
             for n, (joint, made) in enumerate(zip(model.joints, joints))]

@@ -365,7 +365,7 @@ def push(parts, t):
 def pushes(parts):
     """Return the contact forces, one for each point.
 
-    The engine tells no forces of joints in maximal coordinates.  In reduced ones its joint reaction forces are not
+    The engine reports no forces of joints in maximal coordinates.  In reduced ones its joint reaction forces are not
     those of the constraint: two rods that swing gave 17 N where MuJoCo and Box2D have 12 N.
     """
     number, found = {handle: k for k, handle in enumerate(parts.handles)}, []

@@ -159,7 +159,7 @@ def push_in_each_step(model, bodies, state, clock, dt):
 
 
 def pushes(bodies, dt):
-    """Return the contact forces, one for each pair.  The engine tells of a joint only how large its impulse was."""
+    """Return the contact forces, one for each pair.  Of a joint the engine reports only the size of its impulse."""
     import pymunk
     number, found = {id(body): k for k, body in enumerate(bodies)}, {}
 

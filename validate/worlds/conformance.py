@@ -1,13 +1,14 @@
 """A reader's own engine in every described scene: where it agrees with the truth, with which order, what it refuses.
 
-No theory of this engine is known, and it never meets that of another one.  So only its convergence is judged: whether
-its error vanishes with its step.
+No theory of this engine is known, and it is never compared with the theory of another one.  So only its convergence
+is judged: whether its error vanishes with its step.
 """
 
 import importlib.util
 import sys
 from collections.abc import Callable
 from contextlib import contextmanager
+from enum import StrEnum
 from html import escape
 from itertools import pairwise
 from pathlib import Path
@@ -19,7 +20,6 @@ from rich.table import Table
 from solutions.checks import BadInput
 from solutions.support.model import State, start_of
 
-from ..check import Verdict
 from ..measure.accuracy import ASYMPTOTIC, Outcome, finite, relative, shown_order
 from ..run.store import writable
 from ..subject.loading import TooLong, alarm
@@ -27,12 +27,19 @@ from .described import DESCRIBED
 
 MOST = {True: 500, False: 2000}              # most steps of a run, quick or not, where there are enough shorter runs
 RUNS = 4                                     # of each scene
-LEAST_ORDER = 0.7                            # from which on an error vanishes with the step: single runs scatter
+LEAST_ORDER = 0.7                            # of an error that vanishes with the step: single runs scatter
 EXACT = 1e-9                                 # error of a run that has no error but round-off [-]
 STUCK = 3.0                                  # error over the last changes: above it runs converge to another motion
 WITHIN = 60.0                                # in which a reader's engine must end all runs of a scene [s]
-SHOWN = "shown, not judged"
-REFUSES, FAILS = "refuses", "fails"
+
+
+class Judgement(StrEnum):
+    """The verdict on a reader's engine in one scene."""
+    AGREES = "agrees"
+    DEPARTS = "departs"
+    FAILS = "fails"
+    SHOWN = "shown, not judged"
+    REFUSES = "refuses"
 
 
 class Reader(NamedTuple):
@@ -49,7 +56,7 @@ class Row(NamedTuple):
     steps: tuple             # of each run
     errors: tuple            # relative, of each run; None where it failed
     order: float | None      # that the errors show
-    verdict: str
+    verdict: Judgement
     words: str               # the reason
     others: dict             # {name of an engine: its error with the most steps, or the reason why it has none}
 
@@ -128,31 +135,31 @@ def measured(reader, name, others, most):
     scene, p = described.scene, described.scene.parameters
     truth = np.array(scene.truth(p, scene.duration), float)
     steps = max(tuple(n for n in scene.steps if n <= most)[-RUNS:], scene.steps[:RUNS], key=len)
-    about = {"scene": name, "title": scene.title}
-    beside = {product.name: error_of(product, described, p, truth, steps[-1]) for product in others}
+    about = {"scene": name, "title": scene.title,
+             "others": {product.name: error_of(product, described, p, truth, steps[-1]) for product in others}}
+    no_runs = {"steps": (), "errors": (), "order": None}
     try:
         why = reader.refuses(described.model(p))
     except (Exception, SystemExit) as error:
-        return Row(**about, steps=(), errors=(), order=None, verdict=FAILS, words=f"refuses(model): {sentence(error)}",
-                   others=beside)
+        return Row(**about, **no_runs, verdict=Judgement.FAILS, words=f"refuses(model): {sentence(error)}")
     if why:
-        return Row(**about, steps=(), errors=(), order=None, verdict=REFUSES, words=str(why), others=beside)
+        return Row(**about, **no_runs, verdict=Judgement.REFUSES, words=str(why))
     try:
         with alarm(WITHIN):
             found = [run_to_end(reader.build, described, p, n) for n in steps]
     except TooLong as error:
-        return Row(**about, steps=(), errors=(), order=None, verdict=FAILS,
-                   words=f"its runs of {steps[0]:,} to {steps[-1]:,} steps are {error}", others=beside)
+        words = f"its runs of {steps[0]:,} to {steps[-1]:,} steps are {error}"
+        return Row(**about, **no_runs, verdict=Judgement.FAILS, words=words)
     errors = tuple(None if one.failure else relative(one.observed, truth) for one in found)
     rows = [{"dt": scene.duration / n, "steps": n, "error": error} for n, error in zip(steps, errors)]
     order = shown_order(rows, 10.0 * scene.truth_uncertainty)
     changes = [None if a.failure or b.failure else relative(b.observed, a.observed) for a, b in pairwise(found)]
     verdict, words = judged(errors, changes, order, scene.truth_uncertainty)
     if found[-1].failure:
-        verdict, words = FAILS, found[-1].failure
+        verdict, words = Judgement.FAILS, found[-1].failure
     elif described.shown:
-        verdict, words = SHOWN, described.shown
-    return Row(**about, steps=steps, errors=errors, order=order, verdict=verdict, words=words, others=beside)
+        verdict, words = Judgement.SHOWN, described.shown
+    return Row(**about, steps=steps, errors=errors, order=order, verdict=verdict, words=words)
 
 
 def error_of(product, described, p, truth, steps):
@@ -160,7 +167,7 @@ def error_of(product, described, p, truth, steps):
     why = product.world.refuses(described.model(p))
     if why:
         return why
-    settings = (described.settings or {}).get(product.name, {})
+    settings = (described.settings or {}).get(product, {})
     found = run_to_end(product.world.build, described, p, steps, **settings)
     return found.failure or relative(found.observed, truth)
 
@@ -169,17 +176,17 @@ def judged(errors, changes, order, uncertainty):
     """Return (verdict, reason) from the errors of runs and from how much each run differs from the one before."""
     last = errors[-1]
     if last is None:
-        return FAILS, ""
+        return Judgement.FAILS, ""
     if last <= EXACT + 10.0 * uncertainty:
-        return Verdict.AGREES.value, "no error but round-off"
+        return Judgement.AGREES, "no error but round-off"
     if order is not None and order >= LEAST_ORDER and last < ASYMPTOTIC:
-        return Verdict.AGREES.value, f"its error vanishes with order {order:.1f}"
+        return Judgement.AGREES, f"its error vanishes with order {order:.1f}"
     latest = changes[-2:]
     if latest and None not in latest and last > STUCK * max(latest):
-        return Verdict.DEPARTS.value, f"its runs converge to another motion, {100.0 * last:.2g} % away"
+        return Judgement.DEPARTS, f"its runs converge to another motion, {100.0 * last:.2g} % away"
     if last >= ASYMPTOTIC:
-        return SHOWN, "its shortest step is too long here to judge"
-    return SHOWN, "its runs show no order yet"
+        return Judgement.SHOWN, "its shortest step is too long here to judge"
+    return Judgement.SHOWN, "its runs show no order yet"
 
 
 # ---------------------------------------------------------------------------------------------- what a reader gets
@@ -202,13 +209,12 @@ def conform(path, names, others, quick, out, console):
     page = writable(Path(out)) / f"engine-{reader.name}.html"
     page.write_text(page_of(reader, rows, others), encoding="utf-8")
     console.print(f"{summary(rows)}  Page: {page}", highlight=False, soft_wrap=True)
-    return int(any(row.verdict in (FAILS, Verdict.DEPARTS) for row in rows))
+    return int(any(row.verdict in (Judgement.FAILS, Judgement.DEPARTS) for row in rows))
 
 
 def summary(rows):
-    """Return in how many scenes there is each verdict, in a sentence."""
-    counts = {verdict: sum(row.verdict == verdict for row in rows)
-              for verdict in (Verdict.AGREES.value, Verdict.DEPARTS.value, FAILS, SHOWN, REFUSES)}
+    """Return the number of scenes with each verdict, in a sentence."""
+    counts = {verdict: sum(row.verdict is verdict for row in rows) for verdict in Judgement}
     return f"{len(rows)} scenes: " + "; ".join(f"{verdict} in {n}" for verdict, n in counts.items() if n) + "."
 
 
@@ -258,8 +264,8 @@ def cells(row):
     """Return the cells of a row."""
     runs = "<br>".join(f"{n} steps: {number(error)}" for n, error in zip(row.steps, row.errors)) or "–"
     order = "–" if row.order is None else f"{row.order:.2f}"
-    kind = row.verdict.partition(",")[0]
     others = "".join(f'<td class="n">{number(one)}</td>' if isinstance(one, float) else f"<td>{escape(one)}</td>"
                      for one in row.others.values())
+    look = row.verdict.name.lower()
     return (f'<td>{escape(row.title)}</td><td class="n">{runs}</td><td class="n">{order}</td>'
-            f'<td><strong class="{kind}">{escape(row.verdict)}</strong><br>{escape(row.words)}</td>{others}')
+            f'<td><strong class="{look}">{escape(row.verdict)}</strong><br>{escape(row.words)}</td>{others}')

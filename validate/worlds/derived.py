@@ -57,7 +57,7 @@ def grip(body):
 
 
 def core(body):
-    """Return (corners (k, d) in the world, radius, edges (m, d)): the body is all within the radius of their hull."""
+    """Return (corners (k, d) in the world, radius, edges (m, d)): the body lies within the radius of their hull."""
     if len(body.x) == 2 or isinstance(body.shape, Ball):
         corners, radius = core_of(body.shape)
         corners = np.zeros((1, len(body.x))) if isinstance(body.shape, Ball) else corners

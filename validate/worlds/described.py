@@ -12,6 +12,7 @@ import numpy as np
 from solutions.support.model import WORLD, BallJoint, Body, Drag, Hinge, Spring, make_model, rotation_of
 from solutions.support.shapes import Ball, Box, HalfSpace
 
+from ..products import PYBULLET
 from ..reference.impulses import APART, COPIES
 from ..reference.orientation import about, quaternion
 from ..reference.springs import square_net
@@ -34,7 +35,7 @@ class Described(NamedTuple):
     scene: Scene
     model: Callable          # (p) → Model
     observe: Callable        # (State, p) → what the scene's truth(p, T) has
-    settings: dict | None = None     # {name of an engine: settings that cannot be derived from the Model}
+    settings: dict | None = None     # {Product: settings that cannot be derived from the Model}
     shown: str = ""          # why an engine is shown here and not judged
 
 
@@ -54,7 +55,7 @@ def falls_through_air(p):
 
 
 def on_a_spring(p):
-    """The other end of the spring is two metres away, so that it pulls along x only."""
+    """Make a point on a spring whose other end is two metres away, so that it pulls along x only."""
     return make_model([Body((p.x0, 0.0), p.m)], (0.0, 0.0),
                       springs=[Spring(0, WORLD, (0.0, 0.0), (-2.0, 0.0), 2.0, p.k, p.c)])
 
@@ -81,7 +82,7 @@ def net_of_springs(p):
 # ---------------------------------------------------------------------------------------------- friction
 
 def block(gravity, mu, v, loads=()):
-    """A slab on a floor, with gravity tilted."""
+    """Make a slab on a floor; gravity is tilted like the slope."""
     return make_model([Body((0.0, SLAB[1]), 1.0, Box(SLAB), mu, v=(v, 0.0)), FLOOR], gravity, loads=loads)
 
 
@@ -120,7 +121,7 @@ def see_row(s, p):
 
 
 def two_discs(p):
-    """All bodies have √e, so that each pair has e."""
+    """Make the copies of two discs.  Each disc has √e, so that the pair has e."""
     x, v, _ = oblique_discs.start(p)
     return make_model([Body((x[k, i, 0], x[k, i, 1] + APART * k), m, Ball(p.R), e=np.sqrt(p.e), v=arrays(v[k, i, :2]))
                        for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))], (0.0, 0.0))
@@ -139,7 +140,7 @@ def copies(s, bodies):
 # ---------------------------------------------------------------------------------------------- many contacts
 
 def rows_of_dominoes(p):
-    """All bodies have √μ, so that each pair has μ."""
+    """Make the rows of dominoes on a floor.  Each body has √μ, so that each pair has μ."""
     bodies, mu = [], float(np.sqrt(p.mu))
     for k, t in enumerate(dominoes.moments()):
         for x, q, v, omega in zip(*dominoes.begin(p, t)):
@@ -161,7 +162,7 @@ def see_dominoes(s, p):
 
 
 def wedge(p):
-    """The wedge is a box that cannot turn."""
+    """Make a wedge, which is a box that cannot turn, and a block on it."""
     x, q = moving_wedge.places(p), -moving_wedge.slope(p)
     return make_model([Body(arrays(x[0]), p.M, Box((moving_wedge.LONG, moving_wedge.THICK)), q=q, inertia=np.inf),
                        Body(arrays(x[1]), p.m, Box((p.half, p.half)), q=q), FLOOR], (0.0, -p.g))
@@ -172,7 +173,7 @@ def see_wedge(s, p):
 
 
 def many_parts(p):
-    """All bodies have √μ.  The floor is a belt, the crank a body without mass that turns."""
+    """Make the machine.  Each body has √μ.  The floor is a belt, the crank a body without mass that turns."""
     (x, q, half, m, v, omega), (hammer, anchor, rest, k, c), drag, mu, g, belt = machine.parts(p)
     root = float(np.sqrt(mu))
     bodies = [Body(arrays(x[n]), m[n], Box(arrays(half[n])), root, q=q[n], v=arrays(v[n]), omega=omega[n])
@@ -214,7 +215,7 @@ def top_on_its_tip(p):
 
 # ---------------------------------------------------------------------------------------------- all of them
 
-SLIDES = {"pybullet": {"lasts": incline.T}}  # a contact that slides is kept
+SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
     "throw": Described(throw.SCENE, thrown, lambda s, p: s.x[0]),
     "linear_drag": Described(linear_drag.SCENE, falls_through_air, lambda s, p: s.x[0]),
@@ -227,7 +228,7 @@ DESCRIBED = {                # name of the scene: Described
     "cradle": Described(cradle.SCENE, row_of_balls, see_row),
     "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
     "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
-                              {"pybullet": {"slop": 0.0, "lasts": moving_wedge.T}}),
+                              {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
     "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
     "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),

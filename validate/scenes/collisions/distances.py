@@ -15,7 +15,7 @@ from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
 from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
-from validate.scenes._common import ANSWER, one_reading
+from validate.scenes._common import ANSWER, cases_with, one_reading
 from validate.scenes.drawing import outlines
 
 T = 1.0
@@ -27,11 +27,11 @@ class Params(NamedTuple):
     R: Annotated[float, "of the second [m]"] = 0.4
 
 
+IN_PLANE = ("disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")
 CASES = {name: Params(name) for name in (
     "ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box",
     "box, box (corner)", "box, box (edges)", "axis of a corner", "axis of two edges", "box in a box", "box on a box",
-    "box, plane", "triangle, box",
-    "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)",
+    "box, plane", "triangle, box", *IN_PLANE,
 )}
 GRID = 10216                 # of pybullet: spacings of the grid for the points of a hull, along each axis
 MARGIN = 0.001               # of pybullet: the radius that rounds boxes, and surrounds hulls of points [m]
@@ -106,7 +106,7 @@ AXIS_ONLY = ("axis of a corner", "axis of two edges", "box in a box")
 
 
 def flat(p):
-    return p.pair.endswith("(2D)")
+    return p.pair in IN_PLANE
 
 
 def moved(x, p):
@@ -399,7 +399,7 @@ def pymunk_make(p, dt):
 
 def only(*pairs):
     """Return the field `supports` of a runner that supports these pairs."""
-    return lambda p: p.pair in pairs
+    return cases_with("pair", pairs, CASES)
 
 
 GJK_STOPS = "it stops when it knows the distance to 1e-14 of the size, and the limit bounds what is left"
@@ -453,13 +453,10 @@ def picture(name):
     return np.concatenate(drawn), pairs
 
 
-FLAT_CASES = tuple(name for name in CASES if name.endswith("(2D)"))
-
-
 def points(observed, p):
     """Draw the pairs in the plane, side by side."""
     drawn, across = [], 0.0
-    for name in FLAT_CASES:
+    for name in IN_PLANE:
         x = picture(name)[0]
         drawn.append(x - [x[:, 0].min() - across, x[:, 1].mean()])
         across += np.ptp(x[:, 0]) + 0.6
@@ -468,7 +465,7 @@ def points(observed, p):
 
 def links(p):
     pairs, first = [], 0
-    for name in FLAT_CASES:
+    for name in IN_PLANE:
         x, own = picture(name)
         pairs += [(first + i, first + j) for i, j in own]
         first += len(x)

@@ -32,8 +32,11 @@ THIN = 2e-4                  # thickness of pybullet's ladder, which is a board 
 HEIGHT = 0.2                 # of a block of the overhang, over its length [-]
 
 
+BETWEEN, GROUND = "discs, between", "discs, ground"          # three discs; where their friction is looked for
+
+
 class Params(NamedTuple):
-    kind: Annotated[str, "what stands"] = "discs, between"
+    kind: Annotated[str, "what stands"] = BETWEEN
     degrees: Annotated[float, "angle of the ladder from the floor [°]"] = 60.0
     mu: Annotated[float, "friction that is given [-]"] = 1.0
     slim: Annotated[float, "width of the box over its height [-]"] = 0.4
@@ -45,7 +48,7 @@ DISCS, LADDER, BOX, OVERHANG = ("discs: friction between them", "ladder at 60°"
 CASES = {
     LADDER: Params("ladder"), "ladder at 40°": Params("ladder", degrees=40.0),
     "ladder at 75°": Params("ladder", degrees=75.0),
-    DISCS: Params(), "discs: friction at the ground": Params("discs, ground"),
+    DISCS: Params(), "discs: friction at the ground": Params(GROUND),
     BOX: Params("box", mu=0.6), "box that slides": Params("box", mu=0.3),
     OVERHANG: Params("overhang"), "overhang of five blocks": Params("overhang", blocks=5),
 }
@@ -57,11 +60,15 @@ def start(p):
     return (np.zeros(1),)
 
 
+def of_discs(p):
+    return p.kind in (BETWEEN, GROUND)
+
+
 # ---------------------------------------------------------------------------------------------- ours
 
 def scene_of(p, number):
     """Return (x, masses, moments, [(a, b, place, normal, friction)], direction of gravity); mass 0 means immovable."""
-    if p.kind.startswith("discs"):                            # radius ½; the lower two do not quite touch
+    if of_discs(p):                                           # radius ½; the lower two do not quite touch
         x, (between, ground) = places_of(p, number), frictions_of(p, number)
         touch = [(1, 0, (-0.5, 0.0), UP, ground), (2, 0, (0.5, 0.0), UP, ground)]
         touch += [(3, k, 0.5 * (x[3] + x[k]), x[3] - x[k], between) for k in (1, 2)]
@@ -84,7 +91,7 @@ def scene_of(p, number):
 
 def places_of(p, number):
     """Return the centres [m] of all bodies; those of the overhang from the top, with the table last."""
-    if p.kind.startswith("discs"):
+    if of_discs(p):
         return np.array([(0.0, -1.0), (-0.5, 0.5), (0.5, 0.5), (0.0, 0.5 + np.sqrt(0.75))])
     if p.kind == "ladder":
         return np.array([(0.0, -1.0), (0.0, 0.0)])
@@ -97,7 +104,7 @@ def places_of(p, number):
 
 def frictions_of(p, number):
     """Return (friction between the discs, friction at the ground)."""
-    return (number, p.mu) if p.kind.endswith("between") else (p.mu, number)
+    return (number, p.mu) if p.kind == BETWEEN else (p.mu, number)
 
 
 def ladder_end(p):
@@ -158,8 +165,8 @@ def truth(p, t):
     overhang    the centre of the blocks above must be above the edge below: ½ Σ 1/k lengths
     Source: any text of statics.
     """
-    if p.kind.startswith("discs"):
-        return np.array([(2.0 - np.sqrt(3.0)) / (3.0 if p.kind.endswith("ground") else 1.0)])
+    if of_discs(p):
+        return np.array([(2.0 - np.sqrt(3.0)) / (3.0 if p.kind == GROUND else 1.0)])
     if p.kind == "ladder":
         return np.array([0.5 / np.tan(np.radians(p.degrees))])
     return np.array([min(p.mu, p.slim)]) if p.kind == "box" else np.array([harmonic(p.blocks)])
@@ -321,7 +328,7 @@ def make(p, dt, holds):
 
 def boards(p):
     """Return whether there are no discs: pybullet has no discs, and no plane in which spheres would stay."""
-    return not p.kind.startswith("discs")
+    return not of_discs(p)
 
 
 def low_boards(p):

@@ -33,7 +33,7 @@ from validate.reference.contact import (
 )
 from validate.reference.stored import stored
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes._common import ANSWER, check_positives, one_reading, sole_array
+from validate.scenes._common import ANSWER, cases_with, check_positives, one_reading, sole_array
 from validate.scenes.drawing import outlines
 
 T = 1.0
@@ -326,7 +326,8 @@ def up_to(**most):
 
     Only Murty's method and the question of refusal run at a ratio of a million.
     """
-    return lambda p: p.r <= most.get(p.kind, 0.0)
+    of_kind = cases_with("kind", tuple(most), CASES)
+    return lambda p: of_kind(p) and p.r <= most[p.kind]
 
 
 def too_many(p):

@@ -15,7 +15,7 @@ from validate.check import Whose, states
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
-from validate.scenes._common import ANSWER, check_positives, one_reading
+from validate.scenes._common import ANSWER, cases_with, check_positives, one_reading
 from validate.scenes.drawing import outlines
 
 T = 1.0
@@ -409,7 +409,7 @@ def pymunk_make(p, dt):
 
 def only(*shapes):
     """Return the field `supports` of a Runner that supports these bodies."""
-    return lambda p: p.shape in shapes
+    return cases_with("shape", shapes, CASES)
 
 
 PARTS_KNOWN = ("ball", "box", "cylinder", "capsule", "dumbbell", "turned bar", "angle", "ring", "two discs",

@@ -16,7 +16,7 @@ from validate.engines.kinematics import bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
-from validate.scenes._common import ANSWER, check_positives
+from validate.scenes._common import ANSWER, cases_with, check_positives
 from validate.scenes.drawing import circle, outlines
 
 T = 1.0
@@ -145,7 +145,7 @@ def pybullet_make(p, dt):
 
 def of_kind(kind):
     """Return the function (p) → bool: each case belongs to one method."""
-    return lambda p: p.kind == kind
+    return cases_with("kind", (kind,), CASES)
 
 
 def has_factors(p):

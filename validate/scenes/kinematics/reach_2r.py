@@ -167,8 +167,8 @@ RUNNERS = (
            order=EXACT, limit=cured_limit, predicted=search_errors(cured_searches, turned_by, truth, cured_limit)),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or "
-                               "at 0.1 mm", default_law, Whose.DEFAULT)),
+           departure=Departure("its damping is ½ m² for an arm of any size, and it stops after 20 iterations or at "
+                               "0.1 mm", default_law, Whose.DEFAULT)),
 )
 
 

@@ -179,8 +179,8 @@ RUNNERS = (
            predicted="it ends where it sees no missing rotation any more, and that moment depends on roundings"),
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
            order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and "
-                               "its damping is ½ whatever the size of the arm", default_law, Whose.DEFAULT)),
+           departure=Departure("it stops at 0.1 mm from the place, in any direction, or after 20 iterations, and its "
+                               "damping is ½ for an arm of any size", default_law, Whose.DEFAULT)),
 )
 
 

@@ -141,8 +141,8 @@ RUNNERS = (
     engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
            order=EXACT, limit=measured_limit, measured=MEASURED,
            predicted="its own law is its search, which leaves nothing but roundings",
-           departure=Departure("its damping is ½ m² whatever the size of the arm and the distance, and it stops after "
-                               "20 iterations", default_law, Whose.DEFAULT)),
+           departure=Departure("its damping is ½ m² for an arm of any size at any distance, and it stops after 20 "
+                               "iterations", default_law, Whose.DEFAULT)),
 )
 
 
