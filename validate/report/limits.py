@@ -20,7 +20,7 @@ from solutions.checks import BadInput
 
 from ..measure.accuracy import ASYMPTOTIC
 from ..run.store import report_of_this_version
-from .audit import distance
+from .again import distance
 
 ROUND_OFF_ONLY = 1e-9        # limits below this leave room for round-off only, relative [-]
 LOOSEST = 20                 # curves that are named
