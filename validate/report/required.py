@@ -1,13 +1,16 @@
 """What a report must contain: every scene with its cases, and every finding with the law and the tolerance of theory.
 
-`python -m validate.report.required` derives the list from the code and writes it.  The list is a file of the
+`python -m validate.report.required [LESSON …]` derives the list from the code and writes it.  The list is a file of the
 repository, so that the list of an earlier commit can judge a report of that commit.
 """
 
+import argparse
 import json
 import subprocess
+import sys
 from pathlib import Path
 
+from ..run.processes import one_sentence
 from ..run.store import read_whole, write_text
 from ..stability.examine import all_cases, examine, stored
 from ..subject import modules
@@ -17,12 +20,15 @@ NEAR = 1e-9                  # allowed relative difference of a tolerance betwee
 SHARE = 0.1                  # allowed difference of a law between two machines, over its tolerance [-]
 
 
-def derived(stability):
-    """Return {"scenes", "findings"} of today's code; stability: all cases after their run, as a report stores them."""
+def derived(stability, kept=None):
+    """Return {"scenes", "findings"} of today's code.
+
+    stability: cases after their run, as a report stores them;    kept: {place: laws} of all that were not run again
+    """
     scenes = {name: modules.bind_scene(name) for name in modules.scene_names()}
     return {"scenes": {name: {"lesson": scene.lesson, "cases": list(scene.cases), "slow": list(scene.slow_cases)}
                        for name, scene in scenes.items()},
-            "findings": {place(case): laws(case["findings"]) for case in stability}}
+            "findings": {**(kept or {}), **{place(case): laws(case["findings"]) for case in stability}}}
 
 
 def place(case):
@@ -35,11 +41,11 @@ def laws(findings):
     return {f["quantity"]: [f["predicted"], f["tolerance"]] for f in findings}
 
 
-def write(stability):
+def write(stability, kept=None):
     """Write the list of today's code, with a line for each scene and each finding, so that two changes of it merge."""
-    parts = derived(stability)
+    parts = derived(stability, kept)
     cases = ",\n".join(f"{json.dumps(name)}: {{\n" + ",\n".join(lines(found)) + "\n}"
-                       for name, found in parts["findings"].items())
+                       for name, found in sorted(parts["findings"].items()))
     scenes = ",\n".join(lines(parts["scenes"]))
     write_text(FILE, f'{{"scenes": {{\n{scenes}\n}}, "findings": {{\n{cases}\n}}}}\n')
 
@@ -114,5 +120,19 @@ def same(found, theory):
             and abs(tolerance - tolerance_there) <= NEAR * tolerance_there)
 
 
+def main(arguments):
+    """Run the stability cases of these lessons, or of all, and write the list."""
+    parser = argparse.ArgumentParser(prog="python -m validate.report.required", description=main.__doc__)
+    parser.add_argument("lesson", nargs="*", help="such as springs")
+    lessons = parser.parse_args(arguments).lesson or modules.lesson_names()
+    for name in lessons:
+        modules.bind(name)               # raises BadInput for a name that is no lesson
+    names = {place(case._asdict()) for case in all_cases()}
+    old = read_whole(FILE, dict, "write it for all lessons")["findings"] if FILE.is_file() else {}
+    kept = {name: found for name, found in old.items() if name in names and name.partition("/")[0] not in lessons}
+    write([stored(examine(case)) for case in all_cases() if case.lesson in lessons], kept)
+
+
 if __name__ == "__main__":
-    write([stored(examine(case)) for case in all_cases()])
+    with one_sentence("required"):
+        main(sys.argv[1:])
