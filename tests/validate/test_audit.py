@@ -3,6 +3,8 @@
 import copy
 import json
 import re
+import shutil
+import subprocess
 
 import pytest
 
@@ -16,6 +18,7 @@ from validate.report.audit import audit
 from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
 
+KEPT = required.kept
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 
 
@@ -209,6 +212,25 @@ def test_what_other_options_leave_out_is_not_missing(made):
     gone = not_run["stability"][0]["findings"].pop()
     not_run["stability"][0]["not_run"].append({"quantity": gone["quantity"], "claim": "", "why": ""})
     assert list(required.missing(not_run, must)) == []
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+def test_a_report_of_an_older_commit_is_judged_by_the_list_of_that_commit(tmp_path, monkeypatch):
+    file = tmp_path / "validate" / "report" / "required.json"
+    file.parent.mkdir(parents=True)
+    monkeypatch.setattr(required.modules, "ROOT", tmp_path)
+    monkeypatch.setattr(required, "FILE", file)
+    git = lambda *arguments: subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments],
+                                            cwd=tmp_path, check=True, capture_output=True, text=True).stdout.strip()
+    git("init", "-q")
+    file.write_text('{"scenes": {"old": 1}}')
+    git("add", ".")
+    git("commit", "-qm", "old")
+    commit = git("rev-parse", "--short", "HEAD")
+    file.write_text('{"scenes": {"new": 1}}')
+    assert KEPT({"commit": commit}, True) == {"scenes": {"new": 1}}
+    for name, known in ((commit, True), (f"{commit}, changed since", True), ("0000000", False), ("", False)):
+        assert KEPT({"commit": name}, False) == ({"scenes": {"old": 1}} if known else None), name
 
 
 def test_the_list_of_scenes_is_that_of_the_code():

@@ -62,7 +62,7 @@ def kept(run, same_code):
     same_code: the report was made by today's code; else the list of its commit is taken.
     """
     if same_code:
-        return read_whole(FILE, dict, "write it: python -m validate.report.required")
+        return read_whole(FILE, dict, "write it: python -m validate.report.required") if FILE.is_file() else None
     commit = (run.get("commit") or "").partition(",")[0]
     name = FILE.relative_to(modules.ROOT).as_posix()
     try:
