@@ -6,6 +6,7 @@ changed, `validate audit` whether a report follows from its raw rows, `validate 
 
 import json
 import os
+import sys
 from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
@@ -15,6 +16,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from solutions.checks import BadInput
@@ -34,6 +36,8 @@ console = Console()
 
 
 RESULTS = "<!-- results -->"    # begins and ends the table of results in the README
+UsageError = typer.BadParameter.__base__     # of every wrong option or command; typer may bring a click of its own
+UNBROKEN = 1000              # width of a table that a program reads, not a person [characters]
 ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
 ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
 ANSWERS = typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")
@@ -43,6 +47,7 @@ LIVE = typer.Option(metavar="NAME|FILE.py", help=f"Run only this engine live: {'
                     "repeated); or run an engine of your own, a file with build(model, dt), as docs/engine.md shows.")
 CHANGE = typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")
 PROCESSES = typer.Option(min=1, help="Processes for everything that is not timed.")
+JOBS = max(1, min(4, os.cpu_count() or 1))
 ROUNDS = Annotated[int, typer.Option(min=3, help="How often each is timed, in turn.")]
 EXECUTOR = typer.Option(metavar="tcp://HOST:PORT", help="Measure on this Dask cluster instead of in processes here.")
 
@@ -57,7 +62,7 @@ def validate(
     quick: Annotated[bool, DEPTH] = True,
     engine: Annotated[list[str] | None, LIVE] = None,
     set_: Annotated[list[str] | None, CHANGE] = None,
-    jobs: Annotated[int, PROCESSES] = max(1, min(4, os.cpu_count() or 1)),
+    jobs: Annotated[int, PROCESSES] = JOBS,
     executor: Annotated[str | None, EXECUTOR] = None,
     out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
 ):
@@ -66,6 +71,7 @@ def validate(
     files = [name for name in engine or [] if name.endswith(".py")]
     if files:
         raise typer.Exit(own_engines(files, [name for name in engine or [] if name not in files], scene, quick, out))
+    not_around_us(out)
     from . import measure  # takes half a second: not for --help
     from .run.run import run
     names, broken = select_scenes(scene or [], lesson or [])
@@ -122,16 +128,21 @@ def list_scenes(
         table.add_row(name, scenes[name].lesson, scenes[name].story.splitlines()[0])
     for name in broken:
         table.add_row(name, "–", "[bold red]cannot be loaded[/bold red]")
-    console.print(table)
+    print_whole(table)
     for error in broken.values():
         raise error
+
+
+def print_whole(table):
+    """Print a table with one line per row, unless a person looks at it in a narrow terminal."""
+    (console if console.is_terminal else Console(width=UNBROKEN)).print(table)
 
 
 def list_exercises():
     table = Table("exercise", "lesson", "function", "calls", box=None, header_style="bold")
     for number, one in needs.table().items():
         table.add_row(number, one["lesson"], one["function"], ", ".join(one["needs"]))
-    console.print(table)
+    print_whole(table)
 
 
 @app.command("record")
@@ -172,19 +183,26 @@ def compare(
 
 
 @app.command("audit")
-def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report")):
-    """Recompute every figure and verdict of a report from its raw rows, and render its pages again.
+def audit(
+    report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report"),
+    jobs: Annotated[int, PROCESSES] = JOBS,
+):
+    """Recompute every figure and verdict of a report from its raw rows, and make its pages and pictures again.
 
     Exit with 1 when something differs.
     """
     from .report.audit import audit as check
     content = report_of_this_version(report)
+    columns = TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     try:
-        problems, counts = check(report, content)
-    except (KeyError, TypeError, AttributeError, IndexError):
+        with workers(jobs) as pool, Progress(*columns, console=console) as bars:
+            problems, counts, notes = check(report, content, pool.each, bars.track)
+    except (KeyError, TypeError, AttributeError, IndexError, RuntimeError):           # the last one from a process
         raise BadInput(f"report {str(report)!r}", "with parts missing", "make it again") from None
     for problem in problems:
         console.print(f"✗ {problem}", highlight=False, markup=False, soft_wrap=True)
+    for note in notes:
+        console.print(f"· not checked: {note}", highlight=False, markup=False, soft_wrap=True)
     say_measured(content)
     checked = ", ".join(f"{count} {what}" for what, count in counts.items())
     console.print(f"{len(problems)} differences in {checked}.", highlight=False, soft_wrap=True)
@@ -264,6 +282,16 @@ def targets(
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for
+
+def not_around_us(out):
+    """Raise BadInput for an output folder that holds the working folder: some 500 files would lie among its own.
+
+    An empty name means the working folder, too.
+    """
+    if Path.cwd().is_relative_to(out.resolve()):
+        raise BadInput(f"--out {str(out)!r}", "the folder in which you work, or one around it",
+                       "name a folder for the report, such as report")
+
 
 def loadable_scenes():
     """Return ({name: Scene}, {name: BadInput}): the scenes that load, and what is wrong with the others."""
@@ -370,8 +398,23 @@ def value_of(name, text, known):
 
 def main(arguments=None):
     """Run the command line."""
+    arguments = sys.argv[1:] if arguments is None else arguments
     with one_sentence("validate"), ending_once():
-        app(arguments, prog_name="validate")
+        try:
+            code = app(arguments, prog_name="validate", standalone_mode=False)
+        except UsageError as e:
+            print(f"validate: {e.format_message().rstrip('.')}{suggestion(arguments)}.", file=sys.stderr)
+            code = 2
+        sys.exit(code)
+
+
+def suggestion(arguments):
+    """Return what a word that is no command may have meant; empty without an idea."""
+    for words, option in ((modules.scene_names(), "--scene"), (modules.lesson_names(), "--lesson")):
+        for word in arguments:
+            if word in words and option not in arguments:
+                return f": did you mean {option} {word}"
+    return ": `validate --help` names all that there is"
 
 
 if __name__ == "__main__":

@@ -15,4 +15,4 @@ def small_report(scenes, slugs):
         errors = measure.errors(name, plan)
         results.append({**errors, "times": measure.times(name, plan, errors)})
     cases = [stored(examine(case, compiled=False)) for case in all_cases() if case.slug in slugs]
-    return json.loads(json.dumps({"run": about(plan), "scenes": results, "stability": cases}))
+    return json.loads(json.dumps({"run": about(plan, shown=tuple(scenes)), "scenes": results, "stability": cases}))

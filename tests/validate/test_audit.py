@@ -2,6 +2,9 @@
 
 import copy
 import json
+import re
+import shutil
+import subprocess
 
 import pytest
 
@@ -9,11 +12,13 @@ from validate import __main__ as command
 from validate import report
 from validate.measure.races import races
 from validate.measure.timing import times_to_error
-from validate.report import plots
+from validate.report import again, plots, required
 from validate.report.audit import audit
+from validate.stability.examine import all_cases
 
 from .small_report import small_report
 
+KEPT = required.kept
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 
 
@@ -25,6 +30,13 @@ def made(tmp_path_factory):
     data = json.loads(json.dumps({**data, "scenes": [as_if_compiled(result) for result in data["scenes"]]}))
     write(folder, data)
     return folder, data
+
+
+@pytest.fixture(autouse=True)
+def a_short_list(made, monkeypatch):
+    """The list of what must be there has only the stability case of the small report."""
+    must = required.derived(made[1]["stability"])
+    monkeypatch.setattr(required, "kept", lambda run, same_code: must)
 
 
 def as_if_compiled(result):
@@ -74,8 +86,8 @@ def race(data):
 
 
 def test_a_report_follows_from_its_raw_rows(made):
-    problems, counts = audit(*made)
-    assert problems == [] and min(counts.values()) > 0, (problems, counts)
+    problems, counts, notes = audit(*made)
+    assert problems == notes == [] and min(counts.values()) > 0, (problems, counts, notes)
 
 
 FAULTS = {
@@ -113,15 +125,112 @@ FAULTS = {
     "a finding": lambda d: d["stability"][0]["findings"][0].update(holds=False),
     "a measured number": lambda d: d["stability"][0]["findings"][0].update(measured=1e9),
     "a claim without numbers": lambda d: d["stability"][0].update(findings=[]),
+    "a tolerance": lambda d: finding(d).update(tolerance=1.01 * finding(d)["tolerance"]),
+    "a tolerance with a measured number to suit": lambda d: finding(d).update(
+        tolerance=1.0, measured=finding(d)["predicted"] + 0.5),
+    "the law of a finding": lambda d: finding(d).update(
+        predicted=finding(d)["predicted"] + 0.5 * finding(d)["tolerance"]),
+    "a finding that is missing": lambda d: d["stability"][0]["findings"].pop(),
+    "a stability case that is missing": lambda d: d["stability"].pop(),
+    "a scene that is missing": lambda d: d["scenes"].pop(0),
+    "a case that is missing": lambda d: d["scenes"][0]["cases"].popitem(),
+    "a method that is missing": lambda d: d["scenes"][0]["cases"]["thrown"]["ours"].pop(),
+    "a setting of an engine that is missing": lambda d: d["scenes"][0]["cases"]["thrown"]["engines"].pop(),
+    "a method that no scene has": lambda d: last_of_ours(d).update(label="an unknown step"),
 }
+
+
+def finding(data):
+    return next(f for f in data["stability"][0]["findings"] if f["tolerance"])
+
+
+def last_of_ours(data):
+    return data["scenes"][0]["cases"]["thrown"]["ours"][-1]
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_figure_that_was_changed_is_noticed_even_if_the_pages_agree_with_it(made, tmp_path, fault, monkeypatch):
     data = copy.deepcopy(made[1])
     FAULTS[fault](data)
-    monkeypatch.setattr("validate.report.audit.of_pages", lambda *_: [])
+    monkeypatch.setattr("validate.report.audit.pages_of", lambda *_: ([], 0))
+    monkeypatch.setattr("validate.report.audit.picture_of", lambda *_: ([], 0))
     assert audit(tmp_path, data)[0], fault
+
+
+def moved(picture):
+    """The text of a picture in which one point of a curve is 40 pixels away; its mark is kept."""
+    def away(found):
+        return f"{found[1]}{float(found[2]) + 40.0}"
+    text, count = re.subn(r"(<path d=\"M [\d.]+ [\d.]+ \n?L [\d.]+ )([\d.]+)", away, picture, count=1)
+    assert count == 1
+    return text
+
+
+def with_a_new_mark(picture):
+    """The same with a mark that agrees with its text, as a forger would write it."""
+    text, mark = picture[:plots.MARK.search(picture).start()], plots.MARK.search(picture)
+    return f"{text}<!-- {plots.DRAWN_FROM}{mark['data']} as {plots.of_text(text)} -->\n"
+
+
+@pytest.mark.parametrize(("forge", "redraw", "says"), [
+    (lambda text: text, True, ""), (moved, True, "changed after"), (moved, False, "changed after"),
+    (lambda text: with_a_new_mark(moved(text)), True, "not what its data give")])
+def test_a_point_that_was_moved_is_noticed(made, tmp_path, forge, redraw, says):
+    folder, data = made
+    plot, name, shown, _ = report.pictures(data["scenes"], data["stability"])[0]
+    (tmp_path / name).write_text(forge((folder / name).read_text(encoding="utf-8")), encoding="utf-8")
+    problems, _ = again.picture_of(tmp_path / name, plot.__name__, shown, redraw)
+    assert len(problems) == bool(says) and all(says in problem for problem in problems)
+
+
+def test_a_report_of_other_code_is_judged_by_its_own_list_and_the_rest_is_said(made, monkeypatch):
+    folder, data = made
+    other = {**data, "run": {**data["run"], "code": "another", "pages": "another"}}
+    problems, counts, notes = audit(folder, other)
+    assert problems == [] and counts["limits"] == counts["pages"] == 0 and len(notes) == 3
+    monkeypatch.setattr(required, "kept", lambda run, same_code: None)
+    assert len(audit(folder, other)[2]) == 4
+
+
+def test_what_other_options_leave_out_is_not_missing(made):
+    _, data = made
+    must = required.kept(data["run"], True)
+    slow = {**must, "scenes": {**must["scenes"], "throw": {**must["scenes"]["throw"], "cases": ["thrown", "slow one"],
+                                                           "slow": ["slow one"]}}}
+    assert list(required.missing(data, slow)) == []
+    full = {**data, "run": {**data["run"], "mode": "full"}}
+    assert list(required.missing(full, slow)) == ["throw: the case 'slow one' is missing"]
+    everything = {**data, "run": {**data["run"], "chosen": []}}
+    assert "oscillator: the scene is missing" in list(required.missing(everything, must))
+    not_run = copy.deepcopy(data)
+    gone = not_run["stability"][0]["findings"].pop()
+    not_run["stability"][0]["not_run"].append({"quantity": gone["quantity"], "claim": "", "why": ""})
+    assert list(required.missing(not_run, must)) == []
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+def test_a_report_of_an_older_commit_is_judged_by_the_list_of_that_commit(tmp_path, monkeypatch):
+    file = tmp_path / "validate" / "report" / "required.json"
+    file.parent.mkdir(parents=True)
+    monkeypatch.setattr(required.modules, "ROOT", tmp_path)
+    monkeypatch.setattr(required, "FILE", file)
+    git = lambda *arguments: subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments],
+                                            cwd=tmp_path, check=True, capture_output=True, text=True).stdout.strip()
+    git("init", "-q")
+    file.write_text('{"scenes": {"old": 1}}')
+    git("add", ".")
+    git("commit", "-qm", "old")
+    commit = git("rev-parse", "--short", "HEAD")
+    file.write_text('{"scenes": {"new": 1}}')
+    assert KEPT({"commit": commit}, True) == {"scenes": {"new": 1}}
+    for name, known in ((commit, True), (f"{commit}, changed since", True), ("0000000", False), ("", False)):
+        assert KEPT({"commit": name}, False) == ({"scenes": {"old": 1}} if known else None), name
+
+
+def test_the_list_of_scenes_is_that_of_the_code():
+    kept = json.loads(required.FILE.read_text(encoding="utf-8"))
+    assert kept["scenes"] == required.derived([])["scenes"], "run: python -m validate.report.required"
+    assert set(kept["findings"]) == {f"{case.lesson}/{case.slug}" for case in all_cases()}
 
 
 @pytest.mark.parametrize(("name", "old", "new"), [
@@ -147,7 +256,7 @@ def test_the_command_ends_with_1_when_something_differs(made, tmp_path, capsys):
     write(tmp_path, changed)
     for report_folder, code in ((folder, 0), (tmp_path, 1), (tmp_path / "nothing", 2)):
         with pytest.raises(SystemExit) as ended:
-            command.main(["audit", str(report_folder)])
+            command.main(["audit", str(report_folder), "--jobs", "1"])
         said = capsys.readouterr()
         assert ended.value.code == code
         assert code == 2 or f"{'0' if code == 0 else '1'} differences in" in said.out, said.out

@@ -47,6 +47,11 @@ def run(capsys, *arguments):
     (["--scene", "catenary", "--set", "span=1e300"], "catenary with span = 1e+300"),
     (["--scene", "oscillator", "--set", "colour=3"], "colour"),
     (["--set", "m=1"], "--scene"),
+    (["--scene", "pendulums"], "did you mean pendulum"),
+    (["oscillator"], "did you mean --scene oscillator"),
+    (["rotation"], "did you mean --lesson rotation"),
+    (["--jobs", "many"], "--jobs"),
+    (["--bogus"], "--bogus"),
 ])
 def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_path, arguments, names):
     out = tmp_path / "report"
@@ -135,6 +140,15 @@ def test_a_record_that_is_not_right_is_refused_before_anything_runs(capsys, tmp_
     assert code == 2 and says in error and len(error.splitlines()) == 1 and "Traceback" not in error
 
 
+@pytest.mark.parametrize("out", ["", ".", ".."])
+def test_a_report_is_not_written_among_the_files_of_the_working_folder(capsys, tmp_path, monkeypatch, out):
+    (tmp_path / "work").mkdir()
+    monkeypatch.chdir(tmp_path / "work")
+    code, _, error = run(capsys, "--scene", "oscillator", "--out", out)
+    assert code == 2 and "name a folder for the report" in error and len(error.splitlines()) == 1
+    assert [path.name for path in tmp_path.rglob("*")] == ["work"]
+
+
 def test_an_unwritable_folder_is_named(capsys, tmp_path):
     (tmp_path / "file").write_text("")
     code, _, error = run(capsys, "--scene", "oscillator", "--out", str(tmp_path / "file" / "report"))
@@ -145,6 +159,14 @@ def test_an_engine_that_is_asked_for_and_missing_is_named(capsys, tmp_path, monk
     monkeypatch.setattr(Product, "installed", lambda self: None)
     code, _, error = run(capsys, "--engine", "pybullet", "--out", str(tmp_path / "report"))
     assert code == 2 and "pybullet" in error and "recorded" in error
+
+
+@pytest.mark.parametrize("more", [(), ("--exercises",)])
+def test_a_list_that_is_piped_has_one_line_for_each_entry(capsys, monkeypatch, more):
+    monkeypatch.setenv("COLUMNS", "80")
+    _, out, _ = run(capsys, "list", *more)
+    entries = cli.needs.table() if more else modules.scene_names()
+    assert len(out.splitlines()) == 1 + len(entries)
 
 
 def test_list_names_every_scene(capsys):

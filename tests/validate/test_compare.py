@@ -142,6 +142,32 @@ def test_the_command_says_when_the_formats_differ(report, tmp_path, capsys):
         assert (f"Formats of the reports: 2 and {FORMAT}." in capsys.readouterr().out) == says
 
 
+def slowed(report, factor):
+    """The same report, in which Verlet takes longer."""
+    new = copy.deepcopy(report)
+    for key in ("seconds", "low", "high"):
+        new["scenes"][0]["times"]["rows"][0][key] *= factor
+    return new
+
+
+def test_what_became_slower_is_named_with_its_ratio_and_on_a_busy_machine_it_is_not_worse(report):
+    new = slowed(report, 3.0)
+    (change,) = changes(report, new)
+    assert change.place == "throw: Verlet, compiled" and change.words == "slower by 3× at 100 steps" and change.worse
+    new["scenes"][0]["times"]["others"] = 1.0
+    (change,) = changes(report, new)
+    assert "busy machine" in change.words and not change.worse
+
+
+def test_a_scene_without_an_engine_is_timed_in_the_steps_of_the_other_scenes_engines(report):
+    new = slowed(report, 3.0)
+    for one in (report, new):
+        one["scenes"].append({**copy.deepcopy(one["scenes"][0]), "scene": "other"})
+        one["scenes"][0]["times"]["rows"].pop()
+        one["scenes"][1]["times"]["rows"] = one["scenes"][1]["times"]["rows"][2:]
+    assert kinds(report, new) == [("times", True)]
+
+
 def test_the_command_ends_with_1_when_something_became_worse(report, tmp_path, capsys):
     new = copy.deepcopy(report)
     first_curve(new)["verdict"] = "departs"

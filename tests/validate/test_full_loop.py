@@ -3,8 +3,8 @@
 import pytest
 
 from validate import measure, methods
-from validate.measure import full_loop
-from validate.report import audit
+from validate.measure import full_loop, staged
+from validate.report import audit, words
 from validate.subject import modules
 
 PLAN = measure.Plan(speeds=("plain",), live=(), quick=False)
@@ -60,6 +60,28 @@ def test_a_rod_that_is_no_string_and_a_target_that_does_not_hold_are_noticed(sce
         (item, {"seconds": 1.0, "repeats": [1.0]}) for item in items])
     monkeypatch.setattr(full_loop, setting, value)
     assert full_loop.left_out(scene, PLAN, agreeing(scene))["same"] is False
+
+
+@pytest.mark.parametrize(("name", "needed"), [
+    ("throw", set()), ("heavy_top", {"rotation"}), ("rolling_down", {"rotation", "detection", "contact"}),
+    ("bounces", set()), ("point_and_plane", {"detection", "contact"})])
+def test_a_part_left_out_of_the_whole_loop_changes_the_motion_only_where_it_is_needed(name, needed, monkeypatch):
+    monkeypatch.setattr(full_loop, "interleaved", lambda items, limits, repeats: [
+        (item, {"seconds": 1.0, "repeats": [1.0]}) for item in items])
+    selection = measure.select(name, PLAN)
+    found = full_loop.whole_parts(selection, agreeing(name))
+    assert {one["part"] for one in found["rows"]} == set(staged.PARTS)
+    assert {one["part"] for one in found["rows"] if words.change_without(one) != "same"} == needed
+
+
+@pytest.mark.parametrize("name", ["throw", "rolling_down"])
+def test_the_whole_loop_of_which_nothing_is_left_out_is_that_of_the_lesson(name):
+    """A part that has no name leaves out nothing, so that only what is left out makes a difference."""
+    one = full_loop.stand(measure.select(name, PLAN), agreeing(name))
+    lessons = one.selection.scene.lessons
+    ends = [one.end(full_loop.made_when_called(one.whole(which))).observed
+            for which in (lessons, staged.lessons_without(lessons, "nothing"))]
+    assert ends[0].tolist() == ends[1].tolist()
 
 
 def test_a_quick_run_leaves_it_to_a_full_one():

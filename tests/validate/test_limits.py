@@ -15,28 +15,42 @@ from validate.run.store import FORMAT
 TABLES = {name: table for name, table in vars(schemes).items() if isinstance(table, Tableau)}
 
 
-def report(*rows):
-    stored = [{"steps": n, "limit": limit, "failure": None, "observed": [1.0 + error], "predicted": predicted}
-              for n, (limit, error, predicted) in enumerate(rows, 1)]
+def report(*rows, label="Euler"):
+    """rows: (limit, error, predicted, band)."""
+    stored = [{"steps": n, "limit": limit, "failure": None, "observed": [1.0 + error], "predicted": predicted,
+               "band": band} for n, (limit, error, predicted, band) in enumerate(rows, 1)]
     scene = {"scene": "throw", "lesson": "integrators",
-             "cases": {"thrown": {"truth": [1.0], "ours": [{"label": "Euler", "rows": stored}], "engines": []}}}
+             "cases": {"thrown": {"truth": [1.0], "ours": [{"label": label, "rows": stored}], "engines": []}}}
     return {"run": {"format": FORMAT}, "scenes": [scene], "stability": []}
 
 
-def test_rows_without_a_judgement_above_round_off_do_not_count():
-    rows = list(limits.rows_of(report((0.1, 0.01, None), (1e-12, 1e-15, None), (0.6, 0.1, None), (0.2, 0.1, [1.1]))))
-    assert [round(row.ratio, 6) for row in rows] == [10.0, 2.0] and [row.two_sided for row in rows] == [False, True]
+ONE_SIDED, TWO_SIDED = (0.1, 0.01, None, None), (0.11, 0.1, [1.1], 0.01)
 
 
-def test_the_tables_name_the_loosest_curve(tmp_path, capsys):
-    (tmp_path / "report.json").write_text(json.dumps(report((0.1, 0.01, None), (0.1, 0.0, None))))
+def test_a_row_is_judged_by_its_limit_or_by_its_band_and_round_off_does_not_count():
+    rows = list(limits.rows_of(report(ONE_SIDED, (1e-12, 1e-15, None, None), (0.6, 0.1, None, None), TWO_SIDED)))
+    assert [round(row.slack, 6) for row in rows] == [10.0, 0.1] and [row.two_sided for row in rows] == [False, True]
+
+
+def test_the_three_numbers_are_those_of_their_own_rows():
+    rows = list(limits.rows_of(report(ONE_SIDED, TWO_SIDED, TWO_SIDED, TWO_SIDED)))
+    assert limits.three(rows) == ["75%", "0.1", "0.1", "0.1", "10", "10", "10"]
+    assert limits.three(rows[:1]) == ["0%", "–", "–", "–", "10", "10", "10"]
+
+
+def test_the_tables_name_the_loosest_curve_of_each_kind(tmp_path, capsys):
+    content = report((0.1, 0.01, None, None), (0.1, 0.0, None, None), label="by a bound")
+    content["scenes"] += report(TWO_SIDED, label="by a prediction")["scenes"]
+    (tmp_path / "report.json").write_text(json.dumps(content))
     limits.show(tmp_path)
     shown = capsys.readouterr().out
-    assert "integrators" in shown and "Euler" in shown and "inf" in shown
+    bound, predicted = shown.split("limit/error, least")[1].split("band/prediction, least")
+    assert "integrators" in shown and "inf" in shown
+    assert "by a bound" in bound and "by a prediction" not in bound and "by a prediction" in predicted
 
 
 def test_a_report_of_round_off_only_is_refused(tmp_path):
-    (tmp_path / "report.json").write_text(json.dumps(report((1e-12, 0.0, None))))
+    (tmp_path / "report.json").write_text(json.dumps(report((1e-12, 0.0, None, None))))
     with pytest.raises(BadInput, match="round-off"):
         limits.show(tmp_path)
 

@@ -1,5 +1,6 @@
 """Theory's bounds of stability are found again by experiment, and a wrong method does not find them."""
 
+import json
 import re
 import types
 from dataclasses import replace
@@ -12,12 +13,14 @@ from solutions.checks import BadInput
 from validate.check import states
 from validate.methods import EULER
 from validate.products import PYBULLET
+from validate.report import required
 from validate.stability import integrators
 from validate.stability.case import EDGE, Checks, Examined, NotRun, Worst, bisect
 from validate.stability.examine import all_cases, examine, found_by, stored, subject_of
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
+LISTED = json.loads(required.FILE.read_text(encoding="utf-8"))
 LAST = {case.lesson: name for name, case in CASES.items()}           # `validate` examines all; by default one each
 
 
@@ -52,6 +55,15 @@ def test_every_finding_says_what_it_claims_in_sentences(case):
     for f in found:
         assert f.claim.endswith(".") and f.observation.endswith(".") and f.quantity.endswith("]")
     assert len({f.quantity for f in found}) == len(found)
+
+
+@every_case
+def test_the_list_of_the_audit_has_the_laws_and_tolerances_of_the_code(case):
+    found = stored(examined(case))
+    wanted = {required.place(found): LISTED["findings"].get(required.place(found), {})}
+    assert list(required.missing_findings([found], wanted)) == [], "run: python -m validate.report.required"
+    quantities = {one["quantity"] for one in [*found["findings"], *found["not_run"]]}
+    assert quantities == set(wanted[required.place(found)]), "run: python -m validate.report.required"
 
 
 def test_a_finding_of_an_engine_that_is_not_installed_is_not_run_and_is_kept_as_such():

@@ -595,10 +595,12 @@ def show(console, results, failed, settings, given=NOTHING):
         maximum = sum(row[4] for row in settings.manifest if row[0] == lesson)
         summary.add_row(lesson, str(len(raw)), *middle, number(maximum))
     console.print(summary)
-    rows = [row for row in hardest(sheets, settings)[:3] if row["share"] < 1.0]
+    rows = [row for row in hardest(sheets, settings) if row["share"] < 1.0]
     if rows:
-        names = [f"{r['exercise']} {r['function']} ({r['share']:.0%} of its points)" for r in rows]
-        console.print(f"Hardest: {', '.join(names)}", highlight=False)
+        names = [f"{r['exercise']} {r['function']} ({r['share']:.0%} of its points)" for r in rows[:3]]
+        equal = sum(row["share"] == rows[:3][-1]["share"] for row in rows[3:])
+        more = f", and {equal} more with the same share as the last one" if equal else ""
+        console.print(f"Hardest: {', '.join(names)}{more}", highlight=False, soft_wrap=True)
     for student, why in sorted(failed.items()):
         who = f"[bold red]Not graded: {escape(line(student))}[/bold red], who has no points and no zero"
         console.print(f"{who}: {escape(line(why))}", highlight=False, soft_wrap=True)

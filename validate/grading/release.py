@@ -62,6 +62,7 @@ AUTHORS = {
     "validate/speed/benchmark.py",                      # times the answers
     "validate/worlds/conformance.py",                   # judges a reader's engine, in scenes of all lessons
     "validate/worlds/described.py",
+    "validate/report/required.json",                     # the audit's list of all scenes and findings
     "docs/grading.md",                            # for instructors
     "docs/instructors.md",
     "docs/plan.md",

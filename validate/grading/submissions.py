@@ -126,7 +126,8 @@ def owned(folder, people, class_list):
         elif theirs := next((ids for ids in map(known.fitting, (path.name, stem)) if len(ids) == 1), ()):
             things.append(Thing(path, ending, name, owners.Owners((*theirs,), False)))
         else:
-            overlooked.append(f"{shortened(path.name)} is no submission, and was not read")
+            hint = f"; if it is the class list, give --roster {path}" if path.suffix == ".csv" else ""
+            overlooked.append(f"{shortened(path.name)} is no submission, and was not read{hint}")
     record = f"{owners.METADATA} is Gradescope's record of who handed in what, and was followed"
     return things, [record] * bool(metadata) + overlooked
 

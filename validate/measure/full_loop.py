@@ -6,7 +6,9 @@ Both run as plain Python.  A mass on a string is a chain of rods for the loop: e
 all of its mass at its lower end, so that it does what a string does while it is taut.
 """
 
+from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +17,9 @@ from ..methods import DISCRETE, GYROSCOPIC, PENALTY, RATTLE, ROLLING, SLIDING, S
 from . import timing
 from .accuracy import relative, run_to_end
 from .compilation import compilation
+from .our_parts import our_parts, row
 from .selection import select, with_overrides
+from .staged import PARTS, lessons_without
 from .switches import engine_parts
 from .timing import SAME, Timed, interleaved, time_ours
 
@@ -257,34 +261,87 @@ def steps_that_fail(result, label):
     return {row["steps"] for c in first["ours"] if c["label"] == label for row in c["rows"] if row["failure"]}
 
 
-def left_out(name, plan, result):
-    """Return what a scene saves: {method, steps, ratio, same, observed, repeats, note}; note: why there is no number.
+class Stand(NamedTuple):
+    """A method of ours in a scene for which the whole loop can stand."""
+    selection: object        # Selection
+    p: object                # the case that is timed
+    runner: object           # Runner
+    steps: int
+    step: Callable           # of the method
+
+    def whole(self, lessons):
+        """Return a maker of the whole loop with these lessons."""
+        return partial(FULL[self.runner.who], lessons)
+
+    def end(self, step):
+        """Return the Outcome of a step after the whole run."""
+        return run_to_end(self.selection.scene, step, self.p, self.steps)
+
+
+def stand(selection, result):
+    """Return the Stand of a scene, or a sentence that says why there is none.
 
     result: the errors of the scene.  A method that departs there is not compared.
     """
-    selection = select(name, plan)
     scene, (_, p) = selection.scene, selection.first
-    nothing = {"method": "", "steps": None, "ratio": None, "same": None, "observed": None, "repeats": None}
     here = [r for r in scene.our_runners if r.who in FULL]
     runner = next((r for r in here if r.label in labels_as_expected(result)), None)
     if scene.full_loop or not here:
-        return {**nothing, "note": scene.full_loop}
-    if plan.quick:
-        return {**nothing, "note": "left to --full"}
+        return scene.full_loop
+    if selection.plan.quick:
+        return "left to --full"
     if runner is None:
-        return {**nothing, "note": f"{here[0].label} departs from the truth here"}
+        return f"{here[0].label} departs from the truth here"
     steps = next(n for n in scene.steps if n >= LEAST and n not in steps_that_fail(result, runner.label))
-    _, step = selection.bound(runner, "plain")
-    make, dt = partial(FULL[runner.who], scene.lessons), scene.duration / steps
-    one, other = (run_to_end(scene, s, p, steps) for s in (made_when_called(make), step))
-    if one.observed is None:
-        return {**nothing, "note": f"the whole loop does not run here: {one.failure}"}
-    timed = [Timed("without", "plain", steps, dt, time_ours(scene, step, p)),
-             Timed("with", "plain", steps, dt, time_whole(scene, make, p))]
+    return Stand(selection, p, runner, steps, selection.bound(runner, "plain")[1])
+
+
+def left_out(name, plan, result):
+    """Return what a scene saves: {method, steps, ratio, same, observed, repeats, note}; note: why there is no number.
+    """
+    nothing = {"method": "", "steps": None, "ratio": None, "same": None, "observed": None, "repeats": None}
+    one = stand(select(name, plan), result)
+    if isinstance(one, str):
+        return {**nothing, "note": one}
+    scene = one.selection.scene
+    make, dt = one.whole(scene.lessons), scene.duration / one.steps
+    full_end, own_end = one.end(made_when_called(make)), one.end(one.step)
+    if full_end.observed is None:
+        return {**nothing, "note": f"the whole loop does not run here: {full_end.failure}"}
+    timed = [Timed("without", "plain", one.steps, dt, time_ours(scene, one.step, one.p)),
+             Timed("with", "plain", one.steps, dt, time_whole(scene, make, one.p))]
     (_, lean), (_, full) = interleaved(timed, {"plain": np.inf}, plan.repeats())
-    return {"method": runner.label, "steps": steps, "ratio": full["seconds"] / lean["seconds"],
-            "same": relative(one.observed, other.observed) < SAME, "observed": (one.observed, other.observed),
+    return {"method": one.runner.label, "steps": one.steps, "ratio": full["seconds"] / lean["seconds"],
+            "same": relative(full_end.observed, own_end.observed) < SAME,
+            "observed": (full_end.observed, own_end.observed),
             "repeats": (full["repeats"], lean["repeats"]), "note": ""}
+
+
+NOT_COMPILED = "the whole loop of lesson 10 in place of the scene's method, in plain Python"
+
+
+def whole_parts(selection, result):
+    """Return what `our_parts` does for a scene that is no Model: parts are left out of the whole loop of lesson 10."""
+    one = stand(selection, result)
+    if isinstance(one, str) or one.runner.who is RATTLE:             # a string is no contact_step
+        return {"rows": [], "note": ""}
+    lessons = selection.scene.lessons
+    makers = {None: one.whole(lessons), **{part: one.whole(lessons_without(lessons, part)) for part in PARTS}}
+    ends = {part: one.end(made_when_called(make)).observed for part, make in makers.items()}
+    if ends[None] is None:
+        return {"rows": [], "note": ""}
+    items = [Timed(part, "plain", one.steps, selection.scene.duration / one.steps,
+                   time_whole(selection.scene, make, one.p)) for part, make in makers.items() if ends[part] is not None]
+    times = {item.label: found for item, found in interleaved(items, {"plain": np.inf}, selection.plan.repeats())}
+    return {"note": NOT_COMPILED, "rows": [row(part, "plain", one.steps, [times[None], times[part]],
+                                               [ends[None], ends[part]]) for part in PARTS if part in times]}
+
+
+def parts(selection, p, result):
+    """Return what each part of our loop costs in a scene, as `our_parts` does."""
+    found = our_parts(selection, p)
+    more = whole_parts(selection, result) if not found["rows"] else found
+    return found if not more["rows"] else jsonable(more)
 
 
 @with_overrides
@@ -298,5 +355,6 @@ def times(name, plan, result):
     timed = timing.times(name, plan, result)
     full = not (plan.quick or plan.most_steps)
     return {**timed, "left_out": jsonable(left_out(name, plan, result)),
+            "our_parts": parts(selection, p, result) if full else {"rows": [], "note": "left to --full"},
             "engine_parts": engine_parts(selection, p) if full else [],
             "compilation": compilation(selection, p, timed["races"]) if full else None}

@@ -80,6 +80,7 @@ def environment():
                          csv=tables.address, ablation_rows=tables.ablations,
                          coverage_rows=tables.coverage, summary_line=words.summary_line,
                          dimensions={product.name: product.dimensions for product in PRODUCTS},
+                         theory_of=words.theory_of, meanings={v.value: words.LEGEND[v] for v in Verdict},
                          unpredicted=words.unpredicted, part_names=words.part_names, part_products=words.part_products)
     return pages
 
@@ -96,7 +97,7 @@ def texts(results, stability, about):
     found = {f"{r['scene']}.html": page(
         "scene.html", r=r, headline=words.headline(r), findings=words.leading(r),
         seen_in_steps=words.seen_in_steps(r),
-        races=races.rows(races.of(r)),
+        races=races.rows(races.of(r)), parts=words.our_parts([r]),
         warning=words.busy_warning([r], about.get("cores")), notebook=about.get("notebooks", {}).get(r["lesson"]),
         exercises=[(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],
         cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
@@ -104,7 +105,8 @@ def texts(results, stability, about):
         found["coverage.html"] = page(
             "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
             cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
-    found["left_out.html"] = page("left_out.html", rows=words.left_out(results), parts=words.engine_parts(results))
+    found["left_out.html"] = page("left_out.html", rows=words.left_out(results), ours=words.our_parts(results),
+                                  parts=words.engine_parts(results), omissions=words.omissions(results))
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     products = words.products(results)

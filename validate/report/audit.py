@@ -1,9 +1,10 @@
 """Audit of a report by its own raw rows: every derived figure and verdict is recomputed, every page rendered again.
 
 Raw are, in report.json: the truth of each case; of each run what it observed at the end, its steps, the error that
-theory allows, or why it failed; of each time all its repeats; of each finding the predicted and the measured number and
-the tolerance.  Everything else is derived from these and is derived here again, by other code where that is short.
-The pages must be what the same data give when they are rendered again, and each picture names the data that it shows.
+theory allows, or why it failed; of each time all its repeats; of each finding the measured number.  Everything else is
+derived from these and is derived here again, by other code where that is short.  Limits, laws and tolerances must be
+those of the code, and `required.py` says what must be there.  Pages and pictures must be what the same data give when
+they are made again.
 """
 
 from statistics import median
@@ -11,36 +12,78 @@ from statistics import median
 import numpy as np
 
 from .. import report
-from ..check import Verdict, jsonable
-from ..measure.accuracy import ASYMPTOTIC, bound
+from ..check import Verdict
+from ..measure.accuracy import ASYMPTOTIC
 from ..measure.races import EXACTLY, HEADLINE, NEARLY, TIE, Outcome
 from ..measure.timing import SAME, TARGETS
 from ..run.store import code_digest
 from ..scene import ROUND_OFF
-from ..subject import modules
-from . import plots
+from . import required
+from .again import differs, distance, limits_of, may_redraw, pages_of, pages_version, picture_of
 
 NINE = 9                     # repeats from which the interval of a median leaves out the shortest and the longest [-]
-NEAR = 1e-9                  # allowed relative difference of a figure that was computed twice [-]
+COUNTED = ("runs", "times", "findings", "limits", "pages", "pictures")
 
 
-def audit(folder, data):
-    """Return (problems, counts): sentences, and how much was checked, for a folder and its report.json."""
-    found, counts = [], dict.fromkeys(("runs", "limits", "times", "findings", "pages", "pictures"), 0)
-    for result in data["scenes"]:
+def here(calls):
+    """Yield (key, result) of {key: (function, *arguments)}, one after the other in this process."""
+    for key, (function, *arguments) in calls.items():
+        yield key, function(*arguments)
+
+
+def untracked(sequence, total=None, description=""):
+    """Return a sequence as it is: the progress is not shown."""
+    return sequence
+
+
+def audit(folder, data, each=here, track=untracked):
+    """Return (problems, counts, notes): sentences, how much was checked, and what could not be checked.
+
+    folder and data: a report and its report.json;    each(calls): see `here`;    track(sequence, total=, description=)
+    yields what the sequence has, and shows the progress
+    """
+    run, counts = data["run"], dict.fromkeys(COUNTED, 0)
+    found = []
+    for result in track(data["scenes"], description="figures"):
         found += [f"{result['scene']}: {problem}" for problem in of_scene(result, counts)]
     for case in data["stability"]:
         found += [f"{case['lesson']}/{case['slug']}: {problem}" for problem in of_case(case, counts)]
-    found += list(of_limits(data, counts))
-    found += list(of_pages(folder, data, counts))
-    return found, counts
+    same_code = run.get("code") == code_of(run["of"])
+    must = required.kept(run, same_code)
+    found += required.missing(data, must) if must else ()
+    by_theory = same_code and not run.get("overrides")
+    for kind, calls in (("limits", limits_to_derive(data) if by_theory else {}),
+                        ("pages", {"all": (pages_of, folder, data)} if run.get("pages") == pages_version() else {}),
+                        ("pictures", pictures_to_check(folder, data))):
+        for _, (problems, count) in track(each(calls), total=len(calls), description=kind):
+            found += problems
+            counts[kind] += count
+    return found, counts, list(unchecked(run, must, by_theory))
 
 
-def differs(a, b):
-    """Return whether two figures are not the same; None is a figure that there is none of."""
-    if a is None or b is None:
-        return a is not b
-    return not abs(a - b) <= NEAR * max(abs(a), abs(b))
+def unchecked(run, must, by_theory):
+    """Yield sentences on what this code cannot judge of a report."""
+    if must is None:
+        yield "whether all scenes, cases and findings are there: the repository has no list for its commit"
+    if not by_theory:
+        yield "whether its limits are theory's: it was made by other code or with other parameters"
+    if run.get("pages") != pages_version():
+        yield "whether its pages show its data: they were made by other code"
+    if not may_redraw(run):
+        yield "whether its pictures are drawn from its data: only their marks were checked"
+
+
+def limits_to_derive(data):
+    """Return a call for each scene."""
+    run = data["run"]
+    return {result["scene"]: (limits_of, result, run["of"], run["mode"] == "quick") for result in data["scenes"]}
+
+
+def pictures_to_check(folder, data):
+    """Return a call for each picture."""
+    redraw = may_redraw(data["run"])
+    return {name: (picture_of, folder / name, plot.__name__, shown, redraw)
+            for plot, name, shown, _ in report.pictures(data["scenes"], data["stability"])}
 
 
 # ---------------------------------------------------------------------------------------------- errors and verdicts
@@ -93,12 +136,6 @@ def of_curve(curve, case, result):
     verdict = None if curve["reference"] else verdict_of(judged, curve["expected"], order, own is not None)
     if verdict is not None and verdict is not Verdict(curve["verdict"]):
         yield f"the verdict is {curve['verdict']!r}, but its rows say {verdict.value!r}"
-
-
-def distance(observed, truth):
-    """Return |observed − truth| over |truth|, or over 1 where the truth is zero."""
-    size = sum(x * x for x in truth) ** 0.5
-    return sum((x - y) ** 2 for x, y in zip(observed, truth, strict=True)) ** 0.5 / (size or 1.0)
 
 
 def outside(row, law):
@@ -197,7 +234,8 @@ def of_costs(times):
     left_out = times.get("left_out") or {"ratio": None}
     if left_out["ratio"] is not None and not follows(left_out, "ratio"):
         yield "what the whole loop costs does not follow from its repeats"
-    for row in times.get("engine_parts") or ():
+    ours = [{**row, "engine": f"our loop, {row['speed']}"} for row in (times.get("our_parts") or {"rows": ()})["rows"]]
+    for row in [*ours, *(times.get("engine_parts") or ())]:
         full, lean = (median(repeats) for repeats in row["repeats"])
         before, after = row["observed"]
         change = None if before is None or after is None else distance(after, before)
@@ -335,7 +373,7 @@ def of_ratio(race, times):
         yield f"its outcome is {race['outcome']!r}, but its ratio says {outcome.value!r}"
 
 
-# ---------------------------------------------------------------------------------------------- findings, limits, pages
+# ---------------------------------------------------------------------------------------------- findings
 
 def of_case(case, counts):
     """Yield what is wrong with the findings of a stability case."""
@@ -349,59 +387,8 @@ def of_case(case, counts):
             yield f"{f['quantity']!r} is said to {'hold' if f['holds'] else 'fail'}, but its numbers say the contrary"
 
 
-def of_limits(data, counts):
-    """Return limits that differ from those of the scenes.
-
-    None if the report comes from other code, which cannot tell.
-    """
-    run = data["run"]
-    if run.get("code") != code_of(run["of"]) or run.get("overrides"):
-        return
-    for result in data["scenes"]:
-        scene = modules.bind_scene(result["scene"], run["of"])
-        for name, case in result["cases"].items():
-            for curve in case["ours"] + case["engines"]:
-                runner = next(r for r in scene.runners if r.label == curve["label"])
-                place = f"{result['scene']}: {curve['label']}, {name}"
-                if curve["measured"] != runner.measured:
-                    yield f"{place}: whether its limit was measured is not what the scene says"
-                if curve["reference"] != runner.is_reference(scene.cases[name]):
-                    yield f"{place}: whether the truth is its own run is not what the scene says"
-                law = np.array(curve.get("own_law") or case["truth"])
-                for row in curve["rows"]:
-                    counts["limits"] += 1
-                    theory = jsonable(bound(runner, scene.cases[name], scene.duration / row["steps"], law))
-                    if any(differs(row[key], theory[key]) for key in ("limit", "band")) or apart(row, theory):
-                        yield f"{place}: the limit at {row['steps']} steps is not theory's"
-                        break
-
-
-def apart(row, theory):
-    """Return whether what theory predicts is not what was stored."""
-    a, b = row["predicted"], theory["predicted"]
-    return (a is None) != (b is None) or (a is not None and distance(a, b) > NEAR)
-
-
 def code_of(subject):
     try:
         return code_digest(subject)
     except ValueError:                                   # a BadInput: the folder of answers is gone
         return None
-
-
-def of_pages(folder, data, counts):
-    """Return pages and pictures that do not show these data."""
-    for name, text in report.texts(data["scenes"], data["stability"], data["run"]).items():
-        counts["pages"] += 1
-        there = folder / name
-        if not there.is_file():
-            yield f"{name} is missing"
-        elif there.read_text(encoding="utf-8") != text:
-            yield f"{name} is not what its data give"
-    for _, name, shown, _ in report.pictures(data["scenes"], data["stability"]):
-        counts["pictures"] += 1
-        there = folder / name
-        if not there.is_file():
-            yield f"{name} is missing"
-        elif f"<!-- {plots.DRAWN_FROM}{plots.digest(shown)} -->" not in there.read_text(encoding="utf-8")[-200:]:
-            yield f"{name} was not drawn from these data"

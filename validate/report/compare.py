@@ -7,6 +7,7 @@ from solutions.checks import BadInput
 
 from ..check import Verdict
 from ..products import PRODUCTS
+from .words import busy_warning
 
 GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.REFERENCE}
 ORDER = 0.05                 # a smaller change of an order is noise of the fit [-]
@@ -135,26 +136,33 @@ def is_good(curve):
 
 
 def times(old, new):
-    """Yield methods whose ranges of times lie apart, by more than SLOWER, at one pace of the machine.
+    """Yield methods whose ranges of times lie apart, by more than SLOWER, in units of an engine's step.
 
-    The pace is the ratio of the engines' times in the same scene, which were measured alternately with ours, with
-    its range.  If no engine is timed, it is that of all scenes.  Only a method that becomes slower relative to the
-    engines is worse.
+    The unit is the ratio of the engines' times in the same scene, which were measured alternately with ours, with
+    its range; in a scene without an engine it is that of all scenes.  So the machine and a steady load cancel.
+    Only a method that becomes slower in this unit, on a machine that nothing else used, is worse.
     """
-    before, after = timed(old), timed(new)
+    before, after, busy = timed(old), timed(new), busy_scenes(old) | busy_scenes(new)
     both = [key for key in before if key in after]
     ratios = {key: after[key]["seconds"] / before[key]["seconds"] for key in both}
+    engines = {key: ratio for key, ratio in ratios.items() if key[2] == "engine"}
     finest = {key[:3]: key for key in sorted(both, key=lambda key: key[3])}
     for key in finest.values():
         scene, label, speed, steps = key
-        beside = [ratio for other, ratio in ratios.items() if other[0] == scene and other[2] == "engine"]
-        pace = beside or [median(ratios.values())]
+        unit = [ratio for other, ratio in engines.items() if other[0] == scene] or list(engines.values())
+        pace = unit or [median(ratios.values())]
         was, now, ratio = before[key], after[key], ratios[key] / median(pace)
         slower = now["low"] / max(pace) > was["high"] and ratio > SLOWER
         quicker = now["high"] / min(pace) < was["low"] and ratio < 1.0 / SLOWER
         if speed != "engine" and (slower or quicker):
-            words = f"{'slower' if slower else 'faster'} by {max(ratio, 1.0 / ratio):.2g} at {steps} steps"
-            yield Change("times", f"{scene}: {label}, {speed}", words, slower and bool(beside))
+            words = f"{'slower' if slower else 'faster'} by {max(ratio, 1.0 / ratio):.2g}× at {steps} steps" \
+                    f"{', measured on a busy machine' if scene in busy else ''}"
+            yield Change("times", f"{scene}: {label}, {speed}", words, slower and bool(unit) and scene not in busy)
+
+
+def busy_scenes(report):
+    """Return the scenes of a report beside whose timing other programs ran, as its pages warn."""
+    return {scene["scene"] for scene in report["scenes"] if scene.get("times") and busy_warning([scene], None)}
 
 
 def timed(report):

@@ -1,8 +1,12 @@
 """Sharpness of the limits of a report: `validate limits [REPORT]`.
 
-A limit is the largest error that theory allows a run.  Limit over error says how much larger the error could have been
-without a change of the verdict.  A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left
-out: it says how exact a computer is.  A row with a prediction is judged from below as well.
+Three numbers say how far a wrong run could go unnoticed.
+
+two-sided          share of the rows whose error theory predicts: such a run may err neither more nor less
+band/prediction    of a two-sided row: the allowed distance from the predicted error, over the predicted error
+limit/error        of a one-sided row: how much larger its error could have been without a change of the verdict
+
+A row with a limit below ROUND_OFF_ONLY is a comparison to round-off and is left out: it says how exact a computer is.
 """
 
 import math
@@ -16,7 +20,7 @@ from solutions.checks import BadInput
 
 from ..measure.accuracy import ASYMPTOTIC
 from ..run.store import report_of_this_version
-from .audit import distance
+from .again import distance
 
 ROUND_OFF_ONLY = 1e-9        # limits below this leave room for round-off only, relative [-]
 LOOSEST = 20                 # curves that are named
@@ -28,9 +32,9 @@ class Row(NamedTuple):
     scene: str
     case: str
     label: str
-    ratio: float             # limit over error [-]; infinite where the error is zero
-    two_sided: bool
     steps: int
+    two_sided: bool
+    slack: float             # band over prediction, or limit over error [-]; infinite where it would be divided by zero
 
 
 def rows_of(report):
@@ -42,10 +46,11 @@ def rows_of(report):
                 for row in curve["rows"]:
                     if row["limit"] is None or row["failure"] or not ROUND_OFF_ONLY <= row["limit"] < ASYMPTOTIC:
                         continue
-                    error = distance(row["observed"], law)
-                    yield Row(result["lesson"], result["scene"], name, curve["label"],
-                              row["limit"] / error if error else math.inf, row.get("predicted") is not None,
-                              row["steps"])
+                    two_sided = row["predicted"] is not None
+                    allowed, of = ((row["band"], distance(row["predicted"], law)) if two_sided else
+                                   (row["limit"], distance(row["observed"], law)))
+                    yield Row(result["lesson"], result["scene"], name, curve["label"], row["steps"], two_sided,
+                              allowed / of if of else math.inf)
 
 
 def share(ratios, percent):
@@ -55,29 +60,36 @@ def share(ratios, percent):
     return quantiles(ratios, n=100, method="inclusive")[percent - 1]
 
 
+def three(rows):
+    """Return the cells of the three numbers of some rows; dashes where a kind of rows is missing."""
+    kinds = [[row.slack for row in rows if row.two_sided is two_sided] for two_sided in (True, False)]
+    cells = [[f"{x:.2g}" for x in (share(slacks, 50), share(slacks, 90), max(slacks))] if slacks else ["–"] * 3
+             for slacks in kinds]
+    return [f"{len(kinds[0]) / len(rows):.0%}", *cells[0], *cells[1]]
+
+
 def table_of(title, rows, key):
-    """Return a table of the ratios, one line for each value of `key`, and one for all."""
-    table = Table(title, "rows", "two-sided", "median", "90 %", "largest", box=None, header_style="bold")
+    """Return a table of the three numbers, one line for each value of `key`, and one for all."""
+    table = Table(title, "rows", "two-sided", "band/prediction", "90 %", "largest", "limit/error", "90 %", "largest",
+                  box=None, header_style="bold")
     groups = {}
     for row in rows:
         groups.setdefault(key(row), []).append(row)
     for name, group in [*groups.items(), ("all", rows)]:
-        ratios = [row.ratio for row in group]
-        sides = f"{sum(row.two_sided for row in group) / len(group):.0%}"
-        largest = share(ratios, 50), share(ratios, 90), max(ratios)
-        table.add_row(name, str(len(group)), sides, *(f"{x:.3g}" for x in largest))
+        table.add_row(name, str(len(group)), *three(group))
     return table
 
 
-def loosest(rows):
-    """Return the curves whose tightest row is the loosest: a wrong number hides best there."""
+def loosest(rows, two_sided, title):
+    """Return the curves of one kind whose tightest row is the loosest: a wrong number hides best there."""
     curves = {}
     for row in rows:
         curves.setdefault((row.scene, row.case, row.label), []).append(row)
-    table = Table("loosest curves", "case", "", "steps", "limit/error, least", box=None, header_style="bold")
-    tightest = sorted((min(group, key=lambda row: row.ratio) for group in curves.values()), key=lambda row: -row.ratio)
-    for row in tightest[:LOOSEST]:
-        table.add_row(row.scene, row.case, row.label, str(row.steps), f"{row.ratio:.3g}")
+    table = Table("loosest curves", "case", "", "steps", title, box=None, header_style="bold")
+    mine = [group for group in curves.values() if any(row.two_sided for row in group) is two_sided]
+    tightest = [min((row for row in group if row.two_sided is two_sided), key=lambda row: row.slack) for group in mine]
+    for row in sorted(tightest, key=lambda row: -row.slack)[:LOOSEST]:
+        table.add_row(row.scene, row.case, row.label, str(row.steps), f"{row.slack:.3g}")
     return table
 
 
@@ -87,6 +99,7 @@ def show(report):
     if not rows:
         raise BadInput(f"report {str(report)!r}", "without a limit above round-off", "name a report of more scenes")
     console = Console(width=120)
+    console.print("Columns without a name of their own belong to the one before them, which is a median.", "")
     for table in (table_of("lesson", rows, lambda row: row.lesson), table_of("scene", rows, lambda row: row.scene),
-                  loosest(rows)):
+                  loosest(rows, False, "limit/error, least"), loosest(rows, True, "band/prediction, least")):
         console.print(table, "")

@@ -21,6 +21,7 @@ from . import words
 
 EXACT_RUN = 1e-12               # relative error of a run of many steps that is exact [-]
 DRAWN_FROM = "drawn from data "
+MARK = re.compile(f"<!-- {DRAWN_FROM}(?P<data>[0-9a-f]+) as (?P<text>[0-9a-f]+) -->\\n$")
 NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 9, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 WIDTH, HEIGHT = 5.2, 3.4        # of the axes with their labels [in]: as wide as a phone shows without shrinking letters
@@ -229,14 +230,31 @@ def digest(data):
 
 
 def draw(plot, path, data):
-    """Draw one of the plots into a file, without a screen; its last line names the data."""
+    """Draw one of the plots into a file, without a screen; its last line names the data and the text before it."""
     plt.switch_backend("svg")
     style()
     with whole(path) as draft, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")                              # of a diagram in which every run was lost
         plot(draft, data)
         text = for_both_schemes(draft.read_text(encoding="utf-8"))
-        draft.write_bytes(f"{text}<!-- {DRAWN_FROM}{digest(data)} -->\n".encode())
+        draft.write_bytes(f"{text}<!-- {DRAWN_FROM}{digest(data)} as {of_text(text)} -->\n".encode())
+
+
+def of_text(text):
+    """Return a fingerprint of the text of a picture."""
+    return sha256(text.encode()).hexdigest()[:16]
+
+
+def marked_data(picture):
+    """Return the fingerprint of the data in the mark of a picture; None without a mark."""
+    found = MARK.search(picture)
+    return found and found["data"]
+
+
+def is_as_drawn(picture):
+    """Return whether a picture with a mark is the text that was drawn."""
+    found = MARK.search(picture)
+    return of_text(picture[:found.start()]) == found["text"]
 
 
 # ---------------------------------------------------------------------------------------------- light and dark

@@ -16,9 +16,14 @@ if (filter) {
       shown += !row.hidden;
     }
     document.querySelectorAll("tbody[data-lesson]").forEach(body => { body.hidden = !body.querySelector("tr.scene:not([hidden])"); });
-    told.textContent = shown === 1 ? "1 scene" : `${shown} scenes`;
+    document.querySelector("table.scenes thead").hidden = !shown;
+    told.textContent = !shown ? "No scene is like that." : shown === 1 ? "1 scene" : `${shown} scenes`;
+    const query = new URLSearchParams([...asked].filter(([, value]) => value)).toString();
+    try { history.replaceState(null, "", `${location.pathname}${query && "?"}${query}${location.hash}`); } catch { /* a browser may forbid it for a file */ }
   };
+  for (const [name, value] of new URLSearchParams(location.search)) if (filter.elements[name]) filter.elements[name].value = value;
   filter.addEventListener("input", apply);
+  filter.addEventListener("reset", () => setTimeout(apply));
   filter.addEventListener("submit", event => event.preventDefault());
   apply();                                                        // a browser may restore what was typed
 }

@@ -33,7 +33,7 @@ def show(console, results, stability):
         of_each = (signs([c for c in engines if c["product"] == name]) for name in products)
         table.add_row(result["scene"], signs(ours), *of_each, best_order(result), faster(result))
     console.print(table)
-    console.print(LEGEND, style="dim", highlight=False)
+    console.print(LEGEND, style="dim", highlight=False, soft_wrap=True)
 
     found = [(case, f) for case in stability for f in case["findings"]]
     failed = [(case, f) for case, f in found if not f["holds"]]

@@ -21,7 +21,9 @@ RACES = ("scene", "lesson", "engine", "race to", "relative error [-]", "outcome"
          "engine's coarsest run", "our coarsest run")
 CHOICE = ("scene", "lesson", "speed", "cheapest at 1 %", "its time [s]", "cheapest at 0.01 %", "its time [s]",
           "safest at large steps", "its least number of steps, times 1 + error there [-]")
-PARTS = ("scene", "engine", "part", "steps", "time with it over time without it [-]", "relative change without it [-]")
+PARTS = ("scene", "engine", "part", "steps", "time with it over time without it [-]", "lowest [-]", "highest [-]",
+         "relative change without it [-]")
+OUR_PARTS = ("scene", "speed", *PARTS[2:])
 DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "scenes")
 FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation",
             "the tolerance was measured on")
@@ -45,7 +47,8 @@ def names(results, stability):
     """Return the files that `texts` gives."""
     drawn = [case for case in stability if case["picture"]]
     front = {"scenes.csv": True, "races.csv": races.every(results), "choice.csv": choice.scenes(results),
-             "departures.csv": departures(results)["lines"], "engine-parts.csv": words.engine_parts(results)}
+             "departures.csv": departures(results)["lines"], "engine-parts.csv": words.engine_parts(results),
+             "our-parts.csv": rows_of_ours(results)}
     return {*(name for name, rows in front.items() if rows), *(f"{r['scene']}-runs.csv" for r in results),
             *(f"{r['scene']}-times.csv" for r in results if r["refinement"]), *(["stability.csv"] if stability else []),
             *(f"stability-{case['lesson']}-{case['slug']}.csv" for case in drawn)}
@@ -69,10 +72,10 @@ def texts(results, stability):
         found["departures.csv"] = text(DEPARTURES, [
             (d["engine"], d["kind"], d["low"], d["high"], d["reason"], d["whose"], " ".join(d["places"]))
             for d in lines])
-    if words.engine_parts(results):
-        found["engine-parts.csv"] = text(PARTS, [
-            (r["scene"], row["engine"], row["part"], row["steps"], row["cost"], row["change"])
-            for r in results for row in r["times"].get("engine_parts") or ()])
+    if parts := words.engine_parts(results):
+        found["engine-parts.csv"] = text(PARTS, part_rows(parts, "engine"))
+    if parts := rows_of_ours(results):
+        found["our-parts.csv"] = text(OUR_PARTS, parts)
     for r in results:
         found[f"{r['scene']}-runs.csv"] = text(RUNS, runs(r))
         if r["refinement"]:
@@ -99,6 +102,17 @@ def race_row(race):
             ours.get("speed"), ours.get("seconds"), race["ratio"], race["low"], race["high"], race["order_of_engine"],
             race["order"], race["loop"], race["calls"], race["cold"], race["cached"], race["paid"],
             yes(engine.get("coarsest")), yes(ours.get("coarsest")))
+
+
+def part_rows(parts, key):
+    """Return the lines of PARTS or OUR_PARTS; key: engine or speed."""
+    return [(scene["scene"], row[key], part, row["steps"], row["cost"], *row["range"], row["change"])
+            for scene in parts for part, rows in scene["found"].items() for row in rows]
+
+
+def rows_of_ours(results):
+    """Return the lines of OUR_PARTS."""
+    return part_rows(words.our_parts(results), "speed")
 
 
 def yes(answer):

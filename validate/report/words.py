@@ -9,7 +9,7 @@ from markupsafe import Markup, escape
 
 from ..check import Verdict, is_right
 from ..measure.accuracy import relative
-from ..measure.timing import SAME
+from ..measure.timing import SAME, interval
 from ..products import PRODUCTS
 from ..scene import EXACT
 from . import races
@@ -21,7 +21,8 @@ KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict
 SIGNS = {"agrees": "✓", "predicted": "≈", "departs": "✗", "open": "○"}         # as the style sheet draws them
 LEGEND = {                   # every verdict has one name and one sign
     Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured, "
-                    "except where the page calls it measured.",
+                    "except where the page calls it measured. Where theory predicts the error itself, a second code "
+                    "with the same scheme computes it: the run must miss the truth by just that error.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
@@ -123,6 +124,19 @@ def finest(curve):
     return curve["rows"][-1] if curve["rows"] else None
 
 
+def theory_of(curve, truth):
+    """Return {"predicted", "allowed"}: the error of the finest run as theory predicts it, and how far it may be off.
+
+    Both are texts.  Without a prediction, `allowed` is the largest error.
+    """
+    row = finest(curve)
+    if row is None:
+        return {"predicted": "–", "allowed": "–"}
+    if row["predicted"] is None:
+        return {"predicted": "–", "allowed": "–" if row["limit"] is None else f"≤ {number(row['limit'], 2)}"}
+    return {"predicted": number(relative_to(row["predicted"], truth), 2), "allowed": f"± {number(row['band'], 2)}"}
+
+
 # ---------------------------------------------------------------------------------------------- a busy machine
 
 def busy(results):
@@ -173,25 +187,55 @@ def row(result, products):
 
 
 def left_out(results):
-    """Return scenes of the lessons before the simulator, and the cost of the whole loop there.
+    """Return the cost of the whole loop in place of the method of each scene: [{scene, title, lesson, …}]."""
+    return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"], **whole_loop(r)}
+            for r in results]
 
-    Each is {scene, title, lesson, …}.
+
+def whole_loop(result):
+    """Return what was measured of the whole loop in a scene; `note` says why there is no number."""
+    row = result["times"].get("left_out") or {"ratio": None, "note": ""}
+    if row["ratio"] is not None:
+        return {**row, "range": cost_range(row)}
+    without = "nothing moves here, so there is no loop" if not result["moves"] else \
+        "its own method is a loop of this kind already"
+    return {**row, "note": row["note"] or without}
+
+
+def our_parts(results):
+    """Return what was left out of our loop in each scene: [{scene, title, lesson, note, found: {part: [its rows]}}].
+
+    Only scenes with a row or a reason are there.
     """
-    return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
-             **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
-            for r in results if r["lesson"] not in ("simulator", "kinematics")]
+    return [one for r in results if (one := parts_of(r, r["times"].get("our_parts") or {"rows": (), "note": ""}))]
 
 
 def engine_parts(results):
-    """Return the parts of engines that were switched off in turn: [{scene, title, lesson, found: {part: its rows}}]."""
-    rows = []
-    for r in results:
-        found = {}
-        for row in r["times"].get("engine_parts") or ():
-            found.setdefault(row["part"], []).append({**row, "says": change_without(row)})
-        if found:
-            rows.append({"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "found": found})
-    return rows
+    """Return what was switched off of the engines: [{scene, title, lesson, note, found: {part: its rows}}]."""
+    return [one for r in results if (one := parts_of(r, {"rows": r["times"].get("engine_parts") or (), "note": ""}))]
+
+
+def parts_of(result, measured):
+    """Return the parts of a loop or of engines that were left out in one scene, or None where there is nothing."""
+    found = {}
+    for row in measured["rows"]:
+        found.setdefault(row["part"], []).append({**row, "says": change_without(row), "range": cost_range(row)})
+    if not found and not measured["note"]:
+        return None
+    return {"scene": result["scene"], "title": result["title"], "lesson": result["lesson"], "note": measured["note"],
+            "found": found}
+
+
+def cost_range(row):
+    """Return (lowest, highest) ratio of the times with and without something, from the intervals of both."""
+    full, lean = map(interval, row["repeats"])
+    return full["low"] / lean["high"], full["high"] / lean["low"]
+
+
+def omissions(results):
+    """Return all that the scenes say they leave out: [{scene, title, what, cost, same, note, range}]."""
+    return [{"scene": r["scene"], "title": r["title"], **row, "range": row["cost"] and cost_range(row)}
+            for r in results for row in r["times"]["ablations"]]
 
 
 def unpredicted(result):

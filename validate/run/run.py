@@ -74,17 +74,18 @@ def report_on(store, names, plan, pool, bars, measuring=None):
     results, stability = store.results(shown), store.stability(shown)
     pages = report.files(results, stability)
     store.note(pages=sorted({*store.state["pages"], *pages}))        # first, in case writing them is interrupted
-    front = report.write(store.out, results, stability, about(plan, store.out, measuring), pool, bars,
+    front = report.write(store.out, results, stability, about(plan, store.out, measuring, shown), pool, bars,
                          store.measured)
     store.finish(names, pages)
     return front
 
 
-def about(plan, out=None, measuring=None):
+def about(plan, out=None, measuring=None, shown=()):
     """Return what a report was made with: a plain record for the foot of its pages.
 
-    Links to the sources are there only for a report in a folder of the repository.
+    shown: names of its scenes.  Links to the sources are there only for a report in a folder of the repository.
     """
+    from ..report.again import pages_version  # brings matplotlib along
     inside = out is not None and out.resolve().is_relative_to(modules.ROOT)
     live = [f"{engine} {engine.installed()} live" if engine in plan.live else
             f"{engine} {'left out' if engine.optional else 'recorded'}" for engine in PRODUCTS]
@@ -95,7 +96,8 @@ def about(plan, out=None, measuring=None):
         "speeds": list(plan.speeds), "repeats": plan.repeats(), "date": date.today().isoformat(),
         "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
         "processor": processor(), "cores": os.cpu_count(), "executor": str(measuring or ""),
-        "code": code_digest(plan.of),
+        "code": code_digest(plan.of), "pages": pages_version(),
+        "chosen": [] if set(shown) == set(modules.scene_names()) else list(shown),
         "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
         "overrides": [list(pair) for pair in plan.overrides], "coverage": coverage.table(),
         "version": version("physics-animation-workbook"), "commit": commit(),

@@ -30,6 +30,7 @@ import types
 import uuid
 import warnings
 from dataclasses import replace
+from difflib import get_close_matches
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
@@ -218,7 +219,8 @@ def bind_scene(scene, of="solutions", compiled=False):
     Raises BadInput if it or a lesson of it is broken.
     """
     if scene not in scene_names():
-        raise BadInput(f"scene {scene!r}", "unknown", "`validate list` names them all")
+        near = "".join(f"did you mean {name}? " for name in get_close_matches(str(scene), scene_names(), 1))
+        raise BadInput(f"scene {scene!r}", "unknown", f"{near}`validate list` names them all")
     try:
         return module_set(of, compiled).scene(scene)
     except BadInput:
@@ -249,9 +251,14 @@ def digest_of(folder):
 
 
 def fingerprint(files, more=""):
-    """Return twelve digits that change with any of these files."""
-    text = b"".join(str(path).encode() + path.read_bytes() for path in sorted(files) if path.is_file())
+    """Return twelve digits that change with any of these files, and not with the folder of the repository."""
+    text = b"".join(name_of(path).encode() + path.read_bytes() for path in sorted(files) if path.is_file())
     return hashlib.sha256(text + more.encode()).hexdigest()[:12]
+
+
+def name_of(path):
+    """Return the path of a file inside the repository, or its full path outside of it."""
+    return path.relative_to(ROOT).as_posix() if path.is_relative_to(ROOT) else str(path)
 
 
 def numba_version():

@@ -1,0 +1,178 @@
+"""Cost and effect of each part of our loop in a scene.
+
+A loop with all parts runs every scene that is a Model in the plane: it has loads of all kinds, searches for contacts of
+shapes of all kinds, lets them rub, closes joints and turns what moves.  From it one part at a time is left out, as the
+engines' switches do.  The loop that `compose` makes of the Model leaves out all that the scene does not need.
+"""
+
+import time
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.support.model import make_model
+from solutions.support.shapes import Ball
+
+from ..check import jsonable
+from ..worlds.ours import PLACES, lesson_of
+from . import dimension
+from .accuracy import relative
+from .timing import Timed, interleaved
+
+ALL = ("accelerate", "detect_unjoined", "separate", "contact_impulses_with_joints", "move_and_turn")
+SMOOTH = ("accelerate_half", "detect_unjoined", "contact_impulses_with_joints", "move_and_turn", "accelerate_rest",
+          "hold")            # all parts where the loop of the scene is RATTLE: forces act at both ends of its step
+WITHOUT = {                  # {part: ({function: the one in its place, or None}, fields that are zero)}
+    "rotation": ({"move_and_turn": "move"}, ("inv_inertia",)),
+    "detection": ({"detect_unjoined": None, "separate": None, "contact_impulses_with_joints": "close"}, ()),
+    "contact": ({"separate": None, "contact_impulses_with_joints": "close"}, ()),
+    "friction": ({}, ("mu", "mu_of")),
+    "joints": ({"detect_unjoined": "detect_many", "contact_impulses_with_joints": "contact_impulses_of_pairs",
+                "hold": None}, ()),
+}
+TOTAL, DIMENSION = "all that the scene leaves out", "the third dimension"
+WITH, OWN = "all parts", "the scene's loop"
+SMALL = 0.01                 # radius of a body without a shape over the least distance of two bodies, or over 1 m [-]
+STEPS, PROBE = 500, 2        # steps of a timed run, and of one that finds out how long a step takes
+LONGEST = {"plain": 0.03, "compiled": 0.1}   # a timed run ends sooner if it would take longer than about this [s]
+
+
+class Run(NamedTuple):
+    """A loop that can be timed and observed."""
+    advance: Callable        # (steps, dt) → its state
+    see: Callable            # (state) → what the scene observes
+
+
+def our_parts(selection, p):
+    """Return {"rows", "note"}; note: why there are none.
+
+    rows: [{part, speed, steps, cost, change, observed, repeats}]
+    cost: time with the part over time without it;    change: relative change of the observed quantities without it, or
+    None if the run is lost.  The part TOTAL is the loop with all parts against the loop of the scene, and DIMENSION the
+    loop of lesson 10 in space against the one in the plane.
+    """
+    of, one = selection.plan.of, described_scene(selection.name)
+    if one is None:
+        return {"rows": [], "note": "" if selection.scene.moves else "nothing moves here"}
+    model = one.model(p)
+    if why := lesson_of(of).refuses(model):
+        return {"rows": [], "note": why}
+    own_load = any(callable(load) for load in model.loads)
+    note = "a force of this scene is a Python function, which is not compiled" if own_load else ""
+    try:
+        rows = [row for speed in (("plain",) if own_load else selection.plan.speeds)
+                for row in rows_at(selection, one, model, p, speed)]
+    except (Exception, SystemExit) as e:                             # a subject's code may do anything
+        return {"rows": [], "note": f"the loop does not run here: {type(e).__name__}: {e}"}
+    return jsonable({"rows": rows, "note": note})
+
+
+def described_scene(name):
+    """Return the Described of a scene; None where it is no Model, and in a copy for students, which lacks the list."""
+    if find_spec("validate.worlds.described") is None:
+        return None
+    return import_module("validate.worlds.described").DESCRIBED.get(name)
+
+
+def variants(lesson, model):
+    """Return {name: (names of the functions of a step, Loop)}: with all parts, without each of them, and the scene's.
+    """
+    own, full = lesson.compose(model), lesson.compose(shaped(model))
+    names = tuple(part.step.__name__ for part in own.parts)
+    load = full.load if any(callable(load) for load in model.loads) else lesson.model_load
+    full = full._replace(load=load, bounds=lesson.convex_bounds_2d, narrow=lesson.convex_contacts_2d)
+    every = SMOOTH if names[:1] == SMOOTH[:1] else ALL
+    found = {WITH: (every, full)}
+    for part, (functions, fields) in WITHOUT.items():
+        kept = tuple(filter(None, (functions.get(name, name) for name in every)))
+        zero = {field: 0.0 * getattr(full.p, field) for field in fields}
+        found[part] = kept, full._replace(p=full.p._replace(**zero))
+    return {**found, OWN: (names, own)}
+
+
+def shaped(model):
+    """Return the Model with a small ball for each body without a shape, which the search for contacts has to look at.
+    """
+    x = np.array([body.x for body in model.bodies])
+    apart = np.linalg.norm(x[:, None] - x, axis=2) + np.diag(np.ones(len(x)))
+    ball = Ball(SMALL * float(apart.min()) if apart.min() > 0.0 else SMALL)
+    bodies = [body if body.shape is not None else body._replace(shape=ball) for body in model.bodies]
+    return make_model(bodies, model.gravity, model.joints, model.springs, model.loads)
+
+
+def advancing(lesson, names, loop):
+    """Return the function (steps, dt) → PileState of a loop, with the functions of a plain or a compiled lesson."""
+    twin = lambda function: getattr(lesson, function.__name__, function)
+    step = [getattr(lesson, name) for name in (*names, *["leave"] * (PLACES - len(names)))]
+    rest = twin(loop.load), twin(loop.bounds), twin(loop.narrow), 0.0, loop.state
+    return lambda steps, dt: lesson.advance_parts(*step, *rest, dt, steps, loop.p)
+
+
+def rows_at(selection, described, model, p, speed):
+    """Return the rows of one speed."""
+    of = selection.plan.of
+    plain, lesson = lesson_of(of), lesson_of(of, speed == "compiled")
+    runs = {name: Run(advancing(lesson, *one), partial(seen_in, described, p, partial(plain.state_of, one[1])))
+            for name, one in variants(plain, model).items()}
+    rows = priced(selection, runs, [*((part, WITH, part) for part in WITHOUT), (TOTAL, WITH, OWN)], speed)
+    both = dimension.in_both(plain, shaped(model)) or {}
+    runs = {dim: Run(dimension.advancing(lesson, one),
+                     partial(seen_in, described, p, partial(dimension.state_in_plane, one)))
+            for dim, one in both.items()}
+    try:
+        return [*rows, *(priced(selection, runs, [(DIMENSION, 3, 2)], speed) if runs else ())]
+    except ArithmeticError:              # the loops of lesson 10 end where bodies sink into each other
+        return rows
+
+
+def seen_in(described, p, read, state):
+    """Return what a scene observes of a state of its loop, which `read` makes a State of the Model."""
+    return described.observe(read(state), p)
+
+
+def priced(selection, runs, pairs, speed):
+    """Return a row for each of `pairs`, (part, name of the run with it, name of the run without it).
+
+    All runs are timed alternately.
+    """
+    dt, steps = length_of_run(selection.scene, runs[pairs[0][1]].advance, speed)
+    seen = {name: observed(run, steps, dt) for name, run in runs.items()}
+    items = [Timed(name, speed, steps, dt, prepared(run.advance)) for name, run in runs.items()]
+    times = {item.label: one for item, one in interleaved(items, {speed: np.inf}, selection.plan.repeats())}
+    return [row(part, speed, steps, [times[full], times[lean]], [seen[full], seen[lean]])
+            for part, full, lean in pairs]
+
+
+def prepared(run):
+    """Return prepare(steps, dt) of a loop, for the clock."""
+    return lambda steps, dt: (lambda: run(steps, dt), lambda: None)
+
+
+def length_of_run(scene, advance, speed):
+    """Return (dt, steps) of a timed run: all of T, or as much of it as takes LONGEST."""
+    n = next((n for n in scene.steps if n >= STEPS), scene.steps[-1])
+    dt = scene.duration / n
+    for _ in range(2):                                               # the first run may compile
+        begin = time.perf_counter()
+        advance(PROBE, dt)
+        pace = (time.perf_counter() - begin) / PROBE
+    return dt, min(n, max(PROBE, int(LONGEST[speed] / pace)))
+
+
+def observed(run, steps, dt):
+    """Return what a run observes at its end, flat, or None if that is not finite."""
+    found = np.asarray(run.see(run.advance(steps, dt)), dtype=float).ravel()
+    return found if np.all(np.isfinite(found)) else None
+
+
+def row(part, speed, steps, times, seen):
+    """Return one row from what was timed and observed with the part and without it."""
+    full, lean = times
+    lost = any(one is None for one in seen)
+    return {"part": part, "speed": speed, "steps": steps, "cost": full["seconds"] / lean["seconds"],
+            "change": None if lost else relative(seen[1], seen[0]), "observed": seen,
+            "repeats": (full["repeats"], lean["repeats"])}
