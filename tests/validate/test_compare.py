@@ -142,6 +142,22 @@ def test_the_command_says_when_the_formats_differ(report, tmp_path, capsys):
         assert (f"Formats of the reports: 2 and {FORMAT}." in capsys.readouterr().out) == says
 
 
+def test_the_command_ends_with_1_when_something_became_worse(report, tmp_path, capsys):
+    new = copy.deepcopy(report)
+    first_curve(new)["verdict"] = "departs"
+    for name, content in (("old", report), ("new", new), ("odd", {**report, "scenes": [{}]})):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "report.json").write_text(json.dumps(content))
+    for pair, code in ((("old", "new"), 1), (("new", "old"), 0), (("old", "old"), 0), (("old", "odd"), 2),
+                       (("old", "nothing"), 2)):
+        with pytest.raises(SystemExit) as ended:
+            command.main(["compare", *(str(tmp_path / name) for name in pair)])
+        said = capsys.readouterr()
+        assert ended.value.code == code, pair
+        assert code != 1 or "✗ throw, one: Verlet  agrees → departs" in said.out
+        assert code != 2 or len(said.err.splitlines()) == 1
+
+
 def slowed(report, factor):
     """The same report, in which Verlet takes longer."""
     new = copy.deepcopy(report)
@@ -166,19 +182,3 @@ def test_a_scene_without_an_engine_is_timed_in_the_steps_of_the_other_scenes_eng
         one["scenes"][0]["times"]["rows"].pop()
         one["scenes"][1]["times"]["rows"] = one["scenes"][1]["times"]["rows"][2:]
     assert kinds(report, new) == [("times", True)]
-
-
-def test_the_command_ends_with_1_when_something_became_worse(report, tmp_path, capsys):
-    new = copy.deepcopy(report)
-    first_curve(new)["verdict"] = "departs"
-    for name, content in (("old", report), ("new", new), ("odd", {**report, "scenes": [{}]})):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "report.json").write_text(json.dumps(content))
-    for pair, code in ((("old", "new"), 1), (("new", "old"), 0), (("old", "old"), 0), (("old", "odd"), 2),
-                       (("old", "nothing"), 2)):
-        with pytest.raises(SystemExit) as ended:
-            command.main(["compare", *(str(tmp_path / name) for name in pair)])
-        said = capsys.readouterr()
-        assert ended.value.code == code, pair
-        assert code != 1 or "✗ throw, one: Verlet  agrees → departs" in said.out
-        assert code != 2 or len(said.err.splitlines()) == 1

@@ -45,7 +45,7 @@ def test_the_tables_name_the_loosest_curve_of_each_kind(tmp_path, capsys):
     limits.show(tmp_path)
     shown = capsys.readouterr().out
     bound, predicted = shown.split("limit/error, least")[1].split("band/prediction, least")
-    assert "integrators" in shown and "inf" in shown
+    assert "integrators" in shown and "∞" in shown
     assert "by a bound" in bound and "by a prediction" not in bound and "by a prediction" in predicted
 
 

@@ -34,10 +34,9 @@ def parts(name):
 
 @pytest.mark.parametrize(("name", "needed"), [
     ("oscillator", set()), ("linear_drag", set()), ("rod_chain", {"rotation", "joints"}),
-    ("slide_then_roll", {"rotation", "detection", "contact", "friction"}), ("incline", {"detection", "contact",
-                                                                                       "friction"})])
+    ("slide_then_roll", {"rotation", "detection", "contact", "friction"})])
 def test_a_part_that_is_left_out_changes_the_motion_where_the_scene_needs_it_and_only_there(name, needed, monkeypatch):
-    monkeypatch.setitem(our_parts.LONGEST, "plain", 0.5)
+    monkeypatch.setattr(our_parts, "SEEN", 2.0)
     found = parts(name)
     alike = {part for part, row in found.items() if words.change_without(row) == "same"}
     assert found.keys() - alike - {our_parts.DIMENSION} == needed
@@ -46,7 +45,7 @@ def test_a_part_that_is_left_out_changes_the_motion_where_the_scene_needs_it_and
 
 def test_every_scene_in_the_plane_runs_with_all_parts_as_it_does_with_its_own(monkeypatch):
     """Two steps of each: the loops differ in what they leave out, not in what they compute."""
-    monkeypatch.setitem(our_parts.LONGEST, "plain", 0.0)
+    monkeypatch.setattr(our_parts, "SEEN", 0.0)
     for name, one in DESCRIBED.items():
         selection = select(name, PLAN)
         model = one.model(selection.first[1])
@@ -57,7 +56,7 @@ def test_every_scene_in_the_plane_runs_with_all_parts_as_it_does_with_its_own(mo
 
 
 def test_the_loop_in_space_moves_as_the_one_in_the_plane(monkeypatch):
-    monkeypatch.setitem(our_parts.LONGEST, "plain", 0.5)
+    monkeypatch.setattr(our_parts, "SEEN", 2.0)
     assert parts("slide_then_roll")[our_parts.DIMENSION]["change"] < 1e-9
     assert our_parts.DIMENSION not in parts("cradle") and our_parts.DIMENSION not in parts("oscillator")
 

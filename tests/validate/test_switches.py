@@ -8,7 +8,7 @@ from validate.engines.switches import worlds_made
 from validate.measure import switches
 from validate.measure.selection import Plan, select
 from validate.report import audit, words
-from validate.scene import PYBULLET, PYMUNK
+from validate.scene import MUJOCO, PYBULLET, PYMUNK
 
 PLAN = Plan(quick=False, speeds=("plain",))
 
@@ -36,6 +36,15 @@ def test_joints_are_swept_even_where_nothing_collides():
     found = parts("rope", live=(PYMUNK,))
     assert ("pymunk", "all sweeps but one") in found and ("pymunk", "friction") not in found
     assert found["pymunk", "all sweeps but one"]["cost"] > 1.2
+
+
+@pytest.mark.skipif(not MUJOCO.installed(), reason="MuJoCo is not installed here")
+def test_mujocos_contacts_hold_a_block_and_its_memory_of_them_only_saves_time():
+    found = parts("incline", live=(MUJOCO,))
+    assert all(found["mujoco", part]["change"] > 0.01 for part in ("collision detection", "friction"))
+    assert words.change_without(found["mujoco", "memory of contacts"]) == "same"
+    assert 0.0 < found["mujoco", "all sweeps but one"]["change"] < 0.5
+    assert parts("throw", live=(MUJOCO,)) == {}
 
 
 @pytest.mark.skipif(not PYBULLET.installed(), reason="pybullet is not installed here")

@@ -13,10 +13,10 @@ import numpy as np
 from ..reference.orientation import quaternion
 from ..scene import EngineRun
 from . import quiet_import
+from .switches import Switch, made
 
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
 LEAST = 1e-14                            # moment of what has none [kg m²]: MuJoCo permits no less than 1e-15
-SWITCHES = ()                            # its contacts, friction and joints are rows of one problem
 SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 
@@ -50,6 +50,7 @@ def running(model, data, read, load=None):
     Runge–Kutta a method of order 1.  MuJoCo has one callback for all worlds, so it is there during the step only.
     """
     step, take = module().mj_step, module().set_mjcb_passive
+    made(model)
 
     def loaded():
         take(lambda model, data: load(data))
@@ -211,3 +212,42 @@ def sag(load, m, below):
     *Source:* the documentation of MuJoCo, chapter Computation.
     """
     return 0.25 * load * (1.0 - IMPEDANCE) * TIME_CONSTANT**2 * (1.0 / m + 1.0 / below)
+
+
+# ---------------------------------------------------------------------------------------------- switches
+
+def disabled(model, bit):
+    """Set one of MuJoCo's flags that disable a part, and return whether the world has contacts or joints to solve."""
+    model.opt.disableflags |= getattr(module().mjtDisableBit, bit).value
+    return model.ngeom > 1 or model.neq > 0
+
+
+def let_all_pass(model):
+    """Disable all contacts."""
+    return disabled(model, "mjDSBL_CONTACT") and model.ngeom > 1
+
+
+def rub_nothing(model):
+    """Give contacts a normal force only."""
+    rubbing = int((model.geom_condim > 1).sum())
+    model.geom_condim[:] = 1
+    return rubbing > 1
+
+
+def forget_contacts(model):
+    """Begin the iterations of each step anew, and not with the last step's accelerations."""
+    return disabled(model, "mjDSBL_WARMSTART")
+
+
+def sweep_once(model):
+    """Iterate once over contacts and joints: one step of Newton's method, where that is the solver."""
+    before, model.opt.iterations = model.opt.iterations, 1
+    return before > 1 and (model.ngeom > 1 or model.neq > 0)
+
+
+SWITCHES = (
+    Switch("collision detection", let_all_pass),
+    Switch("friction", rub_nothing),
+    Switch("memory of contacts", forget_contacts),
+    Switch("all sweeps but one", sweep_once),
+)

@@ -37,8 +37,8 @@ WITHOUT = {                  # {part: ({function: the one in its place, or None}
 TOTAL, DIMENSION = "all that the scene leaves out", "the third dimension"
 WITH, OWN = "all parts", "the scene's loop"
 SMALL = 0.01                 # radius of a body without a shape over the least distance of two bodies, or over 1 m [-]
-STEPS, PROBE = 500, 2        # steps of a timed run, and of one that finds out how long a step takes
-LONGEST = {"plain": 0.03, "compiled": 0.1}   # a timed run ends sooner if it would take longer than about this [s]
+STEPS, PROBE = 500, 2        # steps of a run, and of one that finds out how long a step takes
+LONGEST, SEEN = 0.03, 0.5    # a run that is timed, or observed, ends sooner if it would take longer than this [s]
 
 
 class Run(NamedTuple):
@@ -50,10 +50,12 @@ class Run(NamedTuple):
 def our_parts(selection, p):
     """Return {"rows", "note"}; note: why there are none.
 
-    rows: [{part, speed, steps, cost, change, observed, repeats}]
+    rows: [{part, speed, steps, cost, change, until, observed, repeats}]
     cost: time with the part over time without it;    change: relative change of the observed quantities without it, or
-    None if the run is lost.  The part TOTAL is the loop with all parts against the loop of the scene, and DIMENSION the
-    loop of lesson 10 in space against the one in the plane.
+    None if the run is lost;    until: the time at which they were observed, over T.
+
+    The part TOTAL is the loop with all parts against the loop of the scene, and DIMENSION the loop of lesson 10 in
+    space against the one in the plane.
     """
     of, one = selection.plan.of, described_scene(selection.name)
     if one is None:
@@ -63,12 +65,11 @@ def our_parts(selection, p):
         return {"rows": [], "note": why}
     own_load = any(callable(load) for load in model.loads)
     note = "a force of this scene is a Python function, which is not compiled" if own_load else ""
+    speeds = ("plain",) if own_load else selection.plan.speeds
     try:
-        rows = [row for speed in (("plain",) if own_load else selection.plan.speeds)
-                for row in rows_at(selection, one, model, p, speed)]
+        return jsonable({"rows": rows_of(selection, one, model, p, speeds), "note": note})
     except (Exception, SystemExit) as e:                             # a subject's code may do anything
         return {"rows": [], "note": f"the loop does not run here: {type(e).__name__}: {e}"}
-    return jsonable({"rows": rows, "note": note})
 
 
 def described_scene(name):
@@ -112,19 +113,21 @@ def advancing(lesson, names, loop):
     return lambda steps, dt: lesson.advance_parts(*step, *rest, dt, steps, loop.p)
 
 
-def rows_at(selection, described, model, p, speed):
-    """Return the rows of one speed."""
-    of = selection.plan.of
-    plain, lesson = lesson_of(of), lesson_of(of, speed == "compiled")
-    runs = {name: Run(advancing(lesson, *one), partial(seen_in, described, p, partial(plain.state_of, one[1])))
-            for name, one in variants(plain, model).items()}
-    rows = priced(selection, runs, [*((part, WITH, part) for part in WITHOUT), (TOTAL, WITH, OWN)], speed)
-    both = dimension.in_both(plain, shaped(model)) or {}
-    runs = {dim: Run(dimension.advancing(lesson, one),
-                     partial(seen_in, described, p, partial(dimension.state_in_plane, one)))
-            for dim, one in both.items()}
+def rows_of(selection, described, model, p, speeds):
+    """Return the rows of all parts at these speeds."""
+    plain, see = lesson_of(selection.plan.of), partial(seen_in, described, p)
+    loops, lifted = variants(plain, model), dimension.in_both(plain, shaped(model)) or {}
+
+    def composed(lesson):
+        return {name: Run(advancing(lesson, *one), partial(see, partial(plain.state_of, one[1])))
+                for name, one in loops.items()}
+
+    def in_space(lesson):
+        return {dim: Run(dimension.advancing(lesson, one), partial(see, partial(dimension.state_in_plane, one)))
+                for dim, one in lifted.items()}
+    rows = priced(selection, composed, [*((part, WITH, part) for part in WITHOUT), (TOTAL, WITH, OWN)], speeds)
     try:
-        return [*rows, *(priced(selection, runs, [(DIMENSION, 3, 2)], speed) if runs else ())]
+        return rows + (priced(selection, in_space, [(DIMENSION, 3, 2)], speeds) if lifted else [])
     except ArithmeticError:              # the loops of lesson 10 end where bodies sink into each other
         return rows
 
@@ -134,17 +137,24 @@ def seen_in(described, p, read, state):
     return described.observe(read(state), p)
 
 
-def priced(selection, runs, pairs, speed):
-    """Return a row for each of `pairs`, (part, name of the run with it, name of the run without it).
+def priced(selection, runs_of, pairs, speeds):
+    """Return a row for each speed and each of `pairs`, (part, name of the run with it, name of the run without it).
 
-    All runs are timed alternately.
+    runs_of(lesson) → {name: Run}.  All runs of one speed are timed alternately.  Their ends are observed at the last
+    speed, the fastest, which gets farthest.
     """
-    dt, steps = length_of_run(selection.scene, runs[pairs[0][1]].advance, speed)
-    seen = {name: observed(run, steps, dt) for name, run in runs.items()}
-    items = [Timed(name, speed, steps, dt, prepared(run.advance)) for name, run in runs.items()]
-    times = {item.label: one for item, one in interleaved(items, {speed: np.inf}, selection.plan.repeats())}
-    return [row(part, speed, steps, [times[full], times[lean]], [seen[full], seen[lean]])
-            for part, full, lean in pairs]
+    of, rows = selection.plan.of, []
+    runs = {speed: runs_of(lesson_of(of, speed == "compiled")) for speed in speeds}
+    dt, far = length_of_run(selection.scene, runs[speeds[-1]][pairs[0][1]].advance, SEEN)
+    seen = {name: observed(run, far, dt) for name, run in runs[speeds[-1]].items()}
+    until = far * dt / selection.scene.duration
+    for speed in speeds:
+        _, steps = length_of_run(selection.scene, runs[speed][pairs[0][1]].advance, LONGEST)
+        items = [Timed(name, speed, steps, dt, prepared(run.advance)) for name, run in runs[speed].items()]
+        times = {item.label: one for item, one in interleaved(items, {speed: np.inf}, selection.plan.repeats())}
+        rows += [row(part, speed, steps, [times[full], times[lean]], [seen[full], seen[lean]], until)
+                 for part, full, lean in pairs]
+    return rows
 
 
 def prepared(run):
@@ -152,15 +162,19 @@ def prepared(run):
     return lambda steps, dt: (lambda: run(steps, dt), lambda: None)
 
 
-def length_of_run(scene, advance, speed):
-    """Return (dt, steps) of a timed run: all of T, or as much of it as takes LONGEST."""
+def length_of_run(scene, advance, longest):
+    """Return (dt, steps) of a run: all of T, or as much of it as takes `longest` [s]."""
     n = next((n for n in scene.steps if n >= STEPS), scene.steps[-1])
     dt = scene.duration / n
-    for _ in range(2):                                               # the first run may compile
-        begin = time.perf_counter()
-        advance(PROBE, dt)
-        pace = (time.perf_counter() - begin) / PROBE
-    return dt, min(n, max(PROBE, int(LONGEST[speed] / pace)))
+    pace = min(seconds_per_step(advance, dt) for _ in range(3))      # the first run may compile
+    return dt, min(n, max(PROBE, int(longest / pace)))
+
+
+def seconds_per_step(advance, dt):
+    """Return how long a step of a short run takes [s]."""
+    begin = time.perf_counter()
+    advance(PROBE, dt)
+    return (time.perf_counter() - begin) / PROBE
 
 
 def observed(run, steps, dt):
@@ -169,10 +183,10 @@ def observed(run, steps, dt):
     return found if np.all(np.isfinite(found)) else None
 
 
-def row(part, speed, steps, times, seen):
+def row(part, speed, steps, times, seen, until=1.0):
     """Return one row from what was timed and observed with the part and without it."""
     full, lean = times
     lost = any(one is None for one in seen)
     return {"part": part, "speed": speed, "steps": steps, "cost": full["seconds"] / lean["seconds"],
-            "change": None if lost else relative(seen[1], seen[0]), "observed": seen,
+            "change": None if lost else relative(seen[1], seen[0]), "until": until, "observed": seen,
             "repeats": (full["repeats"], lean["repeats"])}

@@ -190,7 +190,7 @@ def of_times(result, counts):
     for curve in times["time_to_error"]:
         yield from of_targets(curve, times["rows"])
     case = next(iter(result["cases"].values()), None)
-    for race in times["races"]:
+    for race in times["races"] if case else ():
         for problem in of_race(race, times, case):
             yield f"the race with {race['product']} to {race['error']}: {problem}"
     yield from of_calls(times)

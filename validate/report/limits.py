@@ -21,6 +21,7 @@ from solutions.checks import BadInput
 from ..measure.accuracy import ASYMPTOTIC
 from ..run.store import report_of_this_version
 from .again import distance
+from .numbers import number
 
 ROUND_OFF_ONLY = 1e-9        # limits below this leave room for round-off only, relative [-]
 LOOSEST = 20                 # curves that are named
@@ -63,9 +64,14 @@ def share(ratios, percent):
 def three(rows):
     """Return the cells of the three numbers of some rows; dashes where a kind of rows is missing."""
     kinds = [[row.slack for row in rows if row.two_sided is two_sided] for two_sided in (True, False)]
-    cells = [[f"{x:.2g}" for x in (share(slacks, 50), share(slacks, 90), max(slacks))] if slacks else ["–"] * 3
+    cells = [[cell(x) for x in (share(slacks, 50), share(slacks, 90), max(slacks))] if slacks else ["–"] * 3
              for slacks in kinds]
     return [f"{len(kinds[0]) / len(rows):.0%}", *cells[0], *cells[1]]
+
+
+def cell(x):
+    """Return a number of the tables as text."""
+    return "∞" if math.isinf(x) else number(x, 2)
 
 
 def table_of(title, rows, key):
@@ -89,7 +95,7 @@ def loosest(rows, two_sided, title):
     mine = [group for group in curves.values() if any(row.two_sided for row in group) is two_sided]
     tightest = [min((row for row in group if row.two_sided is two_sided), key=lambda row: row.slack) for group in mine]
     for row in sorted(tightest, key=lambda row: -row.slack)[:LOOSEST]:
-        table.add_row(row.scene, row.case, row.label, str(row.steps), f"{row.slack:.3g}")
+        table.add_row(row.scene, row.case, row.label, str(row.steps), cell(row.slack))
     return table
 
 

@@ -17,7 +17,8 @@ def number(x, digits=3):
     if x < 0:
         return f"−{number(-x, digits)}"
     if x == 0 or 1e-2 <= x < 1e4:
-        return f"{x:.{digits}g}"
+        short = f"{x:.{digits}g}"
+        return short if "e" not in short else rounded(x, digits).replace(",", "")
     mantissa, exponent = f"{x:.{digits - 1}e}".split("e")
     raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"{mantissa} · 10{raised}" if float(mantissa) != 1.0 else f"10{raised}"

@@ -21,7 +21,7 @@ from . import words
 
 EXACT_RUN = 1e-12               # relative error of a run of many steps that is exact [-]
 DRAWN_FROM = "drawn from data "
-MARK = re.compile(f"<!-- {DRAWN_FROM}(?P<data>[0-9a-f]+) as (?P<text>[0-9a-f]+) -->\\n$")
+MARK = re.compile(f"<!-- {DRAWN_FROM}(?P<data>[0-9a-f]+)( as (?P<text>[0-9a-f]+))? -->\\n$")
 NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 9, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 WIDTH, HEIGHT = 5.2, 3.4        # of the axes with their labels [in]: as wide as a phone shows without shrinking letters
@@ -252,9 +252,9 @@ def marked_data(picture):
 
 
 def is_as_drawn(picture):
-    """Return whether a picture with a mark is the text that was drawn."""
+    """Return whether a picture with a mark is the text that was drawn, as far as the mark says: older ones do not."""
     found = MARK.search(picture)
-    return of_text(picture[:found.start()]) == found["text"]
+    return found["text"] in (None, of_text(picture[:found.start()]))
 
 
 # ---------------------------------------------------------------------------------------------- light and dark

@@ -219,7 +219,8 @@ def parts_of(result, measured):
     """Return the parts of a loop or of engines that were left out in one scene, or None where there is nothing."""
     found = {}
     for row in measured["rows"]:
-        found.setdefault(row["part"], []).append({**row, "says": change_without(row), "range": cost_range(row)})
+        found.setdefault(row["part"], []).append(
+            {**row, "says": change_without(row), "until": until(row), "range": cost_range(row)})
     if not found and not measured["note"]:
         return None
     return {"scene": result["scene"], "title": result["title"], "lesson": result["lesson"], "note": measured["note"],
@@ -266,6 +267,11 @@ def change_without(row):
     if row["change"] >= 1.0:
         return "another motion"
     return "same" if row["change"] < SAME else f"changes by {percent(row['change'])}".replace(" %", "\u00a0%")
+
+
+def until(row):
+    """Return until when the motion was observed, if that is not the end."""
+    return f" (first {percent(row['until'])} of T)".replace(" %", "\u00a0%") if row.get("until", 1.0) < 0.999 else ""
 
 
 def best_order(curves):

@@ -10,7 +10,7 @@ import "../player.js";
 import {
   AmbientLight, ArrowHelper, BoxGeometry, BufferGeometry, CanvasTexture, CapsuleGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight,
   EdgesGeometry, Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial, PerspectiveCamera,
-  Quaternion, Scene, SphereGeometry, Sprite, SpriteMaterial, Vector3, WebGLRenderer, AxesHelper,
+  Quaternion, Scene, SphereGeometry, Sprite, SpriteMaterial, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
@@ -52,9 +52,9 @@ function figure(body, run) {
 // A letter that always faces the reader.
 function letter(text, size) {
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");
-  canvas.width = canvas.height = 64;
-  pen.font = "bold 44px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle"; pen.fillStyle = page("--ink", "#1d2429");
-  pen.fillText(text, 32, 34);
+  canvas.width = canvas.height = 256;                              // four times what the screen shows, so that letters stay sharp
+  pen.font = "600 176px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle"; pen.fillStyle = page("--ink", "#1d2429");
+  pen.fillText(text, 128, 136);
   const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false, transparent: true }));
   sprite.scale.setScalar(size);
   return sprite;
@@ -128,10 +128,13 @@ function play(place) {
     walls.forEach(point => { low.min(point); high.max(point); });
   }
   const centre = low.clone().add(high).multiplyScalar(0.5), size = Math.max(high.clone().sub(low).length(), 1e-6);
-  const corner = picture.ground ? new Vector3(low.x, low.y, 0) : low, reach = nice(0.3 * size), axes = new AxesHelper(reach);
-  axes.position.copy(corner);
-  scene.add(axes);
-  [["x", new Vector3(1, 0, 0)], ["y", new Vector3(0, 1, 0)], ["z", new Vector3(0, 0, 1)]].forEach(([name, along]) => {
+  const corner = picture.ground ? new Vector3(low.x, low.y, 0) : low, reach = nice(0.3 * size);
+  const directions = [["x", new Vector3(1, 0, 0)], ["y", new Vector3(0, 1, 0)], ["z", new Vector3(0, 0, 1)]];
+  const ink = new LineBasicMaterial();
+  ink.name = "--soft";
+  scene.add(new LineSegments(new BufferGeometry().setFromPoints(
+    directions.flatMap(([, along]) => [corner, corner.clone().addScaledVector(along, reach)])), ink));
+  directions.forEach(([name, along]) => {
     const sign = letter(name, 0.07 * size);
     sign.position.copy(corner).addScaledVector(along, reach + 0.035 * size);
     scene.add(sign);
