@@ -427,7 +427,35 @@ def separation(lesson, rng):
             0.03 * np.min(radius) * hertz / (1.0 + 1.0 / (s * (2.0 + s))))
 
 
-@case("steps-of-a-pile", "A step of a pile in space", compiled=False)
+@random_law("Forces of contacts under loads with torques obey Newton, Euler, and the laws of contact and friction.",
+            "forces and torques: largest violation [N, m/s², rad/s²]", EXACT)
+def forces_under_torques(lesson, rng):
+    """Load a body on two feet, and another one on its top, by random forces and torques.
+
+    Accelerations follow from forces and levers.  At each contact F_n and the acceleration along n are not negative and
+    one of them is 0; friction is at most μ F_n, and as large as that against a slip that begins.
+    """
+    x, w, I = np.array([(0.0, 0.4), (0.1, 1.0), (0.0, 0.0)]), rng.uniform(0.5, 2.0, 2), rng.uniform(2.0, 5.0, 2)
+    inv_mass, inv_inertia, mu = np.append(w, 0.0), np.append(I, 0.0), rng.uniform(0.2, 0.8, 3)
+    p = np.array([(-0.4, 0.0), (0.5, 0.0), (0.2, 0.8)])
+    contacts = lesson.make_contacts([0, 0, 1], [2, 2, 0], p, [(0.0, 1.0)] * 3, inv_mass)
+    load = np.concatenate((rng.normal(size=(2, 3)) - [0.0, 5.0, 0.0], np.zeros((1, 3))))
+    F, a = lesson.contact_forces(x, inv_mass, inv_inertia, contacts, load, mu)
+    truth, aside = load.copy(), []
+    for k, (body, other) in enumerate(((0, 2), (0, 2), (1, 0))):
+        force = np.array([-F[k, 1], F[k, 0]])                                # along n = (0, 1) and t = (−1, 0)
+        for i, sign in ((body, 1.0), (other, -1.0)):
+            truth[i] += sign * np.append(force, np.cross((*(p[k] - x[i]), 0.0), (*force, 0.0))[2])
+    truth *= np.stack((inv_mass, inv_mass, inv_inertia), axis=1)
+    for k, (body, other) in enumerate(((0, 2), (0, 2), (1, 0))):
+        parts = [a[i, :2] + a[i, 2] * np.array([-(p[k] - x[i])[1], (p[k] - x[i])[0]]) for i in (body, other)]
+        slides, rises = (parts[0] - parts[1]) * [-1.0, 1.0]
+        limit = mu[k] * max(F[k, 0], 0.0)
+        aside += [min(F[k, 0], rises), F[k, 1] - np.clip(F[k, 1] - slides, -limit, limit)]
+    return (a, np.array(aside)), (truth, np.zeros(6))
+
+
+@case("steps-of-a-pile", "A step of a pile, and forces under torques", compiled=False)
 def steps_of_a_pile(lesson, check):
-    """Compare a flight, its margin and a separation with Euler's equation and with the target of a contact."""
-    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation), seed=32, times=15)
+    """Compare a flight, its margin, a separation and forces with Euler's equation and with the laws of contact."""
+    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques), seed=32, times=15)
