@@ -16,7 +16,7 @@ def cases_of(lesson):
     Cases of its exercises are in stability/, those of its given functions in stability/given/.
     """
     for name in (lesson, f"given.{lesson}"):
-        if Path(__file__).with_name(f"{name.replace('.', '/')}.py").is_file():
+        if Path(__file__).parent.joinpath(f"{name.replace('.', '/')}.py").is_file():
             import_module(f".{name}", __package__)
     return CASES.get(lesson, {})
 
