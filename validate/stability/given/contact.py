@@ -392,7 +392,7 @@ def alone(lesson, rng, substeps):
 def tumbling_flight(lesson, rng):
     substeps, dt = 3, rng.uniform(0.01, 0.03)
     state, pile, moments = alone(lesson, rng, substeps)
-    end = lesson.advance_pile(lesson.box_bounds, lesson.box_contacts, state, dt, 2, pile)
+    end = lesson.pile_trajectory(lesson.advance_pile, lesson.box_bounds, lesson.box_contacts, state, dt, 2, pile)[2]
     x, R, v, omega, h = state.x[0], matrix_of(state.q[0]), state.v[0], state.omega[0], dt / substeps
     for _ in range(2):
         I = R @ np.diag(moments) @ R.T
