@@ -722,6 +722,7 @@ def loop_from_a_model(lesson, check):
     check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
                         overlap_goes), seed=35, times=10)
     right_parts(lesson, check)
+    pairs_of_a_model(check)
     composed_motions(lesson, check)
 
 
@@ -757,6 +758,17 @@ def right_parts(lesson, check):
         right += [part.step.__name__ for part in loop.parts] == parts
     check.count("A loop has the parts that its Model needs, in the order of the lecture, and no others.",
                 "Models whose loop has the right parts", right, len(COMPOSITIONS), "loops have the right parts.")
+
+
+def pairs_of_a_model(check):
+    """Compare what pairs of bodies do with the products of their numbers; joined ones and two supports do not touch."""
+    bodies = [ball((0.0, 1.0), mu=0.5, e=0.4), ball((1.0, 1.0), mu=np.inf, e=0.5), ball((2.0, 1.0)), FLOOR, FLOOR]
+    scene = model.make_model(bodies, DOWN, [model.Hinge(2, 0, (1.0, 1.0))])
+    found = [model.touching_pairs(scene) == [(0, 1), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 3), (2, 4)],
+             model.friction_of(scene, 0, 3) == 0.5, model.friction_of(scene, 0, 1) == np.inf,
+             model.friction_of(scene, 1, 2) == 0.0, model.restitution_of(scene, 0, 1) == 0.2]
+    check.count("A pair has μ_a μ_b and e_a e_b; nothing rubs on a body without friction.", "facts about pairs",
+                sum(found), len(found), "facts are right.")
 
 
 def composed_run(lesson, bodies, gravity, joints, dt, steps):
