@@ -126,6 +126,12 @@ def coverage(table):
     return [(number, row["function"], row["lesson"], " ".join(row["places"])) for number, row in table.items()]
 
 
+def given(table):
+    """Return which places run each given function."""
+    return [(module, function, " ".join(places)) for module, functions in table.items()
+            for function, places in functions.items()]
+
+
 def of_picture(picture):
     """Return the curves of a stability case; of maps a table each, with a line for each y and a column for each x."""
     if not picture.get("maps"):
