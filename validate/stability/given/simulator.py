@@ -546,7 +546,10 @@ FLOOR = model.Body((0.0, 0.0), shape=shapes.HalfSpace((0.0, 1.0)), mu=1.0, e=1.0
 
 
 def springy(rng):
-    """Return a Model of three bodies that turn and one that nothing moves, with springs at their rims, and drag."""
+    """Return (Model, load) of three bodies that turn and one that nothing moves.
+
+    They have springs at their rims, drag, and a load that depends on where they are and how they turn.
+    """
     bodies = [model.Body(tuple(x), m, q=q, v=tuple(v), omega=w, inertia=0.4) for x, m, q, v, w in zip(
         2.0 * rng.normal(size=(3, 2)), rng.uniform(0.5, 2.0, 3), *rng.normal(size=(1, 3)), rng.normal(size=(3, 2)),
         rng.normal(size=3), strict=True)]
@@ -554,16 +557,21 @@ def springy(rng):
     ends = (0, 1), (2, model.WORLD), (3, 0), (1, 2)
     springs = [model.Spring(a, b, *map(tuple, 0.3 * rng.normal(size=(2, 2))), *rng.uniform(0.5, 2.0, 3))
                for a, b in ends]
-    return model.make_model(bodies, rng.normal(size=2), springs=springs, loads=[model.Drag(0.3), model.Drag(0.2)])
+    still, twist = rng.normal(size=(4, 2)), rng.normal(size=4)
+    push = lambda t, x, q, v, omega: (still + 0.1 * x, twist + 0.2 * omega)
+    loads = [model.Drag(0.3), model.Drag(0.2), push]
+    return model.make_model(bodies, rng.normal(size=2), springs=springs, loads=loads), push
 
 
-def pulls_of(scene):
-    """Return (F (n, 3) [N], τ (n, 3) [N m], energy of the springs [J]) of gravity, springs and drag, by vectors."""
+def pulls_of(scene, push):
+    """Return (F (n, 3) [N], τ (n, 3) [N m], energy of the springs [J]) of all that acts on a Model, by vectors."""
     state = model.start_of(scene)
     x, v, spins, turn = in_space(state.x), in_space(state.v), about_normal(state.omega), rotations(state.q)
     free = np.array([np.isfinite(body.m) for body in scene.bodies])[:, None]
     m = np.array([body.m if np.isfinite(body.m) else 0.0 for body in scene.bodies])[:, None]
-    F, tau, energy = m * in_space(scene.gravity) - 0.5 * free * v, np.zeros((len(x), 3)), 0.0
+    more, twist = push(0.0, *state)
+    F, tau, energy = in_space(more), about_normal(twist), 0.0
+    F = F + m * in_space(scene.gravity) - 0.5 * free * v
     for s in scene.springs:
         arms = [in_space(np.array(place)) if k == model.WORLD else turn[k] @ in_space(np.array(place))
                 for k, place in ((s.a, s.place_a), (s.b, s.place_b))]
@@ -584,8 +592,8 @@ def pulls_of(scene):
             "Model: largest error of loads and energy [N, N m, J]", EXACT)
 def loads_of_a_model(lesson, rng):
     """Take only what acts on bodies that can move: the others have no use for a force."""
-    scene = springy(rng)
-    loop, (F, tau, stored) = lesson.compose(scene), pulls_of(scene)
+    scene, push = springy(rng)
+    loop, (F, tau, stored) = lesson.compose(scene), pulls_of(scene, push)
     free = [k for k, body in enumerate(scene.bodies) if np.isfinite(body.m)]
     got = loop.load(0.0, *loop.state[:4], loop.p)
     own = model.loads_at(scene, 0.0, model.start_of(scene))
