@@ -23,7 +23,8 @@ def test_the_table_names_places_that_call_the_function():
 
 def test_every_given_function_that_moves_a_body_is_run_by_a_scene_or_a_stability_case():
     """Pictures and films call the others."""
-    alone = {f"{module}.{name}" for module, places in coverage.given().items() for name, ran in places.items() if not ran}
+    alone = {f"{module}.{name}" for module, functions in coverage.given().items()
+             for name, places in functions.items() if not places}
     assert alone <= {"support.model.picture_of", "support.shapes.outline_of"}
     assert "stability/contact/contact-points" in coverage.given()["support.contact_points"]["edge_point"]
     assert "stability/simulator/loop-from-a-model" in coverage.given()["given.parts"]["accelerate_half"]
