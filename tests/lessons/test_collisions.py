@@ -222,9 +222,10 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
 def test_a_ball_that_misses_leaves_or_arrives_later_has_no_impact(lesson, draw):
     R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
     rho = R + r
-    x_0, x_1 = crossing(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
-    never("time of impact of a ball that misses [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
-          f"{x_0} to {x_1}, r = {r}, R = {R}")
+    for beside in draw.beyond(2.0):
+        x_0, x_1 = crossing(draw, rho, beside * rho, draw(3.0, 5.0), 10.0)
+        never("time of impact of a ball that misses [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
+              f"{x_0} to {x_1}, r = {r}, R = {R}")
     x_0, x_1 = crossing(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
     never("time of impact of a ball that arrives too late [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
@@ -1267,7 +1268,7 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
             got = lesson.repulsion(corner - (wide + g) * e, corner, wide, size, 1.0)
             close("acceleration near the surface over k (1/g − 1/reach)/g² [-]", got / strength, -e, ROUND_OFF,
                   f"gap {g} m, radius {wide} m, reach {size} m, k = 1")
-    for share in (0.0, draw(0.1, 0.9)):
+    for share in (0.0, *draw.within()):
         raises("a position inside the obstacle", BadInput,
                lesson.repulsion, centre + share * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
 
@@ -1308,7 +1309,7 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
     v, left = speed * rows[0], np.array([-rows[0][1], rows[0][0]])
     off = lambda tau, offset: x + speed * tau * rows[0] + offset * rows[1]
     cases = {"an obstacle behind": (off(-1.0, 0.1), v), "an obstacle too far ahead": (off(5.0, 0.1), v),
-             "an obstacle far enough aside": (off(1.0, 1.1 * radius), v), "a walker at rest": (off(1.0, 0.1), 0.0 * v)}
+             "an obstacle far enough aside": (off(1.0, 1.01 * radius), v), "a walker at rest": (off(1.0, 0.1), 0.0 * v)}
     for name, (centre, velocity) in cases.items():
         close(f"acceleration for {name} [m/s²]", lesson.steer(x, velocity, centre, radius, 4.0),
               np.zeros(2), 0.0, given=f"x = {x}, v = {velocity}, centre {centre}")

@@ -713,15 +713,17 @@ def test_a_block_on_an_incline_stays_slides_or_topples(lesson, draw):
     weight about that corner over I + m (w² + h²)/4.
     """
     slope = draw(0.3, 0.6)
-    stays, F = block_on_incline(lesson, slope, draw(1.2, 2.0) * np.tan(slope))
-    close("acceleration of a block that stays [m/s², rad/s²]", stays, np.zeros(3), SOLVED,
-          given=f"tan θ = {np.tan(slope)}")
-    close("forces on a block that stays, normal and friction together [N]", np.sum(F, axis=0),
-          (G * np.cos(slope), G * np.sin(slope)), SOLVED)
-    mu, w = draw(0.2, 0.8) * np.tan(slope), draw(2.0, 3.0)
-    close("acceleration of a block that slides [m/s², rad/s²]", block_on_incline(lesson, slope, mu, w)[0],
-          (G * (np.sin(slope) - mu * np.cos(slope)), 0.0, 0.0), SOLVED, given=f"tan θ = {np.tan(slope)}, μ = {mu}")
-    w, h = draw(0.5, 0.9) * np.tan(slope), 1.0
+    for share in draw.beyond(2.0):
+        stays, F = block_on_incline(lesson, slope, share * np.tan(slope))
+        close("acceleration of a block that stays [m/s², rad/s²]", stays, np.zeros(3), SOLVED,
+              given=f"tan θ = {np.tan(slope)}, μ = {share * np.tan(slope)}")
+        close("forces on a block that stays, normal and friction together [N]", np.sum(F, axis=0),
+              (G * np.cos(slope), G * np.sin(slope)), SOLVED)
+    w = draw(2.0, 3.0)
+    for mu in np.array(draw.within(0.2)) * np.tan(slope):
+        close("acceleration of a block that slides [m/s², rad/s²]", block_on_incline(lesson, slope, mu, w)[0],
+              (G * (np.sin(slope) - mu * np.cos(slope)), 0.0, 0.0), SOLVED, given=f"tan θ = {np.tan(slope)}, μ = {mu}")
+    w, h = draw(0.5, 0.99) * np.tan(slope), 1.0
     spin = -0.5 * G * (h * np.sin(slope) - w * np.cos(slope)) / ((w * w + h * h) / 12.0 + (w * w + h * h) / 4.0)
     close("angular acceleration of a block that topples [rad/s²]", block_on_incline(lesson, slope, 3.0, w)[0][2], spin,
           SOLVED, given=f"tan θ = {np.tan(slope)}, w/h = {w}")
@@ -735,7 +737,7 @@ def pushed_block(draw, side):
     w, h, m, mu = draw(2.0, 3.0), draw(0.5, 1.0), draw(0.5, 2.0), draw(0.1, 0.9, 2)
     matrix = np.array([[1.0, 1.0], [-w - side * h * mu[0], w - side * h * mu[1]]])
     F_n = np.linalg.solve(matrix, [m * G, 0.0])
-    push = draw(1.2, 2.0) * mu @ F_n
+    push = draw(1.01, 2.0) * mu @ F_n
     return w, h, m, mu, push, F_n, side * (push - mu @ F_n) / m
 
 

@@ -51,7 +51,8 @@ def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(le
 def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 20.0), draw(0.2, 1.5)
-        for share, friction in ((draw(0.1, 0.95), mu), (draw(2.0, 5.0), np.inf), (0.0, mu), (0.0, 0.0)):
+        for share, friction in (*((share, mu) for share in draw.within()), (draw(2.0, 5.0), np.inf), (0.0, mu),
+                                (0.0, 0.0)):
             pull = along_surface(draw, axes, share * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
             close("friction on a body that holds [N]", got, -pull, ROUND_OFF,
@@ -63,8 +64,8 @@ def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
 def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
-        for friction in (mu, 0.0):
-            pull = along_surface(draw, axes, draw(1.1, 3.0) * mu * load)
+        for share, friction in (*((share, mu) for share in draw.beyond(3.0)), (draw(1.1, 3.0), 0.0)):
+            pull = along_surface(draw, axes, share * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
             expected = -friction * load * pull / np.linalg.norm(pull)
             close("friction on a body that slips [N]", got, expected, ROUND_OFF,
@@ -161,7 +162,7 @@ def energies(v, m, impulses):
 
 @exercise("3.5", points=1, hint="slide: magnitude μ j_n, against v_t; stop: −m v_t, where that is smaller")
 def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
-    for share in (draw(0.1, 0.9), draw(1.1, 4.0)):                       # of the impulse that would stop the body
+    for share in (*draw.within(), *draw.beyond(4.0)):                    # of the impulse that would stop the body
         axes = frame(draw, 3)
         m, mu, speed = draw(0.5, 5.0), draw(0.2, 1.5), draw(0.5, 5.0)
         v = along_surface(draw, axes, speed)
@@ -206,7 +207,7 @@ def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(les
 def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
     for first, second in ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)),
                           (-draw(1.1, 4.0), -draw(0.1, 0.9)), (draw(0.1, 0.9), -draw(1.1, 4.0)),
-                          (-draw(1.1, 4.0), draw(1.1, 4.0))):
+                          (0.99, -1.01), (-draw(1.1, 4.0), draw(1.1, 4.0))):
         n, t_1, t_2 = frame(draw, 3)
         m, limit, mu = draw(0.5, 5.0), draw(0.5, 4.0), draw(0.2, 1.5)
         v = limit / m * (first * t_1 + second * t_2)                     # first, second: stopping impulse over limit
@@ -353,7 +354,7 @@ def on_the_line(draw, lesson, mu, amplitude, omega):
           hint="a moving block slides along v/|v|; a block at rest slides "
                "along the pull, if the pull exceeds μ_s a_n")
 def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
-    steep, down, _, _ = slope(draw, lesson, draw(0.5, 0.95), 0.3)
+    steep, down, _, _ = slope(draw, lesson, 0.99, 0.3)
     still, across = np.zeros(3), np.cross(steep.n, down)
     pull = lesson.driven_acceleration
     close("direction from rest on a steep slope [-]", lesson.slip_direction(pull, 0.0, still, still, steep),
@@ -395,7 +396,8 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
     p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), 0.0, 0.0)
     d, speed = -np.array([p.n[1], -p.n[0]]), draw(0.5, 3.0)
     stop = speed / (p.mu_k * G)
-    for dt, expected, tolerance in ((draw(1.1, 9.0) * stop, stop, ROUND_OFF), (draw(0.1, 0.9) * stop, None, 0.0)):
+    for dt, expected, tolerance in (*((share * stop, stop, ROUND_OFF) for share in draw.beyond(9.0)),
+                                    *((share * stop, None, 0.0) for share in draw.within())):
         got = lesson.stopping_time(lesson.driven_acceleration, 0.0, np.zeros(2), speed * d, dt, d, p)
         close("time to the stop [s], or the whole step if it does not stop", got,
               dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
@@ -432,8 +434,8 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     t = holds + draw(0.1, 0.5) * (slips - holds)
     rest = np.zeros(2)
     late = slips - t + draw(0.2, 0.8) * (np.pi / omega - slips)
-    early = draw(0.2, 0.9) * (slips - t)
-    for dt, expected, tolerance in ((late, slips - t, 1e-13), (early, None, 0.0)):
+    for dt, expected, tolerance in ((late, slips - t, 1e-13), (1.01 * (slips - t), slips - t, 1e-13),
+                                    *((share * (slips - t), None, 0.0) for share in draw.within())):
         got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, dt, p)
         close("time to the slip [s], or the whole step if it holds", got,
               dt if expected is None else expected, tolerance, given=f"{p}, t = {t} s, dt = {dt} s")
@@ -530,10 +532,9 @@ def test_the_normal_is_zero_at_the_centre_of_a_bowl(lesson, draw):
 
 @exercise("3.13", points=1, hint="n · v⁺ = −e n · v: j_n = −(1 + e) m v · n; both impulses contain the mass")
 def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_times_what_that_took(lesson, draw):
-    for slips in (True, False):
+    for speed in (*draw.within(), *draw.beyond(3.0)):                    # over the one that friction stops
         axes = frame(draw, 3)
-        m, e, v_n = draw(0.5, 5.0), draw(0.0, 1.0), draw(0.5, 5.0)
-        mu, speed = draw(0.1, 0.5), (draw(1.2, 3.0) if slips else draw(0.2, 0.9))
+        m, e, v_n, mu = draw(0.5, 5.0), draw(0.0, 1.0), draw(0.5, 5.0), draw(0.1, 0.5)
         slip = along_surface(draw, axes, speed * mu * (1.0 + e) * v_n)
         v = slip - v_n * axes[0]
         J = lesson.particle_contact_impulse(v, axes[0], m, e, mu)
@@ -671,7 +672,7 @@ def check_way_out(lesson, step, draw):
 @exercise("3.15", points=1,
           hint="friction for positions: −s where |s| ≤ μ depth, otherwise μ depth against s; s is tangential")
 def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
-    for share, depth in ((draw(0.1, 0.9), draw(0.01, 0.1)), (draw(1.1, 5.0), draw(0.01, 0.1)), (0.0, 0.1),
+    for share, depth in (*((share, draw(0.01, 0.1)) for share in (*draw.within(), *draw.beyond(5.0))), (0.0, 0.1),
                          (draw(0.1, 0.9), draw(1.0, 5.0)), (draw(1.1, 5.0), 1e-9)):
         axes, mu = frame(draw, 3), draw(0.2, 1.5)
         s = along_surface(draw, axes, share * mu * depth)
@@ -687,16 +688,18 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
           hint="where φ < 0 and v · n < 0, also correct the tangential displacement of this step, with depth −φ")
 def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
     theta, dt, steps = draw(0.2, 0.8), draw(0.005, 0.02), 10
-    p, down = above(lesson, draw, draw(1.01, 2.0) * np.tan(theta), 0.0, theta)
-    x, v = fly(lesson, lesson.position_friction_step, p, p.point, np.zeros(3), dt, steps)
-    close("position of a particle at rest on a slope [m]", x, p.point, ROUND_OFF, given=f"{p}, dt = {dt} s")
-    close("velocity of a particle at rest on a slope [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
-    p, down = above(lesson, draw, draw(0.1, 0.9) * np.tan(theta), 0.0, theta)
-    x, v = fly(lesson, lesson.position_friction_step, p, p.point, np.zeros(3), dt, steps)
-    a, t = G * (np.sin(theta) - p.mu * np.cos(theta)), steps * dt
-    close("velocity of a sliding particle [m/s]", v, a * t * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
-    close("displacement of a sliding particle [m]: symplectic Euler's a t(t + dt)/2", x - p.point,
-          0.5 * a * t * (t + dt) * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
+    for share in draw.beyond(2.0):
+        p, _ = above(lesson, draw, share * np.tan(theta), 0.0, theta)
+        x, v = fly(lesson, lesson.position_friction_step, p, p.point, np.zeros(3), dt, steps)
+        close("position of a particle at rest on a slope [m]", x, p.point, ROUND_OFF, given=f"{p}, dt = {dt} s")
+        close("velocity of a particle at rest on a slope [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
+    for share in draw.within():
+        p, down = above(lesson, draw, share * np.tan(theta), 0.0, theta)
+        x, v = fly(lesson, lesson.position_friction_step, p, p.point, np.zeros(3), dt, steps)
+        a, t = G * (np.sin(theta) - p.mu * np.cos(theta)), steps * dt
+        close("velocity of a sliding particle [m/s]", v, a * t * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
+        close("displacement of a sliding particle [m]: symplectic Euler's a t(t + dt)/2", x - p.point,
+              0.5 * a * t * (t + dt) * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
 
 
 @exercise("3.16", points=0.5,

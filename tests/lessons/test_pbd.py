@@ -649,7 +649,7 @@ def test_no_point_of_the_surface_is_nearer_than_the_gap(lesson, draw):
         for size, place in places(draw, d):
             skin = np.array([direction(draw, d) for _ in range(20)])
             for radius in (0.0, 1.0):
-                for distance in (1e-3, draw(0.1, 0.9), draw(1.1, 3.0)):
+                for distance in (1e-3, draw(0.1, 0.9), 0.99, 1.01, draw(1.1, 3.0)):
                     n = direction(draw, d)
                     ball = lesson.Obstacle(place, radius * size, np.zeros(d), np.eye(d)[0])
                     x = place + size * distance * n
@@ -694,11 +694,11 @@ def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw
     above = x + 2.0 * n
     a_new_array("positions where all points are outside", lesson.keep_outside(lesson.floor_gap, above, w, floor), above)
     ball = floor._replace(centre=draw(-1.0, 1.0, 3), radius=draw(0.5, 1.0))
-    out = np.stack((n, -n, tangent / np.linalg.norm(tangent)))
-    distances = 2.0 * ball.radius * np.array([draw(0.2, 0.9), draw(0.2, 0.9), draw(1.1, 2.0)])
+    shares = *draw.within(), *draw.beyond(2.0)
+    out, distances = np.array([direction(draw, 3) for _ in shares]), 2.0 * ball.radius * np.array(shares)
     x = ball.centre + out * distances[:, None]
     close("points inside and outside a ball of twice the radius, a surface of the test [m]",
-          lesson.keep_outside(balloon, x, np.ones(3), ball),
+          lesson.keep_outside(balloon, x, np.ones(len(shares)), ball),
           ball.centre + out * np.maximum(distances, 2.0 * ball.radius)[:, None], ROUND_OFF * 10.0,
           given=f"x = {x.tolist()} m, {ball}")
     x = ball.centre + np.outer((0.0, 0.5 * ball.radius), n)

@@ -21,6 +21,15 @@ def test_the_table_names_places_that_call_the_function():
     assert "kepler" not in table["2.7"]["places"] and "oscillator" not in table["5.7"]["places"]
 
 
+def test_every_given_function_that_moves_a_body_is_run_by_a_scene_or_a_stability_case():
+    """Pictures and films call the others."""
+    alone = {f"{module}.{name}" for module, functions in coverage.given().items()
+             for name, places in functions.items() if not places}
+    assert alone <= {"support.model.picture_of", "support.shapes.outline_of"}
+    assert "stability/contact/contact-points" in coverage.given()["support.contact_points"]["edge_point"]
+    assert "stability/simulator/loop-from-a-model" in coverage.given()["given.parts"]["accelerate_half"]
+
+
 def test_an_exercise_that_nothing_runs_is_missing(monkeypatch):
     """What runs 2.4 is taken away: it is the only place."""
     left = {place: [name for name in names if name != "stability/springs/forces"]
@@ -35,6 +44,7 @@ def test_an_exercise_that_nothing_runs_is_missing(monkeypatch):
 
 def test_functions_are_found_where_they_are_defined():
     assert coverage.defined(("pbd", "rope_step")) == ("given.ropes", "rope_step")
+    assert coverage.defined(("simulator", "parting_aims")) == ("given.parts", "parting_aims")         # by a star
     begun = [("springs", "mass_spring_damper_step"), ("integrators", "euler_step")]
     assert ("integrators", "euler_step") in coverage.reached(begun)
     assert coverage.defined(("integrators", "no_such_thing")) is None and hasattr(integrators, "euler_step")

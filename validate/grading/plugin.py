@@ -254,6 +254,14 @@ class Draw:
         """Return an integer from low to high, both included."""
         return int(self.rng.integers(low, high + 1))
 
+    def within(self, least=0.1):
+        """Return three shares of a threshold that are below it: one just below, and one of each half of the rest."""
+        return 0.99, self(0.5 * (least + 0.99), 0.98), self(least, 0.5 * (least + 0.99))
+
+    def beyond(self, most):
+        """Return three shares of a threshold that are above it: one just above, and one of each half of the rest."""
+        return 1.01, self(1.02, 0.5 * (1.01 + most)), self(0.5 * (1.01 + most), most)
+
     def law(self, public):
         """Return a law of public tests; with a secret seed, one that students do not receive in its place."""
         unseen = importlib.util.find_spec(f"{__package__}.unseen") if self.secret else None

@@ -78,7 +78,8 @@ def environment():
                          legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,
                          arrow_colours=ARROWS, arrow_meanings=words.ARROWS, with_units=words.with_units,
                          csv=tables.address, ablation_rows=tables.ablations,
-                         coverage_rows=tables.coverage, summary_line=words.summary_line,
+                         coverage_rows=tables.coverage, given_rows=tables.given,
+                         split_places=tables.split_places, summary_line=words.summary_line,
                          dimensions={product.name: product.dimensions for product in PRODUCTS},
                          theory_of=words.theory_of, meanings={v.value: words.LEGEND[v] for v in Verdict},
                          unpredicted=words.unpredicted, part_names=words.part_names, part_products=words.part_products)

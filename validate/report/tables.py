@@ -140,6 +140,18 @@ def coverage(table):
     return [(number, row["function"], row["lesson"], " ".join(row["places"])) for number, row in table.items()]
 
 
+def split_places(places, of_stability, most=None):
+    """Return (the first `most` places, how many more): scenes, or stability cases."""
+    found = [place for place in places if place.startswith("stability/") is of_stability]
+    return found[:most], len(found[most:]) if most else 0
+
+
+def given(table):
+    """Return which places run each given function."""
+    return [(module, function, " ".join(places)) for module, functions in table.items()
+            for function, places in functions.items()]
+
+
 def of_picture(picture):
     """Return the curves of a stability case; of maps a table each, with a line for each y and a column for each x."""
     if not picture.get("maps"):

@@ -17,6 +17,8 @@ from ..stability.examine import all_cases
 from ..subject import modules
 
 STABILITY = "stability/"
+CHECKS = "check"             # begins the names of functions that refuse bad input, which no scene gives
+CHECKED_ELSEWHERE = "records", "model_checks"            # modules of such functions: the tests of students call them
 
 
 @cache
@@ -33,21 +35,33 @@ def parts(piece):
 
 
 def imported(tree, home=""):
-    """Return {name: (module below solutions, its name there, or None for a module)} of the imports of a file."""
+    """Return {name: (module below solutions, its name there, or None for a module)} of the imports of a file.
+
+    What a file imports with a star is not among them: `starred` has those modules.
+    """
     found = {}
-    for node in ast.walk(tree):
-        if not isinstance(node, ast.ImportFrom):
-            continue
-        module = node.module or ""
-        if node.level:
-            module = ".".join([*home.split(".")[:-node.level], *([module] if module else [])])
-        elif module == "solutions" or module.startswith("solutions."):
-            module = module.removeprefix("solutions").removeprefix(".")
-        else:
-            continue
+    for node, module in from_solutions(tree, home):
         for alias in node.names:
-            found[alias.asname or alias.name] = (module, alias.name) if module else (alias.name, None)
+            whole = f"{module}.{alias.name}" if module else alias.name
+            is_module = not module or whole in modules.given_modules()
+            found[alias.asname or alias.name] = (whole, None) if is_module else (module, alias.name)
     return found
+
+
+def from_solutions(tree, home=""):
+    """Yield (import, module below solutions) of what a file imports from there."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            if node.level:
+                yield node, ".".join([*home.split(".")[:-node.level], *([module] if module else [])])
+            elif module == "solutions" or module.startswith("solutions."):
+                yield node, module.removeprefix("solutions").removeprefix(".")
+
+
+def starred(module):
+    """Return the modules below solutions of which a module there imports everything."""
+    return [there for node, there in from_solutions(trees()[module], module) if node.names[0].name == "*"]
 
 
 @cache
@@ -67,16 +81,20 @@ def calls():
 def defined(place):
     """Return (module, function) where it is defined; None where it is no function.
 
-    A lesson may import it from elsewhere, or have it in its companion.
+    A lesson may import it from elsewhere, or have it in its companion, which may import it, too.
     """
-    while place not in calls():
-        module, name = place
-        if (f"given.{module}", name) in calls():
-            return f"given.{module}", name
-        place = imports_of(module).get(name)
-        if place is None:
-            return None
-    return place
+    seen, waiting = set(), [place]
+    while waiting:
+        module, name = place = waiting.pop()
+        if place in calls():
+            return place
+        if place in seen or module not in trees():
+            continue
+        seen.add(place)
+        waiting += [(there, name) for there in starred(module)]
+        waiting += [(f"given.{module}", name)] if f"given.{module}" in trees() else []
+        waiting += [imports_of(module)[name]] if name in imports_of(module) else []
+    return None
 
 
 @cache
@@ -169,6 +187,16 @@ def places():
         for place in reached(roots_of_case(case)):
             where.setdefault(place, []).append(f"{STABILITY}{case.lesson}/{case.slug}")
     return where
+
+
+@cache
+def given():
+    """Return {given module: {function: the places that run it}}, without those that only check an input."""
+    where = places()
+    return {module: {node.name: where.get((module, node.name), []) for node in tree.body
+                     if isinstance(node, ast.FunctionDef) and not node.name.startswith(CHECKS)}
+            for module, tree in trees().items() if module.startswith(("given.", "support.")) and
+            not module.endswith(("__init__", *CHECKED_ELSEWHERE))}
 
 
 @cache

@@ -100,6 +100,7 @@ def about(plan, out=None, measuring=None, shown=()):
         "chosen": [] if set(shown) == set(modules.scene_names()) else list(shown),
         "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
         "overrides": [list(pair) for pair in plan.overrides], "coverage": coverage.table(),
+        "given": coverage.given(),
         "version": version("physics-animation-workbook"), "commit": commit(),
         "root": Path(os.path.relpath(modules.ROOT, out.resolve())).as_posix() if inside else "",
         "notebooks": notebooks(),

@@ -213,3 +213,36 @@ def flat(numbers):
     """Return all numbers of an array or of a tuple of arrays in one row."""
     parts = numbers if isinstance(numbers, tuple) else (numbers,)
     return np.concatenate([np.ravel(part) for part in parts])
+
+
+# ---------------------------------------------------------------------------------------------- random configurations
+
+def matrix_of(q):
+    """Return the rotation (3, 3) of a unit quaternion: (w² − 𝐪²) 1 + 2 𝐪 𝐪ᵀ + 2 w 𝐪*."""
+    w, r = q[0], q[1:]
+    return (w * w - r @ r) * np.eye(3) + 2.0 * np.outer(r, r) + 2.0 * w * np.cross(np.eye(3), r)
+
+
+def turned_by(omega, dt):
+    """Return the rotation (3, 3) by 2 atan(½ |ω| dt) about ω."""
+    rate = np.linalg.norm(omega)
+    half_turn = np.arctan(0.5 * rate * dt)
+    return matrix_of(np.array([np.cos(half_turn), *(np.sin(half_turn) * omega / rate)]))
+
+
+def random_quaternions(rng, n):
+    """Return n unit quaternions."""
+    q = rng.normal(size=(n, 4))
+    return q / np.linalg.norm(q, axis=1)[:, None]
+
+
+def unlike(found, truth):
+    """Return (number of rows found, largest distance of a row from the nearest of the others) of two sets of rows.
+
+    The order of contacts is a choice, and their number is not.
+    """
+    found, truth = np.asarray(found, float), np.asarray(truth, float)
+    if found.size == 0 or truth.size == 0:
+        return len(found), 0.0
+    apart = np.max(np.abs(found[:, None] - truth), axis=2)
+    return len(found), max(np.max(np.min(apart, axis=0)), np.max(np.min(apart, axis=1)))

@@ -11,9 +11,13 @@ from .case import CASES, Checks, Examined
 
 
 def cases_of(lesson):
-    """Return {slug: Case} of a lesson, in the order of its file; empty for a lesson without cases."""
-    if Path(__file__).with_name(f"{lesson}.py").is_file():
-        import_module(f".{lesson}", __package__)
+    """Return {slug: Case} of a lesson, in the order of its files; empty for a lesson without cases.
+
+    Cases of its exercises are in stability/, those of its given functions in stability/given/.
+    """
+    for name in (lesson, f"given.{lesson}"):
+        if Path(__file__).parent.joinpath(f"{name.replace('.', '/')}.py").is_file():
+            import_module(f".{name}", __package__)
     return CASES.get(lesson, {})
 
 

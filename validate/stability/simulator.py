@@ -11,7 +11,19 @@ import numpy as np
 from solutions.checks import Diverged
 from solutions.support.events import release
 from validate.reference.simulator import leaves_ball, leaves_platform, rocking, slides_on_ball
-from validate.stability.case import DOTS, LINE, Picture, bisect, case, random_law, refuses, series
+from validate.stability.case import (
+    DOTS,
+    LINE,
+    Picture,
+    bisect,
+    case,
+    matrix_of,
+    random_law,
+    random_quaternions,
+    refuses,
+    series,
+    turned_by,
+)
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
@@ -327,28 +339,9 @@ SIDES = np.array([(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)])  # normals 
 MOVES = np.array([1.0, 1.0, 0.0])                        # the third body is the floor, which nothing moves
 
 
-def matrix_of(q):
-    """Return the rotation (3, 3) of a unit quaternion: (w² − 𝐪²) 1 + 2 𝐪 𝐪ᵀ + 2 w 𝐪*."""
-    w, r = q[0], q[1:]
-    return (w * w - r @ r) * np.eye(3) + 2.0 * np.outer(r, r) + 2.0 * w * np.cross(np.eye(3), r)
-
-
-def turned_by(omega, dt):
-    """Return the rotation (3, 3) by 2 atan(½ |ω| dt) about ω."""
-    rate = np.linalg.norm(omega)
-    half_turn = np.arctan(0.5 * rate * dt)
-    return matrix_of(np.array([np.cos(half_turn), *(np.sin(half_turn) * omega / rate)]))
-
-
 def random_times(rng):
     """Return (t, dt) [s]."""
     return rng.uniform(0.0, 1.0), rng.uniform(0.01, 0.1)
-
-
-def random_quaternions(rng, n):
-    """Return n unit quaternions."""
-    q = rng.normal(size=(n, 4))
-    return q / np.linalg.norm(q, axis=1)[:, None]
 
 
 def loaded_in_the_plane(lesson, rng):

@@ -1,0 +1,1 @@
+"""Stability cases of given functions: a file for each lesson that brings some."""

@@ -1,0 +1,461 @@
+"""Contact points of boxes in space and of convex shapes in the plane, and what a pile does in a step.
+
+Each truth comes from corners and planes, by trying all of them, and never from the formulas of the given functions.
+"""
+
+from itertools import combinations, product
+
+import numpy as np
+
+from solutions.support.convex_2d import Cores, convex_bounds_2d, convex_contacts_2d
+from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
+
+EXACT = 1e-9                 # of numbers around 1: the same by another sum
+REACH = 0.06                 # gap up to which contacts are found [m]
+DEEPEST = 0.05               # overlap of the bodies that are tried, and their largest gap [m]
+CLEAR = 0.02                 # by which the axis along which two boxes touch must be the best one [m]
+SIGNS = np.array(list(product((-1.0, 1.0), repeat=3)))
+
+
+# ---------------------------------------------------------------------------------------------- boxes in space
+
+def corners_of(x, R, half):
+    """Return the corners (8, 3) of a box."""
+    return x + (SIGNS * half) @ R.T
+
+
+def gaps_along_axes(a, b):
+    """Return (axes (15, 3), gaps (15,) [m]) of two boxes (x, R, half): of their corners along all directions in which
+    boxes can be separated.  Parallel edges have the gap −∞.
+    """
+    crossed = np.cross(a[1].T[:, None], b[1].T).reshape(9, 3)
+    size = np.linalg.norm(crossed, axis=1)
+    axes = np.concatenate((a[1].T, b[1].T, crossed / np.maximum(size, 1e-300)[:, None]))
+    of_a, of_b = corners_of(*a) @ axes.T, corners_of(*b) @ axes.T
+    gaps = np.maximum(np.min(of_b, axis=0) - np.max(of_a, axis=0), np.min(of_a, axis=0) - np.max(of_b, axis=0))
+    return axes, np.where(np.append(np.ones(6), size) > 0.05, gaps, -np.inf)
+
+
+def touching_boxes(rng, kind):
+    """Return two boxes and the axis along which they touch: 0 to 2 a face of the first, 3 to 5 of the second, 6 to 14
+    two edges.  `kind` is that number over 3, from 0 to 2; 2 means any pair of edges.
+
+    The second box is moved along a random line until its gap is as asked for.
+    """
+    while True:
+        half, R = rng.uniform(0.3, 1.0, (2, 3)), [matrix_of(q) for q in random_quaternions(rng, 2)]
+        way, gap = rng.normal(size=3), rng.uniform(-DEEPEST, DEEPEST)
+        near, far = 0.0, 6.0
+        place = lambda s, way=way: s * way / np.linalg.norm(way)
+        for _ in range(14):                                                  # to 0.4 mm
+            middle = 0.5 * (near + far)
+            wide = np.max(gaps_along_axes((np.zeros(3), R[0], half[0]), (place(middle), R[1], half[1]))[1]) > gap
+            near, far = (near, middle) if wide else (middle, far)
+        move = rng.normal(size=3)
+        a, b = (move, R[0], half[0]), (move + place(far), R[1], half[1])
+        gaps = gaps_along_axes(a, b)[1]
+        best = int(np.argmax(gaps))
+        if min(best // 3, 2) == kind and np.partition(gaps, -2)[-2] < gaps[best] - CLEAR:
+            return a, b, best
+
+
+def polygon_in_rectangle(corners, wide):
+    """Return the corners (k, 2) of what a convex quadrilateral and the rectangle |y| ≤ wide have in common.
+
+    They are all crossings of two of the eight lines that lie inside all of them.
+    """
+    ahead = np.roll(corners, -1, axis=0) - corners
+    turn = np.sign(ahead[0, 0] * ahead[1, 1] - ahead[0, 1] * ahead[1, 0])
+    normals = np.concatenate((turn * np.stack((ahead[:, 1], -ahead[:, 0]), axis=1), np.eye(2), -np.eye(2)))
+    offsets = np.append(np.sum(normals[:4] * corners, axis=1), [*wide, *wide])
+    found = []
+    for i, j in combinations(range(8), 2):
+        pair = normals[[i, j]]
+        if abs(np.linalg.det(pair)) > 1e-9:
+            y = np.linalg.solve(pair, offsets[[i, j]])
+            found += [y] if np.all(normals @ y <= offsets + 1e-9) else []
+    return np.array(found).reshape(-1, 2)
+
+
+def contacts_with_face(face, other, k, sign):
+    """Return rows (normal, place, gap) of the face of a box across its axis k that looks at another box.
+
+    The corners are those of the part of the other's nearest face that lies over it, each halfway to its own distance
+    from the face.  sign: 1 if the normal points out of the face.
+    """
+    (x, R, half), (place, turn, size) = face, other
+    n = R[:, k] * np.sign(R[:, k] @ (place - x))
+    faced = int(np.argmax(np.abs(turn.T @ n)))
+    out = -turn[:, faced] * np.sign(turn[:, faced] @ n)
+    across = [turn[:, e] * size[e] for e in range(3) if e != faced]
+    middle = place + size[faced] * out
+    corners = np.array([middle + s * across[0] + t * across[1] for s, t in ((1, 1), (-1, 1), (-1, -1), (1, -1))])
+    plane = [e for e in range(3) if e != k]
+    rows = []
+    for y in polygon_in_rectangle((corners - x) @ R[:, plane], half[plane]):
+        foot = x + R[:, plane] @ y + half[k] * n
+        gap = ((middle - foot) @ out) / (n @ out)                            # from the face to the other one, along n
+        rows += [(*(sign * n), *(foot + 0.5 * gap * n), gap)] if gap <= REACH else []
+    return rows
+
+
+def contact_of_edges(a, b, e, f, gap):
+    """Return the row (normal, place, gap) of the edges along axis e of box a and f of b that are nearest."""
+    u, w = a[1][:, e], b[1][:, f]
+    n = np.cross(u, w) / np.linalg.norm(np.cross(u, w))
+    n = n if n @ (a[0] - b[0]) > 0.0 else -n                                 # from b to a
+    ends = [corners_of(*box)[np.argsort(corners_of(*box) @ (sign * n))[-2:]] for box, sign in ((a, -1.0), (b, 1.0))]
+    s, t = np.linalg.lstsq(np.stack((u, -w), axis=1), ends[1][0] - ends[0][0], rcond=None)[0]
+    return [(*n, *(0.5 * (ends[0][0] + s * u + ends[1][0] + t * w)), gap)]
+
+
+def contacts_of_boxes(a, b, k):
+    """Return rows (normal, place, gap) of two boxes that touch along axis k."""
+    if k < 3:
+        return contacts_with_face(a, b, k, -1.0)
+    if k < 6:
+        return contacts_with_face(b, a, k - 3, 1.0)
+    return contact_of_edges(a, b, (k - 6) // 3, (k - 6) % 3, gaps_along_axes(a, b)[1][k])
+
+
+def quaternion_of(R):
+    """Return a unit quaternion of a rotation (3, 3): the eigenvector of K with the eigenvalue 1.
+
+    *Source:* Bar-Itzhack 2000.
+    """
+    K = np.zeros((4, 4))
+    K[0, 1:] = K[1:, 0] = (R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1])
+    K[1:, 1:], K[0, 0] = R + R.T - np.trace(R) * np.eye(3), np.trace(R)
+    return np.linalg.eigh(K / 3.0)[1][:, -1]
+
+
+def each_with_each(lesson, n, planes):
+    """Return the Pairs of n bodies with each other and with all planes."""
+    partners = [np.arange(i + 1, n + planes) for i in range(n)]
+    return lesson.Pairs(np.cumsum([0, *map(len, partners)]), np.concatenate(partners))
+
+
+def rows_found(lesson, boxes, planes=()):
+    """Return rows (a, b, normal, place, gap) that box_contacts finds of boxes and planes, each with each."""
+    x, half = np.array([box[0] for box in boxes]), np.array([box[2] for box in boxes])
+    _, _, turn = lesson.box_bounds(x, np.array([quaternion_of(box[1]) for box in boxes]), half)
+    n, planes = len(boxes), np.reshape(planes, (-1, 4))
+    c = lesson.box_contacts(np.concatenate((x, np.zeros((len(planes), 3)))), turn, half, planes,
+                            each_with_each(lesson, n, len(planes)), REACH)
+    assert c.first[-1] == len(c.a)
+    return np.column_stack((c.a, c.b, c.n, c.p, c.gap))
+
+
+def touch(lesson, boxes, axis):
+    """Return (got, truth) of two boxes that touch along this axis."""
+    truth = [(0.0, 1.0, *row) for row in contacts_of_boxes(*boxes, axis)]
+    return unlike(rows_found(lesson, boxes), truth), (len(truth), 0.0)
+
+
+@random_law("A face of the first box has contacts with the part of the second one that lies over it.",
+            "face of the first box: largest error of the contacts [-, m]", EXACT)
+def face_of_the_first(lesson, rng):
+    a, b, axis = touching_boxes(rng, 0)
+    return touch(lesson, (a, b), axis)
+
+
+@random_law("A face of the second box has contacts with the part of the first one that lies over it.",
+            "face of the second box: largest error of the contacts [-, m]", EXACT)
+def face_of_the_second(lesson, rng):
+    a, b, axis = touching_boxes(rng, 1)
+    return touch(lesson, (a, b), axis)
+
+
+@random_law("Two edges touch halfway between the nearest points of their lines.",
+            "two edges: largest error of the contact [-, m]", EXACT)
+def two_edges(lesson, rng):
+    a, b, axis = touching_boxes(rng, 2)
+    return touch(lesson, (a, b), axis)
+
+
+@random_law("Faces that lie on each other touch in all corners of what they have in common; the normal is that of the "
+            "first.", "face on face: largest error of the contacts [-, m]", EXACT)
+def face_on_face(lesson, rng):
+    """Lay a face of one box on a face of another, turned and shifted so that both stick out."""
+    k, f, half = *rng.integers(3, size=2), rng.uniform(0.5, 0.8, (2, 3))
+    turn, side = rng.uniform(0.1, 1.4), rng.choice((-1.0, 1.0))
+    R = matrix_of(random_quaternions(rng, 1)[0])
+    n, u, w = (R[:, (k + e) % 3] for e in range(3))
+    c, s = np.cos(turn), np.sin(turn)
+    axes = dict(zip(((f + e) % 3 for e in range(3)), (n, c * u + s * w, c * w - s * u), strict=True))
+    gap, move, shift = rng.uniform(-DEEPEST, DEEPEST), rng.normal(size=3), rng.uniform(-0.5, 0.5, 2)
+    place = move + side * (half[0][k] + half[1][f] + gap) * n + shift[0] * u + shift[1] * w
+    return touch(lesson, ((move, R, half[0]), (place, np.stack([axes[e] for e in range(3)], axis=1), half[1])), k)
+
+
+@random_law("A box touches a plane with the corners that reach it, and fills the box along the axes around it.",
+            "box on a plane: largest error of the contacts and bounds [-, m]", EXACT)
+def box_on_a_plane(lesson, rng):
+    q, half, x, n = random_quaternions(rng, 1)[0], rng.uniform(0.3, 1.0, 3), *rng.normal(size=(2, 3))
+    n, R = n / np.linalg.norm(n), matrix_of(q)
+    corners = corners_of(x, R, half)
+    offset = rng.uniform(-0.4, DEEPEST) - np.min(corners @ n)
+    gaps = corners @ n + offset
+    truth = [(0.0, 1.0, *n, *(p - 0.5 * gap * n), gap) for p, gap in zip(corners, gaps, strict=True) if gap <= REACH]
+    low, high, turn = lesson.box_bounds(x[None], q[None], half[None])
+    found = rows_found(lesson, [(x, R, half)], [(*n, offset)])
+    return ((*unlike(found, truth), low, high, turn),
+            (len(truth), 0.0, np.min(corners, axis=0), np.max(corners, axis=0), R))
+
+
+@random_law("Boxes that an axis separates by more than the margin have no contact.",
+            "boxes apart: contacts that are found [-]", 0.0)
+def boxes_apart(lesson, rng):
+    a, b, axis = touching_boxes(rng, rng.integers(3))
+    axes, gaps = gaps_along_axes(a, b)
+    n = axes[axis] * np.sign(axes[axis] @ (b[0] - a[0]))
+    beyond = (b[0] + (REACH - gaps[axis] + 1e-6) * n, *b[1:])
+    return float(len(rows_found(lesson, (a, beyond)))), 0.0
+
+
+# ---------------------------------------------------------------------------------------------- convex shapes, plane
+
+def regular(rng, corners):
+    """Return the corners (k, 2) [m] of a convex polygon on a circle, counter-clockwise."""
+    angles = 2.0 * np.pi * (np.arange(corners) + rng.uniform(-0.2, 0.2, corners)) / corners
+    return rng.uniform(0.5, 1.0) * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+
+
+def cores_of(shapes):
+    """Return the Cores of shapes (corners, radius)."""
+    return Cores(np.concatenate([corners for corners, _ in shapes]), np.cumsum([0, *(len(c) for c, _ in shapes)]),
+                 np.array([radius for _, radius in shapes]), np.ones((len(shapes), 2)))
+
+
+def convex_rows(lesson, shapes, x, q, lines=()):
+    """Return rows (a, b, normal, place, gap) that convex_contacts_2d finds of shapes and lines, each with each."""
+    cores, n, lines = cores_of(shapes), len(shapes), np.reshape(lines, (-1, 3))
+    _, _, turn = convex_bounds_2d(x, q, cores)
+    c = convex_contacts_2d(np.concatenate((x, np.zeros((len(lines), 2)))), turn, cores, lines,
+                           each_with_each(lesson, n, len(lines)), REACH)
+    return np.column_stack((c.a, c.b, c.n, c.p, c.gap))
+
+
+def rotated(q, r):
+    """Return r (k, 2) turned by the angle q."""
+    c, s = np.cos(q), np.sin(q)
+    return r @ np.array([(c, s), (-s, c)])
+
+
+def sides_of(corners):
+    """Return (outward normals (k, 2), offsets (k,)) of the edges of a polygon."""
+    ahead = np.roll(corners, -1, axis=0) - corners
+    n = np.stack((ahead[:, 1], -ahead[:, 0]), axis=1) / np.linalg.norm(ahead, axis=1)[:, None]
+    return n, np.sum(n * corners, axis=1)
+
+
+def nearest_of_cores(a, b):
+    """Return (p of a, q of b), the nearest points of two polygons that are apart: all corners with all edges."""
+    pairs = []
+    for points, edges, swapped in ((a, b, False), (b, a, True)):
+        for point in points:
+            for p, r in zip(edges, np.roll(edges, -1, axis=0), strict=True):
+                along = (r - p) @ (r - p)
+                foot = p + np.clip((point - p) @ (r - p) / along if along > 0.0 else 0.0, 0.0, 1.0) * (r - p)
+                pairs.append((np.linalg.norm(foot - point), *((foot, point) if swapped else (point, foot))))
+    _, p, q = min(pairs, key=lambda pair: pair[0])
+    return p, q
+
+
+@random_law("Convex shapes that are apart touch between the nearest points of their cores, each with its radius.",
+            "shapes apart: largest error of the contact [-, m]", EXACT)
+def convex_apart(lesson, rng):
+    """Try polygons, capsules and discs whose edges do not face each other."""
+    kinds = [lambda: regular(rng, 5), lambda: regular(rng, 3), lambda: np.array([(0.4, 0.0), (-0.4, 0.0)]),
+             lambda: np.zeros((1, 2))]
+    while True:
+        shapes = [(kinds[k](), radius) for k, radius in zip(rng.integers(4, size=2), rng.uniform(0.1, 0.3, 2))]
+        q, way, move = rng.uniform(0.0, 6.28, 2), rng.normal(size=2), rng.normal(size=2)
+        a, b = (rotated(angle, core) for angle, (core, _) in zip(q, shapes, strict=True))
+        way, both = way / np.linalg.norm(way), shapes[0][1] + shapes[1][1]
+        x = np.array([move, move + (2.2 + both) * way])
+        p, r = nearest_of_cores(a + x[0], b + x[1])
+        x[1] -= (np.linalg.norm(r - p) - both - rng.uniform(-DEEPEST, DEEPEST)) * (r - p) / np.linalg.norm(r - p)
+        p, r = nearest_of_cores(a + x[0], b + x[1])
+        n = (r - p) / np.linalg.norm(r - p)
+        facing = [np.max(sides_of(core)[0] @ d) for core, d in ((a, n), (b, -n)) if len(core) > 1]
+        if len(facing) < 2 or max(facing) < 0.99:
+            gap = np.linalg.norm(r - p) - both
+            truth = [(0.0, 1.0, *-n, *(p + (shapes[0][1] + 0.5 * gap) * n), gap)]
+            return unlike(convex_rows(lesson, shapes, x, q), truth), (1, 0.0)
+
+
+@random_law("An edge that lies along an edge touches it at both ends of what they have in common.",
+            "edge along edge: largest error of the contacts [-, m]", EXACT)
+def edge_along_edge(lesson, rng):
+    """Lay two rounded boxes along each other, one shifted; two overlap, or are a little apart."""
+    half, radius = rng.uniform(0.3, 0.8, (2, 2)), rng.uniform(0.0, 0.2, 2)
+    signs = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])
+    gap, q, move = rng.uniform(-DEEPEST, DEEPEST), rng.uniform(0.0, 6.28), rng.normal(size=2)
+    shift = rng.uniform(-0.9, 0.9) * np.sum(half[:, 0])
+    up = half[0, 1] + half[1, 1] + np.sum(radius) + gap
+    x = np.array([move, move + rotated(q, np.array([shift, up]))])
+    ends = max(-half[0, 0], shift - half[1, 0]), min(half[0, 0], shift + half[1, 0])
+    n, places = rotated(q, np.array([0.0, 1.0])), [(s, half[0, 1] + radius[0] + 0.5 * gap) for s in ends]
+    truth = [(0.0, 1.0, *-n, *(move + rotated(q, np.array(place))), gap) for place in places]
+    found = convex_rows(lesson, [(signs * h, r) for h, r in zip(half, radius, strict=True)], x, np.array([q, q]))
+    return unlike(found, truth), (2, 0.0)
+
+
+@random_law("Polygons that overlap touch along the edge that separates them best; boxes touch as boxes.",
+            "polygons that overlap: largest error of the contacts [-, m]", EXACT)
+def convex_overlap(lesson, rng):
+    while True:
+        shapes = [(regular(rng, k), 0.0) for k in rng.integers(3, 7, 2)]
+        q, x = rng.uniform(0.0, 6.28, 2), rng.normal(size=2) + np.array([(0.0, 0.0), rotated(rng.uniform(0.0, 6.28),
+                                                                        np.array([rng.uniform(0.8, 1.5), 0.0]))])
+        a, b = (rotated(angle, core) + place for angle, (core, _), place in zip(q, shapes, x, strict=True))
+        best = [np.min(n @ other.T, axis=1) - offset for (n, offset), other in ((sides_of(a), b), (sides_of(b), a))]
+        gaps = np.concatenate(best)
+        gap, second = np.sort(gaps)[:-3:-1]
+        if -0.2 < gap < -0.01 and second < gap - 0.01:
+            one, other, sign = (a, b, -1.0) if np.argmax(gaps) < len(a) else (b, a, 1.0)
+            truth = overlapping(one, other, int(np.argmax(gaps)) % len(a) if sign < 0 else int(np.argmax(best[1])),
+                                sign)
+            return unlike(convex_rows(lesson, shapes, x, q), truth), (len(truth), 0.0)
+
+
+def overlapping(one, other, edge, sign):
+    """Return rows of an edge of one polygon with the nearest edge of another: its part that lies over the edge."""
+    n, offsets = sides_of(one)
+    facing = int(np.argmin(sides_of(other)[0] @ n[edge]))
+    p, r = other[facing], other[(facing + 1) % len(other)]
+    along = np.roll(one, -1, axis=0)[edge] - one[edge]
+    shares = np.sort([(corner - p) @ along / ((r - p) @ along) for corner in (one[edge], one[edge] + along)])
+    low, high = max(0.0, shares[0]), min(1.0, shares[1])
+    places = [p + share * (r - p) for share in (low, high)] if low <= high else []
+    rows = [(place, n[edge] @ place - offsets[edge]) for place in places]
+    return [(0.0, 1.0, *(sign * n[edge]), *(place - 0.5 * gap * n[edge]), gap) for place, gap in rows if gap <= REACH]
+
+
+@random_law("A convex shape touches a line with each corner that reaches it, and its bounds are those of its corners.",
+            "shape on a line: largest error of the contacts and bounds [-, m]", EXACT)
+def convex_on_a_line(lesson, rng):
+    core, radius, q, x = regular(rng, 5), rng.choice((0.0, 0.2)), rng.uniform(0.0, 6.28), rng.normal(size=2)
+    n, corners = rotated(rng.uniform(0.0, 6.28), np.array([0.0, 1.0])), rotated(q, core) + x
+    offset = rng.uniform(-0.3, DEEPEST) - np.min(corners @ n) + radius
+    gaps = corners @ n + offset - radius
+    truth = [(0.0, 1.0, *n, *(p - (radius + 0.5 * gap) * n), gap) for p, gap in zip(corners, gaps, strict=True)
+             if gap <= REACH]
+    low, high, _ = convex_bounds_2d(x[None], np.array([q]), cores_of([(core, radius)]))
+    found = convex_rows(lesson, [(core, radius)], x[None], np.array([q]), [(*n, offset)])
+    return ((*unlike(found, truth), low, high),
+            (len(truth), 0.0, np.min(corners, axis=0) - radius, np.max(corners, axis=0) + radius))
+
+
+@case("contact-points", "Contact points of boxes and of convex shapes", compiled=False)
+def contact_points(lesson, check):
+    """Compare contacts with those that come from trying all corners, edges and planes.
+
+    Boxes in space touch in every way: faces of either box with a corner, an edge or a face; two edges; a plane.  Of all
+    directions in which two boxes can be separated, the contact is along the one with the largest gap.  Shapes in the
+    plane are polygons, capsules and discs, alone and with a radius.
+    """
+    check.laws(lesson, (face_of_the_first, face_of_the_second, two_edges, face_on_face, box_on_a_plane, boxes_apart,
+                        convex_apart, edge_along_edge, convex_overlap, convex_on_a_line), seed=31, times=15)
+
+
+# ---------------------------------------------------------------------------------------------- a step of a pile
+
+@random_law("A body that sticks out of its margin, up or sideways, makes the pairs be searched again.",
+            "margin: wrong answers [-]", 0.0)
+def leaves_its_margin(lesson, rng):
+    d, found, truth = rng.choice((2, 3)), [], []
+    wide_low = rng.normal(size=(3, d))
+    wide_high = wide_low + rng.uniform(0.5, 1.0, (3, d))
+    for body, e, side in product(range(3), range(d), (-1.0, 1.0)):
+        low, high = wide_low + 0.1, wide_high - 0.1
+        move = side * rng.choice((0.09, 0.11))
+        low[body, e], high[body, e] = low[body, e] + move, high[body, e] + move
+        found.append(lesson.has_left_margin(low, high, wide_low, wide_high))
+        truth.append(abs(move) > 0.1)
+    return np.array(found, float), np.array(truth, float)
+
+
+def alone(lesson, rng, substeps):
+    """Return (PileState, Pile) of a box in flight that tumbles, with three moments of inertia."""
+    moments = rng.uniform(1.0, 1.9, 3)
+    state, pile = lesson.make_pile(rng.normal(size=(1, 3)), random_quaternions(rng, 1), rng.uniform(0.5, 2.0),
+                                   [moments], rng.uniform(0.1, 0.3, (1, 3)), [(0.0, 0.0, 1.0, 50.0)],
+                                   rng.normal(size=3), 0.5, substeps, 30.0, 1.0, 0.05)
+    v, omega = rng.normal(size=(2, 2, 3)) * np.array([(1.0,), (0.0,)])
+    return state._replace(v=v, omega=omega), pile, moments
+
+
+@random_law("A box of a pile tumbles in flight by Euler's equation, with the tensor of the beginning of the step.",
+            "box in flight: largest error of its state [m, -, m/s, rad/s]", EXACT)
+def tumbling_flight(lesson, rng):
+    substeps, dt = 3, rng.uniform(0.01, 0.03)
+    state, pile, moments = alone(lesson, rng, substeps)
+    end = lesson.pile_trajectory(lesson.advance_pile, lesson.box_bounds, lesson.box_contacts, state, dt, 2, pile)[2]
+    x, R, v, omega, h = state.x[0], matrix_of(state.q[0]), state.v[0], state.omega[0], dt / substeps
+    for _ in range(2):
+        I = R @ np.diag(moments) @ R.T
+        for _ in range(substeps):
+            v = v + h * pile.gravity
+            omega = omega - h * np.linalg.solve(I, np.cross(omega, I @ omega))
+            x, R = x + h * v, turned_by(omega, h) @ R
+    return ((end.x[0], matrix_of(end.q[0]), end.v[0], end.omega[0], end.x[1], end.q[1]),
+            (x, R, v, omega, np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])))
+
+
+@random_law("What begins deep inside another body parts with 3 % of the smaller half size times hertz, less what the "
+            "contact gives.", "deep overlap: largest error of the speed of separation [m/s]", EXACT)
+def separation(lesson, rng):
+    """Put two discs or balls into each other without gravity: half sizes, masses and hertz are random.
+
+    A contact gives by 1/(s (2ζ + s)) of its speed, s = 2π hertz h.  One sweep per substep reaches the target of a
+    single contact, and the sweep at rest takes back both the velocity and the impulse.
+    """
+    d, radius, m = rng.choice((2, 3)), rng.uniform(0.2, 0.5, 2), rng.uniform(0.5, 2.0, 2)
+    hertz, dt, n = rng.uniform(10.0, 30.0), 0.004, rng.normal(size=d)
+    n /= np.linalg.norm(n)
+    make, advance = (lesson.make_pile_2d, lesson.advance_pile_2d) if d == 2 else (lesson.make_pile, lesson.advance_pile)
+    q = np.zeros(2) if d == 2 else [(1.0, 0.0, 0.0, 0.0)] * 2
+    state, pile = make([np.zeros(d), 0.3 * np.min(radius) * n], q, m, 0.1 if d == 2 else np.full((2, 3), 0.1),
+                       np.repeat(radius[:, None], d, axis=1), [(*-np.eye(d)[0], 50.0)], np.zeros(d), 0.3, 2, hertz,
+                       1.0, 0.01)
+    bounds = lesson.disc_bounds if d == 2 else lesson.ball_bounds
+    end = advance(bounds, lesson.round_contacts, state, dt, 1, pile)
+    s = 2.0 * np.pi * hertz * 0.5 * dt
+    return ((end.x[1] - end.x[0] - 0.3 * np.min(radius) * n) @ n / dt,
+            0.03 * np.min(radius) * hertz / (1.0 + 1.0 / (s * (2.0 + s))))
+
+
+@random_law("Forces of contacts under loads with torques obey Newton, Euler, and the laws of contact and friction.",
+            "forces and torques: largest violation [N, m/s², rad/s²]", EXACT)
+def forces_under_torques(lesson, rng):
+    """Load a body on two feet, and another one on its top, by random forces and torques.
+
+    Accelerations follow from forces and levers.  At each contact F_n and the acceleration along n are not negative and
+    one of them is 0; friction is at most μ F_n, and as large as that against a slip that begins.
+    """
+    x, w, I = np.array([(0.0, 0.4), (0.1, 1.0), (0.0, 0.0)]), rng.uniform(0.5, 2.0, 2), rng.uniform(2.0, 5.0, 2)
+    inv_mass, inv_inertia, mu = np.append(w, 0.0), np.append(I, 0.0), rng.uniform(0.2, 0.8, 3)
+    p = np.array([(-0.4, 0.0), (0.5, 0.0), (0.2, 0.8)])
+    contacts = lesson.make_contacts([0, 0, 1], [2, 2, 0], p, [(0.0, 1.0)] * 3, inv_mass)
+    load = np.concatenate((rng.normal(size=(2, 3)) - [0.0, 5.0, 0.0], np.zeros((1, 3))))
+    F, a = lesson.contact_forces(x, inv_mass, inv_inertia, contacts, load, mu)
+    truth, aside = load.copy(), []
+    for k, (body, other) in enumerate(((0, 2), (0, 2), (1, 0))):
+        force = np.array([-F[k, 1], F[k, 0]])                                # along n = (0, 1) and t = (−1, 0)
+        for i, sign in ((body, 1.0), (other, -1.0)):
+            truth[i] += sign * np.append(force, np.cross((*(p[k] - x[i]), 0.0), (*force, 0.0))[2])
+    truth *= np.stack((inv_mass, inv_mass, inv_inertia), axis=1)
+    for k, (body, other) in enumerate(((0, 2), (0, 2), (1, 0))):
+        parts = [a[i, :2] + a[i, 2] * np.array([-(p[k] - x[i])[1], (p[k] - x[i])[0]]) for i in (body, other)]
+        slides, rises = (parts[0] - parts[1]) * [-1.0, 1.0]
+        limit = mu[k] * max(F[k, 0], 0.0)
+        aside += [min(F[k, 0], rises), F[k, 1] - np.clip(F[k, 1] - slides, -limit, limit)]
+    return (a, np.array(aside)), (truth, np.zeros(6))
+
+
+@case("steps-of-a-pile", "A step of a pile, and forces under torques", compiled=False)
+def steps_of_a_pile(lesson, check):
+    """Compare a flight, its margin, a separation and forces with Euler's equation and with the laws of contact."""
+    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques), seed=32, times=15)

@@ -1,0 +1,874 @@
+"""Joints, driven bodies, the judges of a run in the plane, and steps that only some scenes take.
+
+Each truth comes from vectors and matrices, from conserved quantities, or from the reversal of time.
+"""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from solutions.checks import Diverged
+from solutions.support import model, shapes
+from solutions.support.events import extrema, value_at, zeros
+from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by
+
+ROUND_OFF = 1e-14            # change of an impulse, over the largest one, at which sweeps have settled
+EXACT = 1e-9                 # of numbers around 1: the same by another sum
+CLOSED = 1e-11               # of gaps of joints [m], which close_joints leaves at some roundings
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+
+
+def in_space(r):
+    """Return vectors (…, 3) of vectors (…, 2) in the plane; those in space stay as they are."""
+    r = np.asarray(r, float)
+    return r if r.shape[-1] == 3 else np.concatenate((r, np.zeros((*r.shape[:-1], 1))), axis=-1)
+
+
+def about_normal(spins):
+    """Return vectors (n, 3) of numbers (n,) about the normal of the plane; vectors in space stay as they are."""
+    spins = np.asarray(spins, float)
+    return spins if spins.ndim == 2 else np.outer(spins, (0.0, 0.0, 1.0))
+
+
+def rotations(q):
+    """Return matrices (n, 3, 3) of quaternions (n, 4), or of angles (n,) about the normal of the plane."""
+    q = np.asarray(q, float)
+    zero = np.zeros(len(q))
+    q = q if q.ndim == 2 else np.stack((np.cos(0.5 * q), zero, zero, np.sin(0.5 * q)), axis=1)
+    return np.array([matrix_of(one) for one in q])
+
+
+def random_bodies(lesson, rng, d, n, heavy=()):
+    """Return (PileState, Bodies) of n bodies that move and turn, without gravity; those in `heavy` nothing moves."""
+    m, q = rng.uniform(0.5, 2.0, n), rng.normal(size=n) if d == 2 else random_quaternions(rng, n)
+    inertia = rng.uniform(0.2, 0.5, n) if d == 2 else rng.uniform(1.0, 1.9, (n, 3))
+    m[list(heavy)], inertia[list(heavy)] = np.inf, np.inf
+    make = lesson.make_bodies_2d if d == 2 else lesson.make_bodies
+    state, p = make(rng.normal(size=(n, d)), q, m, inertia, np.full((n, d), 0.1), [], np.zeros(d), 0.3, 1, 0.01)
+    return state._replace(v=rng.normal(size=(n, d)), omega=rng.normal(size=n if d == 2 else (n, 3))), p
+
+
+def masses(inverse):
+    """Return 1/inverse, and 0 where that is infinite: such a row does not count."""
+    return np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+
+
+def tensors(q, p):
+    """Return I (n, 3, 3) in the world of all bodies, in the plane about its normal; 0 where nothing turns one."""
+    moments = masses(p.inv_inertia)
+    moments = moments if moments.ndim == 2 else about_normal(moments)
+    return np.array([R @ np.diag(I) @ R.T for R, I in zip(rotations(q), moments, strict=True)])
+
+
+def momenta_of(x, q, v, omega, p):
+    """Return (P (3,), L (3,)) of all bodies that can move, by cross products and tensors in space."""
+    m, x, v, omega = masses(p.inv_mass), in_space(x), in_space(v), about_normal(omega)
+    return m @ v, m @ np.cross(x, v) + np.einsum("nij,nj->i", tensors(q, p), omega)
+
+
+# ---------------------------------------------------------------------------------------------- judges in the plane
+
+def partly_fixed(lesson, rng):
+    """Return (PileState, Bodies) of five bodies in the plane: free, fixed, on an axle, and without rotation."""
+    state, p = random_bodies(lesson, rng, 2, 5, heavy=(1,))
+    p.inv_mass[2], p.inv_inertia[3] = 0.0, 0.0
+    return state, p._replace(gravity=rng.normal(size=2))
+
+
+@random_law("In the plane energy and momenta are those of vectors in space, without what cannot move or turn.",
+            "plane: largest error of energy and momenta [J, kg m/s, kg m²/s]", EXACT)
+def judges_in_the_plane(lesson, rng):
+    state, p = partly_fixed(lesson, rng)
+    P, L = momenta_of(*state[:4], p)
+    energy = 0.0
+    for i in np.flatnonzero(p.inv_mass):
+        energy += (0.5 * state.v[i] @ state.v[i] - p.gravity @ state.x[i]) / p.inv_mass[i]
+    for i in np.flatnonzero(p.inv_inertia):
+        energy += 0.5 * state.omega[i] ** 2 / p.inv_inertia[i]
+    return ((*lesson.momenta_2d(*state[:4], p), lesson.mechanical_energy_2d(*state[:4], p)),
+            (P[:2], L[2], energy))
+
+
+def random_contacts(lesson, rng, n, m):
+    """Return a ContactSet of m contacts of n bodies in the plane, ordered by body a."""
+    a = np.sort(rng.integers(0, n - 1, m))
+    b, normals = np.array([rng.integers(i + 1, n) for i in a]), rng.normal(size=(m, 2))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    return lesson.ContactSet(np.searchsorted(a, np.arange(n + 1)), a, b, normals, rng.normal(size=(m, 2)),
+                             rng.choice((-1.0, 0.0, 1.0), m) * rng.uniform(0.01, 0.1, m))
+
+
+@random_law("Rows that move and turn do work: the impulse on the other body times the velocity of the row there.",
+            "driven rows: largest error of their work [J]", EXACT)
+def work_of_driven_rows(lesson, rng):
+    state, p = random_bodies(lesson, rng, 2, 4, heavy=(1, 3))
+    dt, contacts, J = rng.uniform(0.01, 0.1), random_contacts(lesson, rng, 4, 6), rng.normal(size=(6, 2))
+    begin, work = state.x - dt * state.v, 0.0
+    for a, b, place, impulse in zip(contacts.a, contacts.b, contacts.p, J, strict=True):
+        for row, force in ((a, -impulse), (b, impulse)):                     # on the other body of the contact
+            if row in (1, 3):
+                u = in_space(state.v[row]) + np.cross((0.0, 0.0, state.omega[row]), in_space(place - begin[row]))
+                work += force @ u[:2]
+    return lesson.work_of_driven_rows(state._replace(contacts=contacts, J=J), dt, p), work
+
+
+@random_law("A contact that has closed leaves with −e u_n; an open one may close, or waits for its bounce.",
+            "plane: largest error of the speeds of parting [m/s]", EXACT)
+def parting_speeds(lesson, rng):
+    state, p = random_bodies(lesson, rng, 2, 4)
+    contacts, dt, e = random_contacts(lesson, rng, 4, 6), rng.uniform(0.01, 0.1), rng.choice((0.0, 0.4, 1.0))
+    at = lambda k, body: in_space(state.v[body]) + np.cross((0.0, 0.0, state.omega[body]),
+                                                            in_space(contacts.p[k] - state.x[body]))
+    u_n = [(at(k, a) - at(k, b))[:2] @ n for k, (a, b, n) in enumerate(zip(*contacts[1:4], strict=True))]
+    truth = np.where(contacts.gap <= 0.0, -e * np.array(u_n), -contacts.gap / dt if e == 0.0 else -np.inf)
+    arms = lesson.arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts)
+    return lesson.parting_speeds(state.v, state.omega, contacts, arms, dt, e), truth
+
+
+@random_law("Bodies that share a joint have no contact; all others keep theirs.",
+            "contacts without those of joined bodies: largest error [-]", EXACT)
+def without_joined(lesson, rng):
+    state, p = random_bodies(lesson, rng, 2, 6)
+    contacts, pairs = random_contacts(lesson, rng, 6, 12), [(0, 1), (4, 2), (3, 5)]
+    jointed = lesson.make_joints(state, p, *zip(*pairs, strict=True), rng.normal(size=(3, 2)), 0.0)
+    left = [k for k in range(12) if not {(contacts.a[k], contacts.b[k]), (contacts.b[k], contacts.a[k])} & {*pairs}]
+    kept = lesson.without_joined(contacts, jointed.joints)
+    return kept, (np.searchsorted(contacts.a[left], np.arange(7)), *(part[left] for part in contacts[1:]))
+
+
+def with_impulses(lesson, rng):
+    """Return (PileState after a step, Bodies, dt, the state where its contacts were found)."""
+    state, p = random_bodies(lesson, rng, 2, 5)
+    state, dt = state._replace(contacts=random_contacts(lesson, rng, 5, 6), J=rng.normal(size=(6, 2))), 0.02
+    return state, p, dt, state._replace(x=state.x - dt * state.v)
+
+
+def speed_at(state, contacts, k):
+    """Return u (2,) [m/s] of contact k, and both levers (2, 2): p − x of a and of b."""
+    arms = [contacts.p[k] - state.x[i] for i in (contacts.a[k], contacts.b[k])]
+    u = [state.v[i] + state.omega[i] * np.array([-r[1], r[0]])
+         for i, r in zip((contacts.a[k], contacts.b[k]), arms, strict=True)]
+    return u[0] - u[1], arms
+
+
+def swept_by_hand(state, p, contacts, aim, mu):
+    """Return (v, ω, J) after one contact after the other, each as if it were alone, with mu (m,) of each."""
+    v, omega, J = state.v.copy(), state.omega.copy(), state.J.copy()
+    for k, (a, b, n) in enumerate(zip(*contacts[1:4], strict=True)):
+        u, arms = speed_at(state._replace(v=v, omega=omega), contacts, k)
+        axes = np.array([n, (-n[1], n[0])])
+        k_n, k_t = (inverse_mass_along(p, (a, b), arms, axis) for axis in axes)
+        J_n, J_t = axes @ J[k]
+        J_n = max(0.0, J_n + (aim[k] - u @ axes[0]) / k_n)
+        J_t = np.clip(J_t - u @ axes[1] / k_t, -mu[k] * J_n, mu[k] * J_n)
+        change = np.array([J_n, J_t]) @ axes - J[k]
+        J[k] += change
+        for i, r, sign in ((a, arms[0], 1.0), (b, arms[1], -1.0)):
+            v[i] += sign * p.inv_mass[i] * change
+            omega[i] += sign * p.inv_inertia[i] * (r[0] * change[1] - r[1] * change[0])
+    return v, omega, J
+
+
+def inverse_mass_along(p, bodies, arms, axis):
+    """Return the effective inverse mass [1/kg] of two bodies at these arms along an axis."""
+    return sum(p.inv_mass[i] + p.inv_inertia[i] * (r[0] * axis[1] - r[1] * axis[0]) ** 2
+               for i, r in zip(bodies, arms, strict=True))
+
+
+@random_law("The residual of a step is what one more sweep changes, times the inverse mass along the normal.",
+            "residual of a step: largest error [m/s]", EXACT)
+def residual_of_a_step(lesson, rng):
+    state, p, dt, begin = with_impulses(lesson, rng)
+    c = state.contacts
+    _, _, J = swept_by_hand(begin, p, c, np.minimum(0.0, -c.gap / dt), np.full(6, p.mu))
+    k_n = [inverse_mass_along(p, (c.a[k], c.b[k]), speed_at(begin, c, k)[1], c.n[k]) for k in range(6)]
+    return lesson.sweep_residual_2d(state, dt, p), np.max(np.abs(J - state.J) * np.array(k_n)[:, None])
+
+
+@random_law("Contacts of a step push a body with their impulses over dt, and on the other one with the opposite.",
+            "force of contacts: largest error [N]", EXACT)
+def force_of_contacts(lesson, rng):
+    state, _, dt, _ = with_impulses(lesson, rng)
+    body = rng.integers(5)
+    signs = 1.0 * (state.contacts.a == body) - 1.0 * (state.contacts.b == body)
+    N, T = lesson.normal_and_friction(state, dt)
+    normal = np.sum(state.contacts.n * state.J, axis=1) / dt
+    return ((lesson.contact_force(state, body, dt), N, T),
+            (signs @ state.J / dt, normal, state.J / dt - normal[:, None] * state.contacts.n))
+
+
+@random_law("Two bodies sink into each other by what the sweeps leave and by what turns within a step, and no more.",
+            "bound of the overlap: largest error [m]", EXACT)
+def bound_of_the_overlap(lesson, rng):
+    """Add up dt (aim − u_n) + ½ dt² (ω_a² |r_a| + ω_b² |r_b| + 2 (|ω_a| + |ω_b|) |u_t|) for the worst pair."""
+    after, sums = [with_impulses(lesson, rng) for _ in range(3)], {}
+    p, dt = after[0][1], after[0][2]
+    for state, _, _, begin in after:
+        c, added = state.contacts, {}
+        for k, pair in enumerate(zip(map(int, c.a), map(int, c.b), strict=True)):
+            u, arms = speed_at(begin, c, k)
+            w, long = np.abs(state.omega[list(pair)]), np.linalg.norm(arms, axis=1)
+            slip = abs(c.n[k, 0] * u[1] - c.n[k, 1] * u[0])
+            more = dt * max(0.0, min(0.0, -c.gap[k] / dt) - u @ c.n[k])
+            added[pair] = max(added.get(pair, 0.0), more + 0.5 * dt * dt * (w**2 @ long + 2.0 * np.sum(w) * slip))
+            sums.setdefault(pair, max(0.0, -c.gap[k]))
+        sums = {pair: depth + added.get(pair, 0.0) for pair, depth in sums.items()}
+    return lesson.overlap_bound_2d([after[0][0], *(one[0] for one in after)], dt, p), max(sums.values())
+
+
+# ---------------------------------------------------------------------------------------------- joints
+
+def random_tree(lesson, rng, d, heavy=()):
+    """Return (PileState, JointedBodies) of five bodies, each joined to an earlier one, in any order of the joints."""
+    state, p = random_bodies(lesson, rng, d, 5, heavy)
+    later = rng.permutation(np.arange(1, 5))
+    earlier = np.array([rng.integers(k) for k in later])
+    swap = rng.random(4) < 0.5
+    a, b = np.where(swap, later, earlier), np.where(swap, earlier, later)
+    places = 0.5 * (state.x[a] + state.x[b]) + 0.1 * rng.normal(size=(4, d))
+    return state, lesson.make_joints(state, p, a, b, places, 0.0)
+
+
+def step_of(lesson, d):
+    """Return the step of bodies with joints."""
+    return lesson.joint_step_2d if d == 2 else lesson.joint_step
+
+
+def loads_of(rng, d):
+    """Return (load, F (5, d), τ): the load is F cos t and τ sin t."""
+    F, tau = rng.normal(size=(5, d)), rng.normal(size=5 if d == 2 else (5, 3))
+    return (lambda t, x, q, v, omega, p: (np.cos(t) * F, np.sin(t) * tau)), F, tau
+
+
+def points_of(x, q, joints):
+    """Return (the points of a, those of b), each (m, 3), of all joints."""
+    return tuple(in_space(x)[body] + np.einsum("kij,kj->ki", rotations(q)[body], in_space(arm))
+                 for body, arm in ((joints.a, joints.r_a), (joints.b, joints.r_b)))
+
+
+def gaps_and_speeds(now, joints):
+    """Return (gaps (m, 3) [m], relative velocities of the points (m, 3) [m/s]) of all joints."""
+    x, q, v, omega = now
+    ends = points_of(x, q, joints)
+    speeds = [in_space(v)[body] + np.cross(about_normal(omega)[body], end - in_space(x)[body])
+              for body, end in zip((joints.a, joints.b), ends, strict=True)]
+    return ends[0] - ends[1], speeds[0] - speeds[1]
+
+
+@random_law("Joints in the plane and in space are closed at the end of each step, and their points do not part.",
+            "joints: largest gap and relative velocity [m, m/s]", CLOSED)
+def joints_stay_closed(lesson, rng):
+    """Try trees of five bodies under loads, with a body that nothing moves and that moves and turns all the same."""
+    d, heavy = rng.choice((2, 3)), rng.choice((0, 1)) * (rng.integers(5),)
+    state, p = random_tree(lesson, rng, d, heavy)
+    now, load = state[:4], loads_of(rng, d)[0]
+    for n in range(2):
+        now = step_of(lesson, d)(load, 0.01 * n, *now, 0.01, p)
+    return gaps_and_speeds(now, p.joints), (np.zeros((4, 3)), np.zeros((4, 3)))
+
+
+@random_law("Joints change neither momentum: it changes by the loads at both ends of a step, half each.",
+            "joints: largest error of the momenta [kg m/s, kg m²/s]", EXACT)
+def joints_keep_momenta(lesson, rng):
+    d, t, dt = rng.choice((2, 3)), rng.uniform(0.0, 1.0), 0.01
+    state, p = random_tree(lesson, rng, d)
+    load, F, tau = loads_of(rng, d)
+    end = step_of(lesson, d)(load, t, *state[:4], dt, p)
+    F, tau, (P, L) = in_space(F), about_normal(tau), momenta_of(*state[:4], p)
+    for x, time in ((state.x, t), (end[0], t + dt)):
+        P = P + 0.5 * dt * np.cos(time) * np.sum(F, axis=0)
+        L = L + 0.5 * dt * np.sum(np.cos(time) * np.cross(in_space(x), F) + np.sin(time) * tau, axis=0)
+    return momenta_of(*end, p), (P, L)
+
+
+@random_law("A step with joints is undone by the step with −dt.",
+            "joints: largest error after a step and its reversal [m, -, m/s, rad/s]", 1e-8)
+def joints_are_reversible(lesson, rng):
+    """Begin with a state that a step has left: only there the points of the joints do not part."""
+    d, dt = rng.choice((2, 3)), 0.01
+    state, p = random_tree(lesson, rng, d)
+    load = loads_of(rng, d)[0]
+    begin = step_of(lesson, d)(load, 0.2, *state[:4], dt, p)
+    end = step_of(lesson, d)(load, 0.3, *begin, dt, p)
+    return step_of(lesson, d)(load, 0.3 + dt, *end, -dt, p), begin
+
+
+@random_law("A hinge of two ball joints turns about the line through both only, and keeps the momenta.",
+            "hinge in space: largest error of spin, momenta and gaps [rad/s, kg m²/s, m]", EXACT)
+def hinge_in_space(lesson, rng):
+    """Rows of both joints depend on each other, so elimination within the band gives way to the shortest impulses."""
+    state, p = random_bodies(lesson, rng, 3, 2)
+    places = 0.5 * (state.x[0] + state.x[1]) + 0.2 * rng.normal(size=(2, 3))
+    p = lesson.make_joints(state, p, [0, 0], [1, 1], places, 0.0)
+    now = state[:4]
+    for _ in range(2):
+        now = lesson.joint_step(lesson.weight, 0.0, *now, 0.01, p)
+    ends = points_of(now[0], now[1], p.joints)[0]
+    line = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    apart = now[3][0] - now[3][1]
+    return ((apart - (apart @ line) * line, *momenta_of(*now, p), gaps_and_speeds(now, p.joints)[0]),
+            (np.zeros(3), *momenta_of(*state[:4], p), np.zeros((2, 3))))
+
+
+@random_law("The force of a joint gives its two points the same acceleration.",
+            "joint: largest error of its force [N]", EXACT)
+def force_of_a_joint(lesson, rng):
+    """Solve Newton's and Euler's equations of both bodies with the force as the only unknown.
+
+    a_point = F/m + α × r + ω × (ω × r),      I α = τ + r × F_joint − ω × I ω
+    The second body is free, or nothing moves it and it turns steadily.
+    """
+    d, heavy = rng.choice((2, 3)), rng.choice((0, 1)) * (1,)
+    state, p = random_bodies(lesson, rng, d, 2, heavy)
+    place = 0.5 * (state.x[0] + state.x[1]) + 0.1 * rng.normal(size=d)
+    p = lesson.make_joints(state, p, [0], [1], [place], 0.0)
+    F, tau = rng.normal(size=(2, d)), rng.normal(size=2 if d == 2 else (2, 3))
+    load = lambda t, x, q, v, omega, p: (F, tau)
+    forces = (lesson.joint_forces_2d if d == 2 else lesson.joint_forces)(load, 0.0, *state[:4], p)
+    r, spins, F, tau, I = (in_space(place - state.x), about_normal(state.omega), in_space(F), about_normal(tau),
+                           tensors(state.q, p))
+    A, c = np.zeros((3, 3)), np.zeros(3)
+    for i, sign in ((0, 1.0), (1, -1.0)):
+        lever, inv_I = np.cross(np.eye(3), r[i]), np.linalg.pinv(I[i])               # r × F is lever F
+        turning = inv_I @ (tau[i] - np.cross(spins[i], I[i] @ spins[i]))
+        c += sign * (p.inv_mass[i] * F[i] + np.cross(turning, r[i]) + np.cross(spins[i], np.cross(spins[i], r[i])))
+        A += p.inv_mass[i] * np.eye(3) + lever.T @ inv_I @ lever
+    return forces[0], np.linalg.solve(A[:d, :d], -c[:d])
+
+
+def landing_pair(lesson, rng):
+    """Return (PileState, JointedBodies, e, dt) of a disc that touches a floor and is joined to another body."""
+    e, dt, m, r = rng.uniform(0.2, 0.8), 1e-6, rng.uniform(0.5, 2.0, 2), 0.1
+    x = np.array([(0.3, r), (0.3 + rng.uniform(-0.5, 0.5), rng.uniform(0.5, 0.8))])
+    state, p = lesson.make_bodies_2d(x, rng.normal(size=2), m, rng.uniform(0.2, 0.5, 2), np.full((2, 2), r),
+                                     [(0.0, 1.0, 0.0)], np.zeros(2), rng.uniform(0.0, 0.5), 400, 0.01)
+    p = lesson.make_joints(state, p, [1], [0], [x[0] + rng.uniform(-0.3, 0.3, 2)], e)
+    v, omega = rng.normal(size=(3, 2)) * [(1.0,), (1.0,), (0.0,)], rng.normal(size=3) * [1.0, 1.0, 0.0]
+    v[:2, 1] -= 4.0
+    _, _, v, omega = lesson.joint_step_2d(lesson.weight, 0.0, *state[:2], v, omega, dt, p)
+    return state._replace(v=v, omega=omega), p, e, dt
+
+
+@random_law("A disc that is joined to another body leaves the floor with −e of its speed; the joint stays closed, and "
+            "the momenta change by the impulse of the floor.",
+            "joined disc, 0 < e < 1: largest error [m/s, kg m²/s, m, N s]", 1e-5)
+def joined_bodies_bounce(lesson, rng):
+    """Within 1 µs nothing moves by more than some 10 µm, of which the contact and its arm are wrong."""
+    state, p, e, dt = landing_pair(lesson, rng)
+    end = lesson.joint_contact_step_2d(lesson.weight, lesson.disc_bounds, lesson.round_contacts, 0.0, state, dt, p)
+    joint = lesson.joint_impulses_2d(lesson.weight, 0.0, state, end, dt, p)
+    J, place = np.sum(end.J, axis=0), end.contacts.p[0]
+    before, after = (np.concatenate(momenta_of(*now[:4], p)) for now in (state, end))
+    change = np.concatenate((in_space(J), np.cross(in_space(place), in_space(J))))
+    gap, _ = gaps_and_speeds(end[:4], p.joints)
+    arm = rotations(state.q)[1] @ in_space(p.joints.r_a[0])
+    return ((end.v[0, 1], after, gap, joint[0] * p.inv_mass[1],
+             np.cross(arm, in_space(joint[0]))[2] * p.inv_inertia[1]),
+            (-e * state.v[0, 1], before + change, np.zeros((1, 3)), end.v[1] - state.v[1],
+             end.omega[1] - state.omega[1]))
+
+
+@case("joints", "Joints in the plane and in space, and what judges a run", compiled=False)
+def joints(lesson, check):
+    """Compare steps with joints with conserved momenta, with reversed time and with Newton's and Euler's equations.
+
+    Trees of five bodies have their joints in any order; a body that nothing moves may move and turn all the same.  An
+    impulse acts on both points of a closed joint at one place, so it changes neither momentum.
+    """
+    check.laws(lesson, (judges_in_the_plane, work_of_driven_rows, parting_speeds, without_joined, joints_stay_closed,
+                        joints_keep_momenta, joints_are_reversible, hinge_in_space, force_of_a_joint,
+                        joined_bodies_bounce, residual_of_a_step, force_of_contacts, bound_of_the_overlap),
+               seed=33, times=10)
+
+
+# ---------------------------------------------------------------------------------------------- special steps
+
+def torque_load(F, tau):
+    """Return a load that is constant, with a torque."""
+    return lambda t, x, q, v, omega, p: (F, tau)
+
+
+@random_law("With mean velocities a fall, a turn and a slide come to a place that is exact.",
+            "mean velocities: largest error of the state [m, rad, m/s]", EXACT)
+def mean_velocities(lesson, rng):
+    """Throw one body with a torque, and let another slide on a floor with friction: x = v t − ½ μ g t²."""
+    mu, speed, dt = rng.uniform(0.1, 0.3), rng.uniform(2.0, 3.0), 0.02
+    state, p = lesson.make_bodies_2d([(0.0, 0.1), (3.0, 5.0)], [0.1, 0.2], [2.0, 0.5], [np.inf, 0.3],
+                                     np.full((2, 2), 0.1), [(0.0, 1.0, 0.0)], (0.0, -9.81), mu, 20, 0.01)
+    v, omega = np.array([(speed, 0.0), rng.normal(size=2), np.zeros(2)]), np.array([0.0, 1.5, 0.0])
+    F = np.array([(0.0, -19.62), (0.0, -4.905), (0.0, 0.0)])
+    now, a, T = state._replace(v=v, omega=omega), np.array([(-mu * 9.81, 0.0), (0.0, -9.81)]), 10 * dt
+    for n in range(10):
+        now = lesson.mean_contact_step_2d(torque_load(F, np.array([0.0, 0.6, 0.0])), lesson.disc_bounds,
+                                          lesson.round_contacts, n * dt, now, dt, p)
+    return ((now.x[:2], now.q[:2], now.v[:2]),
+            (state.x[:2] + T * v[:2] + 0.5 * T * T * a,
+             np.array([0.1, 0.2 + 1.5 * T + 0.5 * 2.0 * T * T]), v[:2] + T * a))
+
+
+@random_law("Friction against a moving floor takes the slip away, or as much of it as μ N dt can.",
+            "slip on a moving floor: largest error [m/s, rad/s]", EXACT)
+def slip_on_a_moving_floor(lesson, rng):
+    m, I, R, dt = rng.uniform((0.5, 0.01, 0.1, 0.01), (2.0, 0.1, 0.5, 0.1))
+    mu, g = rng.choice((0.0, 0.02, 50.0)), np.array([*rng.normal(size=2), rng.choice((-9.81, 2.0))])
+    ball = lesson.CarriedBall(m, np.full(3, I), R, mu, g, *np.zeros((3, 3)))
+    v, omega = rng.normal(size=(2, 3))
+    floor, r = np.append(rng.normal(size=2), 0.0), np.array([0.0, 0.0, -R])
+    slip = (v + np.cross(omega, r) + dt * g - floor) * [1.0, 1.0, 0.0]
+    K = np.eye(3) / m - np.cross(np.eye(3), r) @ np.cross(np.eye(3), r) / I
+    stick = -np.linalg.solve(K, slip) * [1.0, 1.0, 0.0]
+    J = min(1.0, mu * max(0.0, -m * g[2]) * dt / np.linalg.norm(stick)) * stick
+    return lesson.stop_slip(v, omega, floor, dt, ball), (v + J / m, omega + np.cross(r, J) / I)
+
+
+@random_law("All bodies turn by 2 atan(½ |ω| dt) about their ω.", "quaternions: largest error of the rotations [-]",
+            EXACT)
+def turns_of_all_bodies(lesson, rng):
+    q, omega, dt = random_quaternions(rng, 3), rng.normal(size=(3, 3)), rng.uniform(0.05, 0.5)
+    truth = [turned_by(spin, dt) @ R for spin, R in zip(omega, rotations(q), strict=True)]
+    return rotations(lesson.turn_quaternions(q, omega, dt)), np.array(truth)
+
+
+def two_boxes(rng):
+    """Return (x (2, 3), q (2, 4), half (2, 3)) of boxes that are near each other."""
+    half = rng.uniform(0.3, 0.6, (2, 3))
+    way = rng.normal(size=3)
+    return np.array([np.zeros(3), rng.uniform(0.7, 1.1) * way / np.linalg.norm(way)]), random_quaternions(rng, 2), half
+
+
+@random_law("Two boxes that collide in space, with friction, keep both momenta and lose energy.",
+            "two boxes: largest change [kg m/s, kg m²/s], and gain of energy [J]", EXACT)
+def boxes_collide(lesson, rng):
+    """Let two boxes meet: impulses act at one place at the beginning of the step.
+
+    Each has the same moment about all its axes, so its turn in the step does not change I ω.
+    """
+    m, moment, dt = rng.uniform(0.5, 2.0, 2), rng.uniform(0.1, 0.5, 2), 1e-3
+    while True:
+        x, q, half = two_boxes(rng)
+        state, p = lesson.make_bodies(x, q, m, np.repeat(moment[:, None], 3, axis=1), half, [], np.zeros(3), 0.4, 20,
+                                      0.02)
+        state = state._replace(v=2.0 * np.array([x[1], -x[1]]), omega=rng.normal(size=(2, 3)))
+        end = lesson.contact_step(lesson.weight, lesson.box_bounds, lesson.box_contacts, 0.0, state, dt, p)
+        if np.any(end.J):
+            break
+    energy = lambda now: 0.5 * np.sum(m[:, None] * now.v**2 + moment[:, None] * now.omega**2)
+    return ((*momenta_of(*end[:4], p), max(0.0, energy(end) - energy(state))), (*momenta_of(*state[:4], p), 0.0))
+
+
+@random_law("A body of infinite mass goes on as it moves, and what it meets gets its speed.",
+            "moving body of infinite mass: largest error of the states [m, rad, m/s]", EXACT)
+def infinite_mass_moves(lesson, rng):
+    """Let a disc or a ball rest in the way of another one that nothing moves, and that turns; nothing rubs."""
+    d, dt = rng.choice((2, 3)), 0.01
+    n = rng.normal(size=d)
+    n /= np.linalg.norm(n)
+    state, p = random_bodies(lesson, rng, d, 2, heavy=(0,))
+    p.inv_inertia[1] = 2.0                                           # about all axes: it keeps its ω
+    state = state._replace(x=np.array([0.0 * n, 0.2 * n]), v=np.array([1.5 * n, 0.0 * n]))
+    step, bounds = (lesson.contact_step_2d, lesson.disc_bounds) if d == 2 else (lesson.contact_step, lesson.ball_bounds)
+    end = step(lesson.weight, bounds, lesson.round_contacts, 0.0, state, dt, p._replace(mu=0.0))
+    turned = rotations(state.q + dt * state.omega) if d == 2 else np.array(
+        [turned_by(w, dt) @ R for w, R in zip(state.omega, rotations(state.q), strict=True)])
+    v = np.array([1.5 * n, 1.5 * n])
+    return (end.x, rotations(end.q), end.v, end.omega), (state.x + dt * v, turned, v, state.omega)
+
+
+def flies_through(lesson, rng, kind):
+    """Return (state, step, bounds, contacts, Bodies) of a thin plate in space that flies at another one, or at a plane.
+
+    It is tilted a little and begins outside the margin.
+    """
+    half, thin, dt = np.full((2, 3), 0.5), 0.01, 0.01
+    half[:, 2] = thin
+    q = np.array([(1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)])
+    x, m = np.array([(0.0, 0.0, 2.6 * thin), (0.0, 0.0, 0.0)]), [1.0, np.inf]
+    planes = [(0.0, 0.0, 1.0, thin)] if kind == "plane" else []
+    bodies = 1 if kind == "plane" else 2
+    moments = np.array([(0.1, 0.1, 0.1), (np.inf,) * 3])[:bodies]
+    state, p = lesson.make_bodies(x[:bodies], q[:bodies], m[:bodies], moments, half[:bodies], planes, np.zeros(3), 0.0,
+                                  10, 0.2 * thin)
+    v = np.zeros((bodies + len(planes), 3))
+    v[0, 2] = -rng.uniform(6.0, 20.0) * thin / dt
+    return state._replace(v=v), p, dt
+
+
+@random_law("In space a plate that passes another one, or a plane, within a step ends in an error; one that goes along "
+            "it does not.", "plates: wrong answers [-]", 0.0)
+def plates_that_pass(lesson, rng):
+    found = []
+    for kind, along in (("plate", False), ("plane", False), ("plate", True), ("plane", True)):
+        state, p, dt = flies_through(lesson, rng, kind)
+        if along:
+            state = state._replace(v=np.roll(state.v, 1, axis=1))
+        try:
+            lesson.advance_contact(lesson.contact_step, lesson.weight, lesson.box_bounds, lesson.box_contacts, 0.0,
+                                   state, dt, 1, p)
+            found.append(0.0)
+        except Diverged:
+            found.append(1.0)
+    return np.array(found), np.array([1.0, 1.0, 0.0, 0.0])
+
+
+@random_law("Zeros, extrema and values of a polynomial of degree 5 are those of its coefficients.",
+            "polynomial: largest error of the times and values [s, -]", 1e-7)
+def polynomials(lesson, rng):
+    """Take roots that are clear of each other and of the ends, in times from 0 to 2 s."""
+    while True:
+        p = np.poly1d(rng.normal(size=6))
+        roots = {k: np.sort([r.real for r in p.deriv(k).roots if abs(r.imag) < 1e-9 and 0.0 < r.real < 2.0])
+                 for k in (0, 1)}
+        at = p.deriv()(roots[0]), p.deriv(2)(roots[1])
+        if all(abs(slope) > 0.3 for one in at for slope in one) and len(roots[1]) > 0:
+            break
+    ts = np.linspace(0.0, 2.0, 41)
+    highest, rising, between = at[1] < 0.0, at[0] > 0.0, rng.uniform(0.0, 2.0, 5)
+    found = (zeros(ts, p(ts)), zeros(ts, p(ts), 1), *extrema(ts, p(ts)), *extrema(ts, p(ts), 1),
+             *extrema(ts, p(ts), -1), value_at(ts, p(ts), between))
+    truth = (roots[0], roots[0][rising], roots[1], p(roots[1]), roots[1][highest], p(roots[1][highest]),
+             roots[1][~highest], p(roots[1][~highest]), p(between))
+    counts = tuple(np.array([len(one) for one in sets], float) for sets in (found, truth))
+    same = np.array_equal(*counts)
+    return (counts[0], *(found if same else truth)), (counts[1], *truth)
+
+
+@case("special-steps", "Driven floors, bodies of infinite mass, collisions of boxes, events", compiled=False)
+def special_steps(lesson, check):
+    """Compare what only some scenes use with closed forms and conserved quantities."""
+    check.laws(lesson, (mean_velocities, slip_on_a_moving_floor, turns_of_all_bodies, boxes_collide,
+                        infinite_mass_moves, plates_that_pass, polynomials), seed=34, times=10)
+
+
+# ---------------------------------------------------------------------------------------------- a loop from a Model
+
+DOWN = (0.0, -9.81)          # gravity [m/s²]
+FLOOR = model.Body((0.0, 0.0), shape=shapes.HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+
+
+def springy(rng):
+    """Return (Model, load) of three bodies that turn and one that nothing moves.
+
+    They have springs at their rims, drag, and a load that depends on where they are and how they turn.
+    """
+    bodies = [model.Body(tuple(x), m, q=q, v=tuple(v), omega=w, inertia=0.4) for x, m, q, v, w in zip(
+        2.0 * rng.normal(size=(3, 2)), rng.uniform(0.5, 2.0, 3), *rng.normal(size=(1, 3)), rng.normal(size=(3, 2)),
+        rng.normal(size=3), strict=True)]
+    bodies.insert(1, model.Body((4.0, 1.0), omega=0.7, v=(0.1, 0.2)))
+    ends = (0, 1), (2, model.WORLD), (3, 0), (1, 2)
+    springs = [model.Spring(a, b, *map(tuple, 0.3 * rng.normal(size=(2, 2))), *rng.uniform(0.5, 2.0, 3))
+               for a, b in ends]
+    still, twist = rng.normal(size=(4, 2)), rng.normal(size=4)
+    push = lambda t, x, q, v, omega: (still + 0.1 * x, twist + 0.2 * omega)
+    loads = [model.Drag(0.3), model.Drag(0.2), push]
+    return model.make_model(bodies, rng.normal(size=2), springs=springs, loads=loads), push
+
+
+def pulls_of(scene, push):
+    """Return (F (n, 3) [N], τ (n, 3) [N m], energy of the springs [J]) of all that acts on a Model, by vectors."""
+    state = model.start_of(scene)
+    x, v, spins, turn = in_space(state.x), in_space(state.v), about_normal(state.omega), rotations(state.q)
+    free = np.array([np.isfinite(body.m) for body in scene.bodies])[:, None]
+    m = np.array([body.m if np.isfinite(body.m) else 0.0 for body in scene.bodies])[:, None]
+    more, twist = push(0.0, *state)
+    F, tau, energy = in_space(more), about_normal(twist), 0.0
+    F = F + m * in_space(scene.gravity) - 0.5 * free * v
+    for s in scene.springs:
+        arms = [in_space(np.array(place)) if k == model.WORLD else turn[k] @ in_space(np.array(place))
+                for k, place in ((s.a, s.place_a), (s.b, s.place_b))]
+        at = [arm if k == model.WORLD else x[k] + arm for k, arm in zip((s.a, s.b), arms, strict=True)]
+        u = [np.zeros(3) if k == model.WORLD else v[k] + np.cross(spins[k], arm)
+             for k, arm in zip((s.a, s.b), arms, strict=True)]
+        length = np.linalg.norm(at[0] - at[1])
+        along = (at[0] - at[1]) / length
+        force = -(s.k * (length - s.rest) + s.c * along @ (u[0] - u[1])) * along
+        energy += 0.5 * s.k * (length - s.rest) ** 2
+        for k, arm, pull in ((s.a, arms[0], force), (s.b, arms[1], -force)):
+            if k != model.WORLD:
+                F[k], tau[k] = F[k] + pull, tau[k] + np.cross(arm, pull)
+    return F, tau, energy
+
+
+@random_law("A loop has the forces and torques of gravity, springs, dampers and drag of its Model.",
+            "Model: largest error of loads and energy [N, N m, J]", EXACT)
+def loads_of_a_model(lesson, rng):
+    """Take only what acts on bodies that can move: the others have no use for a force."""
+    scene, push = springy(rng)
+    loop, (F, tau, stored) = lesson.compose(scene), pulls_of(scene, push)
+    free = [k for k, body in enumerate(scene.bodies) if np.isfinite(body.m)]
+    got = loop.load(0.0, *loop.state[:4], loop.p)
+    own = model.loads_at(scene, 0.0, model.start_of(scene))
+    gravity = np.array([scene.bodies[k].m * np.array(scene.gravity) for k in free])
+    energy = stored + sum(b.m * (0.5 * np.dot(b.v, b.v) - np.dot(scene.gravity, b.x)) + 0.2 * b.omega**2
+                          for b in (scene.bodies[k] for k in free))
+    return ((got[0][loop.row[free]], got[1][loop.row[free]], own[0][free] + gravity, own[1][free],
+             model.model_energy(scene, model.start_of(scene))),
+            (F[free, :2], tau[free, 2], F[free, :2], tau[free, 2], energy))
+
+
+@random_law("In space the energy of a Model is that of its tensors, and a spring pulls between its points.",
+            "Model in space: largest error of energy and loads [J, N, N m]", EXACT)
+def model_in_space(lesson, rng):
+    q, places = random_quaternions(rng, 2), 0.3 * rng.normal(size=(2, 3))
+    v, omega, x = rng.normal(size=(3, 2, 3))
+    moments = rng.uniform(1.0, 1.9, (2, 3))
+    bodies = [model.Body(tuple(x[i]), 2.0, q=tuple(q[i]), v=tuple(v[i]), omega=tuple(omega[i]),
+                         inertia=tuple(moments[i])) for i in range(2)]
+    spring = model.Spring(0, 1, *map(tuple, places), 0.5, 3.0, 0.7)
+    scene = model.make_model(bodies, (0.0, 0.0, -9.81), springs=[spring])
+    R = rotations(q)
+    arms = [R[i] @ places[i] for i in range(2)]
+    way, u = x[0] + arms[0] - x[1] - arms[1], v[0] + np.cross(omega[0], arms[0]) - v[1] - np.cross(omega[1], arms[1])
+    length = np.linalg.norm(way)
+    pull = -(3.0 * (length - 0.5) + 0.7 * u @ way / length) * way / length
+    energy = 1.5 * (length - 0.5) ** 2 + sum(
+        v[i] @ v[i] + 19.62 * x[i, 2] + 0.5 * omega[i] @ R[i] @ np.diag(moments[i]) @ R[i].T @ omega[i] for i in (0, 1))
+    state = model.start_of(scene)
+    point = rng.normal(size=3)
+    return ((model.model_energy(scene, state), *model.loads_at(scene, 0.0, state),
+             model.world_place(state, 1, model.own_place(scene, 1, point))),
+            (energy, np.array([pull, -pull]), np.array([np.cross(arms[0], pull), np.cross(arms[1], -pull)]), point))
+
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+def quadrature(f, half):
+    """Return the integral of f from −half to half, where f falls to 0 as a root does at the ends: z = half sin s."""
+    s = 0.5 * np.pi * NODES
+    return np.sum(WEIGHTS * f(half * np.sin(s)) * half * np.cos(s) * 0.5 * np.pi)
+
+
+@random_law("Moments of inertia of shapes are those of their slices, those of a triangle are m Σ side²/36.",
+            "shapes: largest error of the moments over m [m²]", 1e-8)
+def moments_of_shapes(lesson, rng):
+    h, r, a, b, c = rng.uniform(0.2, 1.0, 5)
+    radius = lambda z: np.sqrt(np.maximum(r * r - np.maximum(np.abs(z) - h, 0.0) ** 2, 0.0))
+    parts = lambda f: sum(quadrature(lambda z, a=a, b=b: f(0.5 * (a + b) + z), 0.5 * (b - a))
+                          for a, b in ((-h - r, -h), (-h, h), (h, h + r)))
+    area, volume = parts(lambda z: 2.0 * radius(z)), parts(lambda z: np.pi * radius(z) ** 2)
+    plane = parts(lambda z: 2.0 * radius(z) ** 3 / 3.0 + 2.0 * radius(z) * z * z) / area
+    along = parts(lambda z: 0.5 * np.pi * radius(z) ** 4) / volume
+    across = parts(lambda z: np.pi * radius(z) ** 2 * (0.25 * radius(z) ** 2 + z * z)) / volume
+    triangle = rng.normal(size=(3, 2))
+    triangle = triangle if np.linalg.det(triangle[1:] - triangle[0]) > 0.0 else triangle[::-1]
+    centre = np.mean(triangle, axis=0)
+    sides = np.sum((np.roll(triangle, -1, axis=0) - triangle) ** 2)
+    of = lambda shape, d: shapes.moments_of_shape(shape, 1.0, d)
+    return ((of(shapes.Capsule(h, r), 2), of(shapes.Capsule(h, r), 3), of(shapes.Box((a, b)), 2),
+             of(shapes.Box((a, b, c)), 3), of(shapes.Ball(r), 2), of(shapes.Ball(r), 3),
+             of(shapes.Polygon(triangle - centre), 2), shapes.polygon_centre(triangle)),
+            (plane, np.array((along, across, across)), (a * a + b * b) / 3.0,
+             np.array((b * b + c * c, a * a + c * c, a * a + b * b)) / 3.0, 0.5 * r * r, np.full(3, 0.4 * r * r),
+             sides / 36.0, centre))
+
+
+# ---------------------------------------------------------------------------------------------- parts of that loop
+
+def rubbing(lesson, rng):
+    """Return (state with contacts, record of the parts, arms, contacts) of four bodies with six contacts."""
+    state, p = random_bodies(lesson, rng, 2, 4)
+    contacts = random_contacts(lesson, rng, 4, 6)
+    state = state._replace(contacts=contacts, J=rng.normal(size=(6, 2)))
+    record = SimpleNamespace(inv_mass=p.inv_mass, inv_inertia=p.inv_inertia, e_of=rng.choice((0.0, 0.5, 0.9), 4),
+                             mu_of=rng.choice((0.0, 0.4, 1.5), 4), gravity=rng.normal(size=2), slop=0.02, sweeps=200,
+                             settled=1e-12)
+    return state, record, lesson.arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), contacts
+
+
+@random_law("Each pair has its restitution e_a e_b; what is slower than two steps of gravity rests; an open contact "
+            "may close.", "pairs: largest error of the speeds of parting [m/s]", EXACT)
+def aims_of_pairs(lesson, rng):
+    state, p, arms, contacts = rubbing(lesson, rng)
+    dt, truth = rng.uniform(0.01, 0.5), []
+    for k, (a, b, n) in enumerate(zip(*contacts[1:4], strict=True)):
+        e, u_n, gap = p.e_of[a] * p.e_of[b], speed_at(state, contacts, k)[0] @ n, contacts.gap[k]
+        bounces = e > 0.0 and -u_n > 2.0 * dt * np.linalg.norm(p.gravity)
+        truth.append((-np.inf if gap > 0.0 else -e * u_n) if bounces else (-gap / dt if gap > 0.0 else 0.0))
+    return lesson.parting_aims(contacts, state.v, state.omega, arms, dt, p), np.array(truth)
+
+
+@random_law("A sweep over pairs limits friction by μ_a μ_b of the new J_n; without friction and rotation no arm "
+            "counts.", "pairs: largest error after a sweep [m/s, rad/s, N s]", EXACT)
+def sweeps_of_pairs(lesson, rng):
+    state, p, arms, contacts = rubbing(lesson, rng)
+    aim = rng.normal(size=6)
+    rub = swept_by_hand(state, p, contacts, aim, p.mu_of[contacts.a] * p.mu_of[contacts.b])
+    got = lesson.sweep_pairs_2d(state.v, state.omega, state.J, aim, 0.0 * aim, contacts, arms, p)
+    still = SimpleNamespace(**{**vars(p), "inv_inertia": 0.0 * p.inv_inertia})
+    state = state._replace(J=np.abs(rng.normal(size=(6, 1))) * contacts.n, omega=0.0 * state.omega)
+    smooth = swept_by_hand(state, still, contacts, aim, np.zeros(6))
+    centres = lesson.sweep_centres_2d(state.v, state.omega, state.J, aim, 0.0 * aim, contacts, arms, still)
+    return (*got, *centres), (*rub, *smooth)
+
+
+@random_law("A fifth of each overlap beyond the slop goes per step, and velocities stay.",
+            "overlap: largest error of places, angles and velocities [m, rad, m/s]", EXACT)
+def overlap_goes(lesson, rng):
+    """Let a single contact overlap by more or by less than the slop."""
+    state, p, _, _ = rubbing(lesson, rng)
+    gap, dt, n = -rng.choice((0.5, 3.0)) * p.slop, rng.uniform(0.01, 0.1), rng.normal(size=2)
+    n /= np.linalg.norm(n)
+    contacts = lesson.ContactSet(np.array([0, 0, 1, 1, 1]), np.array([1]), np.array([3]), n[None],
+                                 rng.normal(size=(1, 2)), np.array([gap]))
+    state, away = state._replace(contacts=contacts, J=np.zeros((1, 2))), 0.2 * max(0.0, -gap - p.slop)
+    arms = speed_at(state, contacts, 0)[1]
+    levers, k_n = [r[0] * n[1] - r[1] * n[0] for r in arms], inverse_mass_along(p, (1, 3), arms, n)
+    x, q = state.x.copy(), state.q.copy()
+    for i, lever, sign in ((1, levers[0], 1.0), (3, levers[1], -1.0)):
+        x[i] += sign * p.inv_mass[i] * away / k_n * n
+        q[i] += sign * p.inv_inertia[i] * away / k_n * lever
+    end = lesson.separate(None, None, None, 0.0, state, dt, p)
+    return (*end[:4], end.contacts.gap), (x, q, state.v, state.omega, np.array([gap + away]))
+
+
+@case("loop-from-a-model", "A loop that is composed from a Model", compiled=False)
+def loop_from_a_model(lesson, check):
+    """Compare the loads, parts and sweeps of a composed loop with vectors, and its motions with closed forms.
+
+    A spring pulls −(k (l − l₀) + c l̇) along its line, drag −k v.  Parts: see each law.
+    """
+    check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
+                        overlap_goes), seed=35, times=10)
+    right_parts(lesson, check)
+    pairs_of_a_model(check)
+    composed_motions(lesson, check)
+
+
+def ball(x, **more):
+    """Return a disc of 10 cm and 1 kg."""
+    return model.Body(x, 1.0, shapes.Ball(0.1), **more)
+
+
+MANY = (*(ball((0.5 * k, 0.13), mu=0.5) for k in range(8)), ball((3.5, 0.36), mu=0.5))       # one above another
+ROD = model.Body((0.0, 1.0), 1.0, inertia=0.1)
+FEEL = ["detect_few", "separate"]
+COMPOSITIONS = (             # bodies, gravity, joints, the parts of their loop in order
+    ((model.Body((0.0, 1.0), 1.0),), DOWN, (), ["accelerate", "move"]),
+    ((model.Body((0.0, 1.0), 1.0),), (0.0, 0.0), (), ["move"]),
+    ((model.Body((0.0, 1.0), 1.0, omega=1.0),), DOWN, (), ["accelerate", "move_and_turn"]),
+    ((ROD,), DOWN, (model.Hinge(0, model.WORLD, (0.0, 0.0)),),
+     ["accelerate_half", "close", "move_and_turn", "accelerate_rest", "hold"]),
+    ((ball((0.0, 1.0)), FLOOR), DOWN, (), ["accelerate", *FEEL, "contact_impulses_of_centres", "move"]),
+    ((ball((0.0, 1.0), mu=0.5), FLOOR), DOWN, (), ["accelerate", *FEEL, "contact_impulses", "move_and_turn"]),
+    ((ball((0.0, 1.0), mu=0.5), ball((1.0, 1.0), mu=0.2), FLOOR), (0.0, 0.0), (),
+     [*FEEL, "contact_impulses_of_pairs", "move_and_turn"]),
+    ((*MANY, FLOOR), DOWN, (), ["accelerate", "detect_many", "separate", "contact_impulses_of_pairs", "move_and_turn"]),
+    ((*MANY, FLOOR), DOWN, (model.Hinge(0, 1, (0.25, 0.13)),),
+     ["accelerate", "detect_unjoined", "separate", "contact_impulses_with_joints", "move_and_turn"]),
+)
+
+
+def right_parts(lesson, check):
+    """Compose loops of Models that need different parts."""
+    right = 0
+    for bodies, gravity, joints, parts in COMPOSITIONS:
+        loop = lesson.compose(model.make_model(bodies, gravity, joints))
+        right += [part.step.__name__ for part in loop.parts] == parts
+    check.count("A loop has the parts that its Model needs, in the order of the lecture, and no others.",
+                "Models whose loop has the right parts", right, len(COMPOSITIONS), "loops have the right parts.")
+
+
+def pairs_of_a_model(check):
+    """Compare what pairs of bodies do with the products of their numbers; joined ones and two supports do not touch."""
+    bodies = [ball((0.0, 1.0), mu=0.5, e=0.4), ball((1.0, 1.0), mu=np.inf, e=0.5), ball((2.0, 1.0)), FLOOR, FLOOR]
+    scene = model.make_model(bodies, DOWN, [model.Hinge(2, 0, (1.0, 1.0))])
+    found = [model.touching_pairs(scene) == [(0, 1), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 3), (2, 4)],
+             model.friction_of(scene, 0, 3) == 0.5, model.friction_of(scene, 0, 1) == np.inf,
+             model.friction_of(scene, 1, 2) == 0.0, model.restitution_of(scene, 0, 1) == 0.2]
+    check.count("A pair has μ_a μ_b and e_a e_b; nothing rubs on a body without friction.", "facts about pairs",
+                sum(found), len(found), "facts are right.")
+
+
+def composed_run(lesson, bodies, gravity, joints, dt, steps, t=0.0, **more):
+    """Return the State of all bodies after so many steps of the composed loop from t on; more: of the Model."""
+    loop = lesson.compose(model.make_model(bodies, gravity, joints, **more), lesson.Settings(settled=ROUND_OFF))
+    return lesson.state_of(loop, lesson.run_parts(loop, t, loop.state, dt, steps))
+
+
+def composed_motions(lesson, check):
+    """Run composed loops whose end has a closed form.
+
+    A block on a slope of angle θ slides at g (sin θ − μ cos θ).  Balls that meet part with e_a e_b of their speed.  A
+    weld keeps angles and distance.  Joined bodies in flight keep both momenta.
+    """
+    angle, dt, g = 0.5, 0.01, 9.81
+    n, along = np.array([-np.sin(angle), np.cos(angle)]), np.array([np.cos(angle), np.sin(angle)])
+    slope = model.Body((0.0, 0.0), shape=shapes.HalfSpace(tuple(n)), mu=1.0, e=1.0)
+    block = lambda at, mu: model.Body(tuple(at * along + 0.1 * n), 2.0, shapes.Box((0.2, 0.1)), mu=mu, q=angle)
+    for mus in ((0.3, 0.3), (0.1, 0.4)):
+        end = composed_run(lesson, [block(0.0, mus[0]), block(3.0, mus[1]), slope], DOWN, (), dt, 20)
+        speeds = [-v @ along - 20 * dt * g * (np.sin(angle) - mu * np.cos(angle))
+                  for v, mu in zip(end.v[:2], mus, strict=True)]
+        check.agree("Blocks slide at g (sin θ − μ cos θ), each with its own μ.",
+                    f"μ = {mus[0]:g} and {mus[1]:g}: error of the speeds [m/s]", np.max(np.abs(speeds)), EXACT)
+    balls = [ball((0.0, 0.0), v=(1.0, 0.0), e=0.8), ball((0.3, 0.0), e=0.5)._replace(m=3.0)]
+    v = composed_run(lesson, balls, (0.0, 0.0), (), dt, 30).v
+    check.agree("Two balls part with e_a e_b of the speed with which they meet, and keep their momentum.",
+                "error of the velocities after an impact [m/s]",
+                np.max(np.abs(v[:, 0] - ((1.0 - 3.0 * 0.4) / 4.0, (1.0 + 0.4) / 4.0))), EXACT)
+    swing = lambda t, x, q, v, omega: (np.cos(t) * np.ones((1, 2)), np.sin(t) * np.ones(1))
+    end = composed_run(lesson, [model.Body((0.0, 0.0), 2.0, inertia=0.5)], (0.0, 0.0), (), dt, 5, t=0.4, loads=[swing])
+    times = 0.4 + dt * np.arange(5)
+    check.agree("Each step of a composed loop takes the load at its own time.", "error of v and ω [m/s, rad/s]",
+                np.max(np.abs((*(end.v[0] - 0.5 * dt * np.sum(np.cos(times))),
+                               end.omega[0] - 2.0 * dt * np.sum(np.sin(times))))), EXACT)
+    joined_motions(lesson, check)
+    composed_supports(lesson, check)
+
+
+def swing(theta, T, steps=400):
+    """Return the angle [rad] of a pendulum of 1 kg, 1 m and 0.1 kg m², released at theta, by Runge–Kutta."""
+    law = lambda y: np.array([y[1], -9.81 / 1.1 * np.sin(y[0])])
+    y, h = np.array([theta, 0.0]), T / steps
+    for _ in range(steps):
+        a = law(y)
+        b = law(y + 0.5 * h * a)
+        c = law(y + 0.5 * h * b)
+        y = y + h / 6.0 * (a + 2.0 * b + 2.0 * c + law(y + h * c))
+    return y[0]
+
+
+def composed_supports(lesson, check):
+    """Swing a pendulum, roll a disc down a slope, and drop nine discs, also with a hinge between two."""
+    theta, T, turned = 1.0, 0.8, []
+    rod = model.Body((np.sin(theta), -np.cos(theta)), 1.0, q=theta, inertia=0.1)
+    for steps in (40, 80):
+        end = composed_run(lesson, [rod], DOWN, [model.Hinge(0, model.WORLD, (0.0, 0.0))], T / steps, steps)
+        turned.append(end.q[0] - swing(theta, T))
+    check("A composed pendulum swings by the law of a pendulum, with an error of order 2.",
+          "order of the angle of a composed pendulum [-]", law=2.0, found=np.log2(turned[0] / turned[1]), within=0.1,
+          saw=f"With 80 steps the angle errs by {turned[1]:.1e} rad.")
+    angle, dt, k = 0.3, 0.01, 20
+    n, along = np.array([-np.sin(angle), np.cos(angle)]), np.array([np.cos(angle), np.sin(angle)])
+    slope = model.Body((0.0, 0.0), shape=shapes.HalfSpace(tuple(n)), mu=1.0, e=1.0)
+    end = composed_run(lesson, [ball(tuple(0.1 * n), mu=0.5), slope], DOWN, (), dt, k)
+    a = 9.81 * np.sin(angle) / 1.5
+    check.agree("A composed disc rolls down a slope at ⅔ g sin θ.", "error of its way, speed and angle [m, m/s, rad]",
+                np.max(np.abs((end.x[0] @ along + 0.5 * k * (k + 1) * a * dt * dt, end.v[0] @ along + k * a * dt,
+                               end.q[0] - 5.0 * k * (k + 1) * a * dt * dt))), EXACT)
+    for joints in ((), [model.Hinge(0, 1, (0.25, 0.13))]):
+        end = composed_run(lesson, (*MANY, FLOOR), DOWN, joints, dt, 30)
+        heights = np.append(np.full(8, 0.1), 0.3)
+        check.agree("Nine discs that fall come to rest, one of them on another, also if a hinge joins two.",
+                    f"{len(joints)} joints: error of the heights, and velocities [m, m/s]",
+                    max(np.max(np.abs(end.x[:9, 1] - heights)), np.max(np.abs(end.v))), EXACT)
+
+
+def joined_motions(lesson, check):
+    """Let a weld and a hinge fly, and a hinged pair fall on a floor."""
+    pair = [model.Body((0.0, 1.0), 1.0, omega=2.0, inertia=0.1), model.Body((0.6, 1.2), 2.0, v=(0.3, 1.0), inertia=0.2)]
+    m, I, place, dt = np.array([1.0, 2.0]), np.array([0.1, 0.2]), (0.3, 1.0), 0.01
+    L = lambda s: np.sum(m * (s.x[:, 0] * s.v[:, 1] - s.x[:, 1] * s.v[:, 0]) + I * s.omega)
+    begin = model.start_of(model.make_model(pair, (0.0, 0.0)))
+    for joint in (model.Hinge(0, 1, place), model.Weld(0, 1, place)):
+        end = composed_run(lesson, pair, (0.0, 0.0), [joint], dt, 20)
+        R = rotations(end.q)[:, :2, :2]
+        gap = end.x[0] + R[0] @ (np.array(place) - begin.x[0]) - end.x[1] - R[1] @ (np.array(place) - begin.x[1])
+        turned = end.q[0] - end.q[1] if isinstance(joint, model.Weld) else 0.0
+        check.agree("Joined bodies keep both momenta in flight, a hinge its place, and a weld the angle between them.",
+                    f"{type(joint).__name__}: error of momenta, place and angle [kg m/s, kg m²/s, m, rad]",
+                    np.max(np.abs([*(m @ end.v - m @ begin.v), L(end) - L(begin), *gap, turned])), EXACT)
+    end = composed_run(lesson, [ball((0.0, 0.1), mu=0.5), ball((0.6, 0.1), mu=0.5), FLOOR], DOWN,
+                       [model.Hinge(0, 1, (0.3, 0.1))], dt, 20)
+    check.agree("Two joined discs stay at rest on a floor.", "error of places and velocities [m, m/s]",
+                np.max(np.abs([*(end.x[:2] - [(0.0, 0.1), (0.6, 0.1)]).ravel(), *end.v.ravel()])), EXACT)
