@@ -15,6 +15,7 @@ from ..methods import DISCRETE, GYROSCOPIC, PENALTY, RATTLE, ROLLING, SLIDING, S
 from . import timing
 from .accuracy import relative, run_to_end
 from .compilation import compilation
+from .exams import exam_of
 from .selection import select, with_overrides
 from .switches import engine_parts
 from .timing import SAME, Timed, interleaved, time_ours
@@ -299,5 +300,6 @@ def times(name, plan, result):
     timed = timing.times(name, plan, result)
     full = not (plan.quick or plan.most_steps)
     return {**timed, "left_out": jsonable(left_out(name, plan, result)),
+            "exam": None if plan.most_steps else jsonable(exam_of(selection, p)),
             "engine_parts": engine_parts(selection, p) if full else [],
             "compilation": compilation(selection, p, timed["races"]) if full else None}
