@@ -152,7 +152,7 @@ class Exam(NamedTuple):
     steps: tuple             # numbers of steps over this duration, coarse to fine; multiples of `outputs`
     measure: Callable        # (what is observed at all outputs (outputs, …), the truth there) → the organisers' error
     unit: str                # what that error is, for people
-    grade: Callable          # (error) → the organisers' class of it, for people; "" for none
+    grade: Callable | None   # (error) → the organisers' class of it, for people, "" for none; None: they have none
     enough: float            # an error at which no finer steps are taken
     gives_up: dict           # {Method or Product: what it cannot do, or leaves to others, in a sentence}
     published: tuple = ()    # ((who, result), …), for people

@@ -43,7 +43,8 @@ def copied(results):
 def files(results, stability):
     """Return the names of all files of a report."""
     always = "index.html", "report.json", "coverage.html", "left_out.html"
-    return {*always, *(["stability.html"] if stability else []), *(["exams.html"] if exams.of(results) else []), *copied(results), *tables.names(results, stability),
+    more = [*(["stability.html"] if stability else []), *(["exams.html"] if exams.of(results) else [])]
+    return {*always, *more, *copied(results), *tables.names(results, stability),
             *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
             *(name for _, name, _, _ in pictures(results, stability))}
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solutions.simulator import make_bodies_2d, make_joints
+from solutions.simulator import make_bodies, make_bodies_2d, make_joints
 from solutions.support.model import WORLD, Body, Hinge, make_model
 
 SIZE = 0.01                  # half size of a body that touches nothing [m]
@@ -12,6 +12,13 @@ def joined_2d(made, gravity):
     """Return (x, q, v, ω, JointedBodies) of a Mechanism in the plane; the last body is the world."""
     state, rows = make_bodies_2d(made.x, made.q, made.m, made.inertia, np.full(made.x.shape, SIZE), np.zeros((0, 3)),
                                  gravity, 0.0, 1, SIZE)
+    return state.x, state.q, made.v, made.omega, make_joints(state, rows, made.a, made.b, made.places, 0.0)
+
+
+def joined_3d(made, gravity):
+    """Return (x, q, v, ω, JointedBodies) of a Mechanism in space; two points on the axis of a hinge are two joints."""
+    state, rows = make_bodies(made.x, made.q, made.m, made.inertia, np.full(made.x.shape, SIZE), np.zeros((0, 4)),
+                              gravity, 0.0, 1, SIZE)
     return state.x, state.q, made.v, made.omega, make_joints(state, rows, made.a, made.b, made.places, 0.0)
 
 
