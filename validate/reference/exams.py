@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from . import turns
-from .mechanisms import EDGES, FIXED, REST, STIFFNESS, THICK, TORQUE, andrews, bricard_state
+from .mechanisms import EDGES, FIXED, REST, STIFFNESS, THICK, TORQUE, andrews, bricard, bricard_state
 from .schemes import ErrorLaw
 
 RTOL, ATOL = 1e-12, 1e-13
@@ -92,14 +92,16 @@ def squeezer_slope(m, inertia, C, E):
 
 
 @cache
-def squeezer_motion(T):
+def squeezer_motion(crank, T):
     """Return SciPy's dense solution (t) → angles and rates of the bodies of Andrews' mechanism, by DOP853 at 1e-12.
+
+    crank: the moment of the body that is driven [kg m²].
 
     Seven angles with three closed loops: another formulation than hinges between bodies in the plane.
     """
     made = andrews()
     C, E = squeezer()
-    slope = squeezer_slope(made.m[:-1], made.inertia[:-1], C, E)
+    slope = squeezer_slope(made.m[:-1], np.concatenate(([crank], made.inertia[1:-1])), C, E)
     start = np.concatenate((made.q[:-1], np.zeros(7)))
     return solve_ivp(slope, (0.0, T), start, "DOP853", rtol=RTOL, atol=ATOL, dense_output=True).sol
 
@@ -413,3 +415,76 @@ def bricard_angle(g, T):
         return y[1], -(0.5 * I.imag * y[1] ** 2 + V.imag) / 1e-30 / I.real
     return solve_ivp(slope, (0.0, T), (np.arctan(np.sqrt(2.0)), 0.0), "DOP853", rtol=RTOL, atol=ATOL,
                      dense_output=True).sol
+
+
+def rattle_3d(made, gravity, h, steps):
+    """Return centres (n, 3) of a Mechanism in space that was released at rest, after steps of RATTLE.
+
+    Bodies turn by the splitting of `turns.py`, and all joints are solved by least squares, in which rows may depend on
+    each other.  The last body is the world.
+    """
+    n, W, I = len(made.m) - 1, 1.0 / made.m[:-1], made.inertia[:-1]
+    a, b = made.a, made.b
+    own = [made.places - made.x[body] for body in (a, b)]                # all begin without a rotation
+    small = CLOSED * np.max(np.abs(made.places))
+    cross = lambda r: np.cross(np.eye(3), r).T                           # cross(r) @ w = w × r
+    frames = lambda q: np.array([turns.matrix(one) for one in q] + [np.eye(3)])
+    moved = lambda q, L: [turns.free_splitting(one, tuple(l), tuple(i), h) for one, l, i in zip(q, L, I)]
+
+    def arms(R):
+        return [np.einsum("kij,kj->ki", R[body], r) for r, body in zip(own, (a, b))]
+
+    def gaps(x, R):
+        x = np.vstack((x, np.zeros(3)))
+        r_a, r_b = arms(R)
+        return (x[a] + r_a - x[b] - r_b).ravel()
+
+    def rows(R):
+        G = np.zeros((len(a), 3, n + 1, 6))
+        for sign, body, arm in zip((1.0, -1.0), (a, b), arms(R)):
+            for k, r in enumerate(arm):
+                G[k, :, body[k], :3], G[k, :, body[k], 3:] = sign * np.eye(3), sign * cross(r)
+        return G[:, :, :n].reshape(3 * len(a), 6 * n)
+
+    def over_mass(R, J):
+        J = J.reshape(n, 6, -1)
+        turned = np.einsum("kij,kj,klj,klm->kim", R[:n], 1.0 / I, R[:n], J[:, 3:])
+        return np.concatenate((W[:, None, None] * J[:, :3], turned), axis=1).reshape(6 * n, -1)
+
+    def impulses(left, right, R, amount):
+        return right.T @ np.linalg.lstsq(left @ over_mass(R, right.T), -amount, rcond=1e-10)[0]
+
+    x, q, v, L = made.x[:n], [(1.0 + 0j, 0j)] * n, np.zeros((n, 3)), np.zeros((n, 3))
+    for _ in range(steps):
+        v, R = v + 0.5 * h * gravity, frames(q)
+        here = rows(R)
+        for _ in range(CORRECTIONS):
+            end = frames(moved(q, L))
+            gap = gaps(x + h * v, end)
+            if np.max(np.abs(gap)) <= 10.0 * small:
+                break
+            J = impulses(rows(end), here, R, gap / h).reshape(n, 6)
+            v, L = v + W[:, None] * J[:, :3], L + J[:, 3:]
+        x, q = x + h * v, moved(q, L)
+        v, R = v + 0.5 * h * gravity, frames(q)
+        there = rows(R)
+        rates = np.hstack((v, np.array([world_rate(R[k], L[k], I[k]) for k in range(n)]))).ravel()
+        J = impulses(there, there, R, there @ rates).reshape(n, 6)
+        v, L = v + W[:, None] * J[:, :3], L + J[:, 3:]
+    return x
+
+
+def predict_bricard(T, truth, floor):
+    """Return the field `predicted` of a Runner that moves Bricard's mechanism by RATTLE."""
+    @cache
+    def error_law(p):
+        def run(steps, nudge):
+            return rattle_3d(bricard(), np.array([0.0, -p.g * (1.0 + nudge), 0.0]), T / steps, steps).ravel()
+        return ErrorLaw(run, truth(p, T), EVEN[2], T, 200, 1)
+
+    def predicted_error(p, dt):
+        """The error, with its sign, of an independent program of the same step: joints by least squares, rotations in
+        complex numbers.  It is taken at the same step where that is coarse, else by its expansion in powers of dt.
+        """
+        return error_law(p).prediction(dt, floor(p, dt))
+    return predicted_error

@@ -25,7 +25,7 @@ from validate.reference.exams import (
 from validate.reference.mechanisms import ANDREWS_END, FIXED, REST, STIFFNESS, TORQUE
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Exam, Scene, by_order, engine, no_limit, ours
-from validate.scenes._common import constantly
+from validate.scenes._common import check_positives, constantly
 from validate.scenes.exams import built
 from validate.scenes.simulator._common import advance_joined, hinged_model, joined_2d
 
@@ -39,21 +39,22 @@ PIN_X, PIN_Y = HOOK
 
 
 class Params(NamedTuple):
-    torque: Annotated[float, "on the crank [N m]"] = TORQUE
-    stiffness: Annotated[float, "of the spring [N/m]"] = STIFFNESS
+    inertia: Annotated[float, "moment of the crank about its centre [kg m²]"] = 2.194e-6
 
 
 CASES = {"as published": Params()}
 
 
 @cache
-def made():
+def made(p):
     """Return the Mechanism."""
-    return mechanisms.andrews()
+    published = mechanisms.andrews()
+    return published._replace(inertia=np.concatenate(([p.inertia], published.inertia[1:])))
 
 
 def start(p):
-    return joined_2d(made(), (0.0, 0.0))
+    check_positives(p, "inertia")
+    return joined_2d(made(p), (0.0, 0.0))
 
 
 def driven(t, x, q, v, omega, p):
@@ -88,7 +89,7 @@ def truth(p, t):
     DOP853 solves them at 1e-12.  Our joints move bodies on hinges, which is another formulation.  The published digits
     agree with this motion to 2.7e-10 of the angle of body 2.
     """
-    return directions(squeezer_motion(T)(t))
+    return directions(squeezer_motion(p.inertia, T)(t))
 
 
 def limits(p, dt):
@@ -102,7 +103,7 @@ def limits(p, dt):
 
 def pushed(p):
     """Return the accelerations (t, y, u) of the independent program; y, u (8, 3), the last body is the world."""
-    W = np.stack((1.0 / made().m, 1.0 / made().m, 1.0 / made().inertia), axis=1)
+    W = np.stack((1.0 / made(p).m, 1.0 / made(p).m, 1.0 / made(p).inertia), axis=1)
 
     def law(t, y, u):
         F, tau = mechanisms.andrews_load(t, y[:, :2], y[:, 2], u[:, :2], u[:, 2], None)
@@ -111,7 +112,7 @@ def pushed(p):
 
 
 def begin(p):
-    return np.column_stack((made().x, made().q)), np.zeros((8, 3))
+    return np.column_stack((made(p).x, made(p).q)), np.zeros((8, 3))
 
 
 def floor(p, dt):
@@ -120,18 +121,18 @@ def floor(p, dt):
 
 
 MOTION = Motion(T, pushed, begin, lambda y, p: directions(y[:, 2]), truth, floor)
-BY_HINGES = MOTION.predict(lambda p: rattle_2d(made()), powers=EVEN[2], finest=400)
-BY_FIVE = MOTION.predict(lambda p: composed(rattle_2d(made())), powers=EVEN[4], finest=400)
+BY_HINGES = MOTION.predict(lambda p: rattle_2d(made(p)), powers=EVEN[2], finest=400)
+BY_FIVE = MOTION.predict(lambda p: composed(rattle_2d(made(p))), powers=EVEN[4], finest=400)
 
 
 def model(p):
     """Return the Model for the engines: ten hinges, the torque as a load, and the spring."""
     def torque(t, x, q, v, omega):
         tau = np.zeros(omega.shape)
-        tau[0] = p.torque
+        tau[0] = TORQUE
         return np.zeros(x.shape), tau
-    spring = Spring(2, WORLD, (PIN_X, PIN_Y), (CX, CY), REST, p.stiffness)
-    return hinged_model(made(), (0.0, 0.0), [spring], [torque])
+    spring = Spring(2, WORLD, (PIN_X, PIN_Y), (CX, CY), REST, STIFFNESS)
+    return hinged_model(made(p), (0.0, 0.0), [spring], [torque])
 
 
 def read(state, p):
@@ -186,9 +187,10 @@ EXAM = Exam(
 
 def sanity_checks():
     """Return Findings about the truth: the published digits, and that the three loops stay closed."""
-    end = squeezer_motion(T)(T)
+    motion = squeezer_motion(CASES["as published"].inertia, T)
+    end = motion(T)
     _, E = squeezer()
-    gaps = np.abs(E @ (np.exp(1j * end[:7]) - np.exp(1j * squeezer_motion(T)(0.0)[:7])))
+    gaps = np.abs(E @ (np.exp(1j * end[:7]) - np.exp(1j * motion(0.0)[:7])))
     return (states("angles at the end, over the published ones, largest relative difference [-]",
                    np.max(np.abs(mechanisms.andrews_angles(end[:7]) / ANDREWS_END - 1.0)), 0.0, 5e-10),
             states("gaps of the loops at the end [m]", gaps, 0.0, 1e-13))
