@@ -122,7 +122,7 @@ RUNNERS = (
            order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40),
     engine(PYBULLET, "", built(PYBULLET, model, read, iterations=100),
            "JOINT_POINT2POINT, maximal coordinates, erp 1, 100 iterations",
-           order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40),
+           order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40, most_steps=400),
     engine(MUJOCO, "", built(MUJOCO, model, read), "hinges as coordinates, `connect` for loops; Runge–Kutta 4",
            order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40, most_steps=1000),
 )
