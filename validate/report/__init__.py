@@ -87,7 +87,8 @@ def environment():
 
 def texts(results, stability, about):
     """Return {file: text} of everything in a report but its pictures."""
-    pages, shown = environment(), {"run": about, "results": results, "stability": stability}
+    pages = environment()
+    shown = {"run": about, "results": results, "stability": stability, "exams": exams.of(results)}
 
     def page(template, **more):
         return pages.get_template(template).render(**shown, **more)
@@ -106,8 +107,8 @@ def texts(results, stability, about):
             "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
             cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
     found["left_out.html"] = page("left_out.html", rows=words.left_out(results), parts=words.engine_parts(results))
-    if exams.of(results):
-        found["exams.html"] = page("exams.html", exams=exams.of(results))
+    if shown["exams"]:
+        found["exams.html"] = page("exams.html")
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     products = words.products(results)
