@@ -142,6 +142,24 @@ def in_substeps(runner, substeps):
         recorded_as=one.label, settings=f"the same, numSubSteps {substeps}: bitwise the same motion in fewer calls"))
 
 
+class Exam(NamedTuple):
+    """A problem that others have stated, how they judge an answer, and what a full validation runs of it."""
+    organiser: str
+    problem: str             # its name there
+    statement: str           # in two sentences
+    source: str
+    duration: float          # of the problem, which may be longer than T of the scene [s]
+    outputs: int             # number of outputs, at equal times until then, that are judged
+    steps: tuple             # numbers of steps over this duration, coarse to fine; multiples of `outputs`
+    measure: Callable        # (what is observed at all outputs (outputs, …), the truth there) → the organisers' error
+    unit: str                # what that error is, for people
+    grade: Callable | None   # (error) → the organisers' class of it, for people, "" for none; None: they have none
+    enough: float            # an error at which no finer steps are taken
+    gives_up: dict           # {Method or Product: what it cannot do, or leaves to others, in a sentence}
+    published: tuple = ()    # ((who, result), …), for people
+    note: str = ""           # what we took where the text does not say it, or found beside it
+
+
 @dataclass(frozen=True, kw_only=True)
 class Scene:
     """One physical situation: its truth, and the runners that are compared with it.
@@ -181,6 +199,7 @@ class Scene:
     arrows: Callable | None = None           # (observed, p) → {name: (from, to)} [m], such as ω and L
     trail: int | None = None                 # number of the body whose path is drawn
     ground: bool = False                     # draw the plane z = 0
+    exam: Exam | None = None                 # where the scene is a published benchmark
     walls: Callable | None = None            # (p) → pairs of points in space: edges of what stands still, in 3D
     story: str = ""                          # the module's docstring, filled in when the scene is loaded
     # filled in when the scene is bound to a subject

@@ -17,6 +17,7 @@ from ..methods import DISCRETE, GYROSCOPIC, PENALTY, RATTLE, ROLLING, SLIDING, S
 from . import timing
 from .accuracy import relative, run_to_end
 from .compilation import compilation
+from .exams import exam_of
 from .our_parts import our_parts, row
 from .selection import select, with_overrides
 from .staged import PARTS, lessons_without
@@ -356,5 +357,6 @@ def times(name, plan, result):
     full = not (plan.quick or plan.most_steps)
     return {**timed, "left_out": jsonable(left_out(name, plan, result)),
             "our_parts": parts(selection, p, result) if full else {"rows": [], "note": "left to --full"},
+            "exam": None if plan.most_steps else jsonable(exam_of(selection, p)),
             "engine_parts": engine_parts(selection, p) if full else [],
             "compilation": compilation(selection, p, timed["races"]) if full else None}

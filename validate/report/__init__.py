@@ -13,7 +13,7 @@ from ..measure.races import HEADLINE, LEVELS
 from ..measure.timing import TARGETS
 from ..products import PRODUCTS
 from ..run.store import whole
-from . import choice, films, numbers, plots, races, tables, words
+from . import choice, exams, films, numbers, plots, races, tables, words
 from .answers import LEAST, MOST, answers
 
 HERE = Path(__file__).parent
@@ -43,7 +43,8 @@ def copied(results):
 def files(results, stability):
     """Return the names of all files of a report."""
     always = "index.html", "report.json", "coverage.html", "left_out.html"
-    return {*always, *(["stability.html"] if stability else []), *copied(results), *tables.names(results, stability),
+    more = [*(["stability.html"] if stability else []), *(["exams.html"] if exams.of(results) else [])]
+    return {*always, *more, *copied(results), *tables.names(results, stability),
             *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
             *(name for _, name, _, _ in pictures(results, stability))}
 
@@ -88,7 +89,8 @@ def environment():
 
 def texts(results, stability, about):
     """Return {file: text} of everything in a report but its pictures."""
-    pages, shown = environment(), {"run": about, "results": results, "stability": stability}
+    pages = environment()
+    shown = {"run": about, "results": results, "stability": stability, "exams": exams.of(results)}
 
     def page(template, **more):
         return pages.get_template(template).render(**shown, **more)
@@ -108,6 +110,8 @@ def texts(results, stability, about):
             cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
     found["left_out.html"] = page("left_out.html", rows=words.left_out(results), ours=words.our_parts(results),
                                   parts=words.engine_parts(results), omissions=words.omissions(results))
+    if shown["exams"]:
+        found["exams.html"] = page("exams.html")
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     products = words.products(results)
