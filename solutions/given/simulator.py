@@ -25,6 +25,14 @@ from ..support.convex_2d import (  # noqa: F401
     disc_bounds_of,
     disc_contacts_of,
 )
+from ..support.convex_3d import (  # noqa: F401
+    ball_bounds_of,
+    ball_contacts_of,
+    cuboid_bounds_of,
+    cuboid_contacts_of,
+    rounded_bounds,
+    rounded_contacts,
+)
 from ..support.records import check_record
 from ..support.scenes import PileState
 from ..support.small_systems import solve_band
@@ -41,6 +49,7 @@ from .joints import (
     without_joined,
 )
 from .parts import *  # noqa: F403    a compiled loop is made of these
+from .parts_3d import *  # noqa: F403
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most

@@ -61,7 +61,8 @@ def pushes(lesson, loop, steps, before, after, dt):
     found = [Push(body[a], body[b], J / dt) for a, b, J in zip(after.contacts.a, after.contacts.b, after.J)]
     joints = loop.p.joints
     if joints.a.size:
-        J = lesson.joint_impulses_2d(loop.load, (steps - 1) * dt, before, after, dt, loop.p)
+        of_joints = lesson.joint_impulses_2d if after.x.shape[1] == 2 else lesson.joint_impulses
+        J = of_joints(loop.load, (steps - 1) * dt, before, after, dt, loop.p)
         rows = zip(joints.a, joints.b, J, loop.joint_of)
         found += [Push(body[a], body.get(b, WORLD), impulse / dt, joint) for a, b, impulse, joint in rows]
     return found
