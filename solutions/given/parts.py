@@ -17,9 +17,9 @@ from ..contact import kept_impulses, velocity_sweep_2d
 from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
 from ..support.contact_points import ContactSet
-from ..support.records import check_record
 from ..support.scenes import PileState
 from .joints import close_joints_2d, hold_joints_2d, without_joined
+from .rods import close_links
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
@@ -219,20 +219,30 @@ def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
     return swept(sweep_centres_2d, state, dt, p)
 
 
-def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
-    """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
+def swept_and_closed(close_all, state, dt, p):
+    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
     x, q, v, omega, contacts, J = state
-    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    v, omega = close_all(x, q, v, omega, dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
     v, omega, J, aim, arms = begun(PileState(x, q, v, omega, contacts, J), dt, p)
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep_pairs_2d(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
-        v, omega = close_joints_2d(x, q, v, omega, dt, p)
+        v, omega = close_all(x, q, v, omega, dt, p)
         if is_settled(J, before, p):
             break
     return PileState(x, q, v, omega, contacts, J)
+
+
+def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
+    """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
+    return swept_and_closed(close_joints_2d, state, dt, p)
+
+
+def contact_impulses_with_rods(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints and rods."""
+    return swept_and_closed(close_links, state, dt, p)
 
 
 def separate(load, bounds, narrow, t, state, dt, p):
@@ -289,21 +299,4 @@ def move_and_turn(load, bounds, narrow, t, state, dt, p):
 
 def leave(load, bounds, narrow, t, state, dt, p):
     """Return the state unchanged.  It fills the places of a loop that has fewer than six parts."""
-    return state
-
-
-def advance_parts(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, steps, p):
-    """Return the PileState after so many steps of a loop with six parts; `leave` stands where there is none.
-
-    They are arguments of their own, so that compiled code is kept on disk for each set of parts.
-    """
-    check_record(p, state)
-    for n in range(steps):
-        now = t + n * dt
-        state = first(load, bounds, narrow, now, state, dt, p)
-        state = second(load, bounds, narrow, now, state, dt, p)
-        state = third(load, bounds, narrow, now, state, dt, p)
-        state = fourth(load, bounds, narrow, now, state, dt, p)
-        state = fifth(load, bounds, narrow, now, state, dt, p)
-        state = sixth(load, bounds, narrow, now, state, dt, p)
     return state

@@ -7,7 +7,6 @@ holds its angular momentum, so the gyroscopic term needs no part of its own.
 import numpy as np
 
 from ..contact import friction_disc, velocity_sweep
-from ..rotation import body_angular_momentum
 from ..simulator import weight
 from ..support.arms import (
     apply_impulse,
@@ -25,14 +24,12 @@ from ..vectors import cross, dot
 from .joints import (
     close_joints,
     hold_joints,
-    impulses_3d,
-    joint_arms,
-    joint_velocities,
     kick,
     spatial_inertia,
     turn_on,
 )
 from .parts import forget_bounces, is_settled, parting_aims, pushing_aims
+from .rods import close_links
 
 # ---------------------------------------------------------------------------------------------- forces
 
@@ -140,20 +137,30 @@ def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
     return swept_in_space(sweep_centres, state, dt, p)
 
 
-def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
-    """Return the same as contact_impulses_in_space, with joints that are closed after every sweep."""
+def swept_and_closed_in_space(close_all, state, dt, p):
+    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
     x, q, v, omega, contacts, J = state
-    v, omega = close_joints(x, q, v, omega, dt, p)
+    v, omega = close_all(x, q, v, omega, dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
     v, omega, J, aim, arms, inv_inertia = begun_in_space(PileState(x, q, v, omega, contacts, J), dt, p)
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep_pairs(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        v, omega = close_joints(x, q, v, omega, dt, p)
+        v, omega = close_all(x, q, v, omega, dt, p)
         if is_settled(J, before, p):
             break
     return PileState(x, q, v, omega, contacts, J)
+
+
+def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same as contact_impulses_in_space, with joints that are closed after every sweep."""
+    return swept_and_closed_in_space(close_joints, state, dt, p)
+
+
+def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints and rods."""
+    return swept_and_closed_in_space(close_links, state, dt, p)
 
 
 def separate_in_space(load, bounds, narrow, t, state, dt, p):
@@ -202,22 +209,3 @@ def move_and_turn_in_space(load, bounds, narrow, t, state, dt, p):
     x, q, v, omega, contacts, J = state
     q, omega = turn_on(q, omega, dt, p.inv_inertia)
     return PileState(x + dt * v, q, v, omega, contacts, J)
-
-
-# ---------------------------------------------------------------------------------------------- forces as results
-
-def joint_impulses(load, t, before, after, dt, p):
-    """Return J (m, 3) [N s], on body a, of the joints in a step from `before`, at t, as joint_impulses_2d does.
-
-    The turn at the end of a step changes ω but not the angular momentum, which the joints have changed before it.
-    """
-    inv_inertia, ends = spatial_inertia(before.q, p.inv_inertia), joint_arms(before.q, p.joints)
-    v, omega = kick(load, t, before.x, before.q, before.v, before.omega, dt, p)
-    apply_impulses(v, omega, after.J, after.contacts, arms_3d(before.x, p.inv_mass, inv_inertia, after.contacts),
-                   p.inv_mass, inv_inertia)
-    for i in range(omega.shape[0]):
-        if p.inv_inertia[i, 0] > 0.0:
-            L = body_angular_momentum(after.q[i], after.omega[i], 1.0 / p.inv_inertia[i])
-            omega[i] -= rotate(before.q[i], p.inv_inertia[i] * unrotate(before.q[i], L))
-    u = joint_velocities(v - after.v, omega, ends, p.joints)
-    return impulses_3d(ends, ends, u, p.inv_mass, inv_inertia, p.joints)[0]
