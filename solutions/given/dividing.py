@@ -14,10 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..support.records import check_record
+from ..support.scenes import TOO_DEEP
 from .joints import Joints
 from .passing import both_sides, find_suspects, may_pass, pose_at
 
-MOST_PARTS = 10              # of one step: bodies that bounce between two others may meet ever sooner [-]
+MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
+SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
 SHORTEST = 1e-9              # part of a step that is left out [-]
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
 
@@ -33,14 +35,18 @@ class Rough(NamedTuple):
 # ---------------------------------------------------------------------------------------------- where they touch
 
 def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes):
-    """Return the overlap (m,) [m] of each suspect when this share of the step is over; 0 of those that are apart."""
+    """Return the overlap (m,) [m] of each suspect when this share of the step is over; 0 of those that are apart.
+
+    The backs of planes, which suspects have as well, do not count.
+    """
+    back = shapes.half.shape[0] + sides.shape[0] // 2
     pairs, (x, q), overlap = suspects.pairs, pose_at(before, after, share, dt), np.zeros(suspects.way.size)
     _, _, turn = bounds(x, q, shapes)
     found = narrow(x, turn, shapes, sides, pairs, 0.0)
     for k in range(found.a.size):
         i = found.a[k]
         for s in range(pairs.first[i], pairs.first[i + 1]):
-            if pairs.partner[s] == found.b[k]:
+            if pairs.partner[s] == found.b[k] and found.b[k] < back:
                 overlap[s] = max(overlap[s], -found.gap[k])
     return overlap
 
@@ -57,25 +63,26 @@ def first_touch(bounds, narrow, before, after, dt, p):
     suspects = find_suspects(before, after, boxes, boxes_new, dt, Rough(shapes.half, p.inv_mass, p.planes, p.joints))
     if suspects.way.size == 0:
         return 1.0
-    sides, free = both_sides(p.planes), 0.0
+    sides, free, allowed = both_sides(p.planes), 0.0, TOO_DEEP * suspects.size       # also where a turn dips in
     begin = overlaps_at(bounds, narrow, before, after, 0.0, dt, suspects, sides, shapes)
     for k in range(suspects.poses + 1):
         share = suspects.begin + (k + 0.5) / suspects.poses * (suspects.end - suspects.begin)
         share = min(share, 1.0) if k < suspects.poses else 1.0
         more = overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes) - begin
-        s = np.argmax(more - suspects.allowed)
-        if more[s] > suspects.allowed[s]:
-            return touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, begin[s], free, share)
+        s = np.argmax(more - allowed)
+        if more[s] > allowed[s]:
+            least = begin[s] + (SUNK * allowed[s] if begin[s] > 0.0 else 0.0)
+            return touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, least, free, share)
         if np.max(more) <= 0.0:
             free = share
     return 1.0
 
 
-def touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, begin, free, deep):
-    """Return the share of the step at which suspect s begins to overlap more than at the beginning, by halving."""
+def touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, least, free, deep):
+    """Return the share of the step at which suspect s begins to overlap by more than `least` [m], by halving."""
     for _ in range(HALVINGS):
         middle = 0.5 * (free + deep)
-        if overlaps_at(bounds, narrow, before, after, middle, dt, suspects, sides, shapes)[s] > begin:
+        if overlaps_at(bounds, narrow, before, after, middle, dt, suspects, sides, shapes)[s] > least:
             deep = middle
         else:
             free = middle

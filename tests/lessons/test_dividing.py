@@ -89,7 +89,7 @@ def test_a_rod_that_spins_fast_on_a_hinge_does_not_turn_through_a_post():
     s = states(make_model([rod, post], (0.0, 0.0), [Hinge(0, WORLD, (0.0, 0.0))]), 1)[0]
     assert 1.2 < s.q[0] < 0.5 * np.pi
     assert s.x[0] == pytest.approx((0.0, 0.0), abs=1e-9)               # and the hinge holds
-    assert abs(s.omega[0]) < 1e-6
+    assert abs(s.omega[0]) < 1e-3 * 120.0                              # sweeps end at a thousandth
 
 
 def test_a_fast_body_that_falls_on_a_floor_does_not_sink_in():
@@ -97,3 +97,10 @@ def test_a_fast_body_that_falls_on_a_floor_does_not_sink_in():
     for s in states(make_model([floor, Body((0.0, 1.0), 1.0, Box((0.1, 0.05)), mu=0.5, v=(3.0, -80.0))],
                                (0.0, -9.81)), 3):
         assert s.x[1, 1] > 0.049
+
+
+def test_a_plane_that_a_fast_body_leaves_hides_no_other_impact():
+    floor = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+    lid = Body((0.0, 1.0), shape=Box((1.0, 0.01)), mu=1.0, e=1.0)
+    s = states(make_model([floor, lid, Body((0.0, 0.3), 1.0, Ball(0.1), v=(0.0, 100.0))], (0.0, 0.0)), 1)[0]
+    assert s.x[2, 1] == pytest.approx(0.89, abs=1e-9)
