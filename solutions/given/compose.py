@@ -1,20 +1,17 @@
-"""Given with lesson 10.  Our loop, put together from what a Model contains.
+"""Given with lesson 10.  Our loop, put together from what a Model contains, in the plane and in space.
 
 compose(model) returns a Loop: the parts that the model needs, in the lecture's order, each with the reason why it is
 there.  A loop has no part for what its model lacks: without shapes it does not search for contacts, without joints it
 closes none, and bodies that cannot turn are only moved.  run_parts runs it.
-*Left out:* space; there make_bodies and the steps of lesson 10 serve.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_not_negative, positive_number, whole_number
+from ..checks import BadInput, check_not_negative, whole_number
 from ..simulator import weight
-from ..support.broad_phase import Pairs
 from ..support.convex_2d import (
-    Cores,
     box_bounds_of,
     box_contacts_of,
     convex_bounds_2d,
@@ -22,31 +19,34 @@ from ..support.convex_2d import (
     disc_bounds_of,
     disc_contacts_of,
 )
+from ..support.convex_3d import (
+    ball_bounds_of,
+    ball_contacts_of,
+    cuboid_bounds_of,
+    cuboid_contacts_of,
+    rounded_bounds,
+    rounded_contacts,
+)
 from ..support.model import (
-    WORLD,
-    Distance,
     Drag,
     State,
-    Weld,
     can_turn,
     friction_of,
-    own_place,
-    start_of,
     touching_pairs,
 )
-from ..support.scenes import PileState, no_contacts
-from ..support.shapes import Ball, Box, HalfSpace, core_of, size_of
-from .joints import Joints, farthest_neighbour, form_loops
+from ..support.scenes import PileState
+from ..support.shapes import Ball, Box, HalfSpace
+from .dividing import advance_parts, divided_step, whole_step
 from .parts import (
     accelerate,
     accelerate_half,
     accelerate_rest,
-    advance_parts,
     close,
     contact_impulses,
     contact_impulses_of_centres,
     contact_impulses_of_pairs,
     contact_impulses_with_joints,
+    contact_impulses_with_rods,
     detect_few,
     detect_many,
     detect_unjoined,
@@ -57,38 +57,24 @@ from .parts import (
     move_and_turn,
     separate,
 )
+from .parts_3d import (
+    accelerate_half_in_space,
+    accelerate_in_space,
+    accelerate_rest_in_space,
+    close_in_space,
+    contact_impulses_in_space,
+    contact_impulses_of_centres_in_space,
+    contact_impulses_with_joints_in_space,
+    contact_impulses_with_rods_in_space,
+    hold_in_space,
+    model_load_in_space,
+    move_and_turn_in_space,
+    separate_in_space,
+)
+from .rods import close_with_rods, hold_with_rods
+from .rows import Composed, Settings, lengths_of, points_of, rods_in, rows_in_order, rows_of
 
 FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
-SLOP = 5e-3                  # overlap that stays, over the smallest size of a shape [-]
-
-
-class Settings(NamedTuple):
-    """How a model is solved; nothing here changes the motion that ever shorter steps approach."""
-    sweeps: int = 100        # over all contacts in a step, at most
-    settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]
-    margin: float | None = None   # gap up to which a contact is found [m]; None: a tenth of the smallest shape's size
-
-
-class Composed(NamedTuple):
-    """What does not change in a run.  Rows: bodies with shapes, half-spaces, bodies without shapes, the world."""
-    inv_mass: np.ndarray     # (rows,) [1/kg]
-    inv_inertia: np.ndarray  # (rows,) [1/(kg m²)]
-    half: Cores              # the shapes
-    planes: np.ndarray       # (h, 3)
-    gravity: np.ndarray      # (2,) [m/s²]
-    mu: float                # friction, if it is the same for all pairs [-]
-    mu_of: np.ndarray        # (rows,) of each body
-    e_of: np.ndarray         # (rows,) restitution of each body [-]
-    pairs: Pairs             # all that could touch
-    sweeps: int
-    settled: float
-    margin: float
-    slop: float              # overlap that stays [m]
-    joints: Joints
-    ends: np.ndarray         # (s, 2) bodies of springs
-    arms: np.ndarray         # (s, 4) their points, in coordinates of the bodies [m]
-    laws: np.ndarray         # (s, 3) rest [m], k [N/m], c [N s/m]
-    drag: float              # [N s/m]
 
 
 class Part(NamedTuple):
@@ -100,23 +86,51 @@ class Part(NamedTuple):
 class Loop(NamedTuple):
     """A loop for one model."""
     parts: tuple             # of Part, in their order
+    step: Part               # how they make a step: whole_step or divided_step
     load: object             # (t, x, q, v, omega, p) → (F, tau)
     bounds: object           # (x, q, half) → (low, high, turn)
     narrow: object           # (x, turn, half, planes, pairs, reach) → ContactSet
     state: PileState         # at the start
     p: Composed
     row: np.ndarray          # (bodies,) the row of each body of the model
-    joint_of: tuple          # the number of the model's joint that each row of p.joints belongs to
+    joint_of: tuple          # the number of the model's joint that each row of p.joints, then of p.rods, belongs to
+
+
+class Kit(NamedTuple):
+    """The parts that loops in the plane, or those in space, are made of."""
+    accelerate: object
+    accelerate_half: object
+    accelerate_rest: object
+    close: object
+    hold: object
+    separate: object
+    centres: object          # contacts: where nothing rubs and nothing turns
+    one_friction: object     # where all pairs have the same friction
+    contacts: object
+    with_joints: object
+    turn: object
+    load: object
+
+
+def kit_of(model):
+    """Return the Kit for the dimension of a model, with parts for rods only where it has rods."""
+    kit, rubs = Kit(accelerate, accelerate_half, accelerate_rest, close, hold, separate, contact_impulses_of_centres,
+                    contact_impulses, contact_impulses_of_pairs, contact_impulses_with_joints, move_and_turn,
+                    model_load), contact_impulses_with_rods
+    if model.d == 3:
+        kit, rubs = Kit(accelerate_in_space, accelerate_half_in_space, accelerate_rest_in_space, close_in_space,
+                        hold_in_space, separate_in_space, contact_impulses_of_centres_in_space,
+                        contact_impulses_in_space, contact_impulses_in_space, contact_impulses_with_joints_in_space,
+                        move_and_turn_in_space, model_load_in_space), contact_impulses_with_rods_in_space
+    return kit._replace(close=close_with_rods, hold=hold_with_rods, with_joints=rubs) if rods_in(model) else kit
 
 
 # ---------------------------------------------------------------------------------------------- composition
 
 def refuses(model):
     """Return why our loop cannot run a model, for people; an empty text where it can."""
-    if model.d == 3:
-        return "space: the loop is composed in the plane"
-    if any(isinstance(joint, Distance) for joint in model.joints):
-        return "a Distance between two points"
+    if any(length == 0.0 for length in lengths_of(model)):
+        return "a Distance between two points at one place"
     return ""
 
 
@@ -124,43 +138,56 @@ SETTINGS = Settings()
 
 
 def compose(model, settings=SETTINGS):
-    """Return the Loop of a Model in the plane.  Raises BadInput where refuses(model) has a reason."""
+    """Return the Loop of a Model.  Raises BadInput where refuses(model) has a reason."""
     if why := refuses(model):
         raise BadInput("a model for our loop", why, "take another world")
     whole_number("number of sweeps", settings.sweeps, 1)
     check_not_negative("the share at which sweeps have settled [-]", settings.settled)
     p, state, row = rows_of(model, settings)
-    touching, moves = touching_pairs(model), (move_and_turn if turns(model) else move)
-    motion = Part(moves, "what moves and turns" if moves is move_and_turn else "what moves; nothing can turn")
-    forces = bool(np.any(model.gravity) or model.springs or model.loads)
-    if model.joints and not touching:
-        parts = (*[Part(accelerate_half, reason_of_forces(model))] * forces, Part(close, "joints"), motion,
-                 *[Part(accelerate_rest, reason_of_forces(model))] * forces, Part(hold, "joints"))
-    elif touching:
-        parts = (*[Part(accelerate, reason_of_forces(model))] * forces, detection(model, touching),
-                 Part(separate, "shapes, which may overlap"), solver(model, touching), motion)
-    else:
-        parts = (*[Part(accelerate, reason_of_forces(model))] * forces, motion)
     bounds, narrow = shapes_of_loop(model)
     joint_of = tuple(k for k, joint in enumerate(model.joints) for _ in points_of(model, joint))
-    return Loop(parts, load_of(model), bounds, narrow, state, p, row, joint_of)
+    joint_of += tuple(rods_in(model))
+    return Loop(parts_of(model, kit_of(model)), step_of(model), load_of(model), bounds, narrow, state, p, row, joint_of)
+
+
+def parts_of(model, kit):
+    """Return the parts that a model needs, in the lecture's order."""
+    touching, reason = touching_pairs(model), reason_of_forces(model)
+    motion = Part(kit.turn, "what moves and turns") if turns(model) else Part(move, "what moves; nothing can turn")
+    if touching:
+        return (*[Part(kit.accelerate, reason)] * bool(reason), detection(model, touching),
+                Part(kit.separate, "shapes, which may overlap"), solver(model, touching, kit), motion)
+    if any(model.joints[k].compliance > 0.0 for k in rods_in(model)):
+        return (*[Part(kit.accelerate, reason)] * bool(reason), Part(kit.close, "joints, of which some give way"),
+                motion, Part(kit.hold, "joints that do not give way"))
+    if model.joints:
+        return (*[Part(kit.accelerate_half, reason)] * bool(reason), Part(kit.close, "joints"), motion,
+                *[Part(kit.accelerate_rest, reason)] * bool(reason), Part(kit.hold, "joints"))
+    return (*[Part(kit.accelerate, reason)] * bool(reason), motion)
+
+
+def step_of(model):
+    """Return how the parts make a step."""
+    if touching_pairs(model):
+        return Part(divided_step, "shapes, which may be so fast that they would pass through each other")
+    return Part(whole_step, "nothing can touch")
 
 
 def reason_of_forces(model):
-    """Return which forces a model has, for people."""
+    """Return which forces a model has, for people; an empty text without any."""
     found = {"gravity": np.any(model.gravity), "springs": model.springs, "loads": model.loads}
     return " and ".join(name for name, there in found.items() if there)
 
 
 def load_of(model):
     """Return the load of a model: exercise `weight` where gravity is all, and functions of its own at last."""
-    own = [load for load in model.loads if not isinstance(load, Drag)]
+    own, known = [load for load in model.loads if not isinstance(load, Drag)], kit_of(model).load
     if not own:
-        return model_load if model.springs or model.loads else weight
+        return known if model.springs or model.loads else weight
     row = rows_in_order(model)
 
     def with_own_loads(t, x, q, v, omega, p):
-        F, tau = model_load(t, x, q, v, omega, p)
+        F, tau = known(t, x, q, v, omega, p)
         state = State(x[row], q[row], v[row], omega[row])
         for load in own:
             more, twist = load(t, *state)
@@ -171,7 +198,7 @@ def load_of(model):
 
 def turns(model):
     """Return whether anything turns: a spin at the start, or a finite moment and something that could turn it."""
-    if any(body.omega for body in model.bodies):
+    if any(np.any(body.omega) for body in model.bodies):
         return True
     free = {k for k, body in enumerate(model.bodies) if can_turn(body)}
     off_centre = any(np.any(place) for s in model.springs for k, place in ((s.a, s.place_a), (s.b, s.place_b))
@@ -192,125 +219,42 @@ def detection(model, touching):
     return Part(detect_many, "many shapes")
 
 
-def solver(model, touching):
+def solver(model, touching, kit):
     """Return the part that solves the contacts."""
     rubs = {friction_of(model, i, j) for i, j in touching}
     if model.joints:
-        return Part(contact_impulses_with_joints, "contacts and joints")
+        return Part(kit.with_joints, "contacts and joints")
     if rubs == {0.0} and not turns(model):
-        return Part(contact_impulses_of_centres, "contacts; nothing rubs and nothing turns")
+        return Part(kit.centres, "contacts; nothing rubs and nothing turns")
     if len(rubs) == 1:
-        return Part(contact_impulses, "contacts with one friction")
-    return Part(contact_impulses_of_pairs, "contacts with several frictions")
+        return Part(kit.one_friction, "contacts with one friction")
+    return Part(kit.contacts, "contacts with several frictions")
 
 
 def shapes_of_loop(model):
-    """Return (bounds, narrow): those of lesson 9 where all shapes are discs or all are boxes."""
-    kinds = {type(body.shape) for body in model.bodies if body.shape is not None} - {HalfSpace}
+    """Return (bounds, narrow): those of lesson 9 where all shapes are round or all are boxes."""
+    kinds, flat = {type(body.shape) for body in model.bodies if body.shape is not None} - {HalfSpace}, model.d == 2
     if kinds == {Ball}:
-        return disc_bounds_of, disc_contacts_of
+        return (disc_bounds_of, disc_contacts_of) if flat else (ball_bounds_of, ball_contacts_of)
     if kinds == {Box}:
-        return box_bounds_of, box_contacts_of
-    return convex_bounds_2d, convex_contacts_2d
+        return (box_bounds_of, box_contacts_of) if flat else (cuboid_bounds_of, cuboid_contacts_of)
+    return (convex_bounds_2d, convex_contacts_2d) if flat else (rounded_bounds, rounded_contacts)
 
 
-# ---------------------------------------------------------------------------------------------- rows
-
-def ordered_bodies(model):
-    """Return (order, n, h): numbers of bodies as rows: n with shapes, then h half-spaces, then those without shapes."""
-    kinds = [2 if body.shape is None else 1 if isinstance(body.shape, HalfSpace) else 0 for body in model.bodies]
-    return np.argsort(kinds, kind="stable"), kinds.count(0), kinds.count(1)
-
-
-def rows_in_order(model):
-    """Return the row (bodies,) of each body of the model."""
-    order, _, _ = ordered_bodies(model)
-    row = np.empty(len(order), np.int64)
-    row[order] = np.arange(len(order))
-    return row
-
-
-def rows_of(model, settings):
-    """Return (Composed, PileState, row (bodies,) of each body of the model)."""
-    order, n, h = ordered_bodies(model)
-    row, bodies, s = rows_in_order(model), [model.bodies[k] for k in order], start_of(model)
-    x, q, v, omega = (np.concatenate((rows[order], np.zeros((1, *rows.shape[1:])))) for rows in s)
-    inv_mass = np.array([1.0 / body.m for body in bodies] + [0.0])
-    inv_inertia = np.array([1.0 / body.inertia for body in bodies] + [0.0])
-    sizes = [size_of(body.shape) for body in bodies[:n]]
-    margin = 0.1 * min(sizes, default=1.0) if settings.margin is None else settings.margin
-    rubs = {friction_of(model, i, j) for i, j in touching_pairs(model)}
-    joints = joints_of(model, row, inv_mass)
-    ends, arms, laws = springs_of(model, row, len(bodies))
-    p = Composed(
-        inv_mass, inv_inertia, cores_of(bodies[:n]), lines_of(bodies[n:n + h]),
-        np.array(model.gravity), rubs.pop() if len(rubs) == 1 else 0.0,
-        np.array([body.mu for body in bodies] + [0.0]), np.array([body.e for body in bodies] + [0.0]),
-        pairs_of(model, row, n), settings.sweeps, float(settings.settled), positive_number("margin [m]", margin),
-        SLOP * min(sizes, default=1.0),
-        joints, ends, arms, laws, float(sum(load.k for load in model.loads if isinstance(load, Drag))))
-    return p, PileState(x, q, v, omega, no_contacts(n, 2), np.zeros((0, 2))), row
-
-
-def cores_of(bodies):
-    """Return the Cores of bodies with shapes."""
-    cores = [core_of(body.shape) for body in bodies]
-    half = [body.shape.half if isinstance(body.shape, Box) else (size_of(body.shape),) * 2 for body in bodies]
-    return Cores(np.concatenate([np.zeros((0, 2)), *[corners for corners, _ in cores]]),
-                 np.cumsum([0] + [len(corners) for corners, _ in cores]), np.array([r for _, r in cores], float),
-                 np.array(half, float).reshape(-1, 2))
-
-
-def lines_of(bodies):
-    """Return rows (h, 3) of half-spaces."""
-    return np.array([(*body.shape.normal, body.shape.offset) for body in bodies], float).reshape(-1, 3)
-
-
-def pairs_of(model, row, n):
-    """Return the Pairs of rows that could touch."""
-    partners = [[] for _ in range(n)]
-    for i, j in touching_pairs(model):
-        low, high = sorted((int(row[i]), int(row[j])))
-        partners[low].append(high)
-    first = np.cumsum([0] + [len(found) for found in partners])
-    return Pairs(first, np.array([j for found in partners for j in sorted(found)], np.int64))
-
-
-def points_of(model, joint):
-    """Return the places (2,) that a joint holds together: one of a Hinge, and two of a Weld, which lie apart."""
-    place = np.array(joint.place)
-    if not isinstance(joint, Weld):
-        return [place]
-    sizes = [size_of(model.bodies[k].shape) for k in (joint.a, joint.b)
-             if k != WORLD and model.bodies[k].shape is not None]
-    return [place, place + np.array((min([*sizes, 1.0]), 0.0))]
-
-
-def joints_of(model, row, inv_mass):
-    """Return the Joints of a model."""
-    points = [(joint.a, joint.b, place) for joint in model.joints for place in points_of(model, joint)]
-    a = np.array([row[i] for i, _, _ in points], np.int64)
-    b = np.array([row[j] if j != WORLD else inv_mass.size - 1 for _, j, _ in points], np.int64)
-    r_a, r_b = (np.array([own_place(model, k, place) for k, place in ends]).reshape(-1, 2)
-                for ends in ([(i, place) for i, _, place in points], [(j, place) for _, j, place in points]))
-    return Joints(a, b, r_a, r_b, 2 * (farthest_neighbour(a, b, inv_mass) + 1) - 1, form_loops(a, b, inv_mass))
-
-
-def springs_of(model, row, world):
-    """Return (ends (s, 2), arms (s, 4), laws (s, 3)) of the springs."""
-    ends = [(row[s.a], world if s.b == WORLD else row[s.b]) for s in model.springs]
-    arms, laws = [(*s.place_a, *s.place_b) for s in model.springs], [(s.rest, s.k, s.c) for s in model.springs]
-    return (np.array(ends, np.int64).reshape(-1, 2), np.array(arms, float).reshape(-1, 4),
-            np.array(laws, float).reshape(-1, 3))
-
+# ---------------------------------------------------------------------------------------------- runs
 
 def state_of(loop, state):
     """Return the State of all bodies of the model, in its order."""
     return State(*(rows[loop.row] for rows in state[:4]))
 
 
+def padded(loop):
+    """Return the six parts of a Loop; `leave` fills the places of those that it does not need."""
+    return [part.step for part in loop.parts] + [leave] * (6 - len(loop.parts))
+
+
 def run_parts(loop, t, state, dt, steps):
     """Return the PileState after so many steps of a Loop."""
     steps = whole_number("number of steps", steps, 0)
-    padded = [part.step for part in loop.parts] + [leave] * (6 - len(loop.parts))
-    return advance_parts(*padded, loop.load, loop.bounds, loop.narrow, t, state, dt, steps, loop.p)
+    functions = loop.step.step, *padded(loop), loop.load, loop.bounds, loop.narrow
+    return advance_parts(*functions, t, state, dt, steps, loop.p)

@@ -1,11 +1,12 @@
 """Given with lesson 10.  The parts of our loop in the plane: compose.py says which of them a model needs.
 
+Parts that find contacts, and `move`, serve in space as well; parts_3d.py has the others.
+
 Every part has the arguments of a step,
 
     part(load, bounds, narrow, t, state, dt, p) → state
 
 and is made of exercises and given functions of lessons 9 and 10.  p is a Composed of compose.py.
-*Left out:* space; there the steps of lesson 10 serve.
 """
 
 from typing import NamedTuple
@@ -16,9 +17,9 @@ from ..contact import kept_impulses, velocity_sweep_2d
 from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
 from ..support.contact_points import ContactSet
-from ..support.records import check_record
 from ..support.scenes import PileState
 from .joints import close_joints_2d, hold_joints_2d, without_joined
+from .rods import close_links
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
@@ -103,15 +104,14 @@ def detect_unjoined(load, bounds, narrow, t, state, dt, p):
 
 # ---------------------------------------------------------------------------------------------- contact
 
-def parting_aims(contacts, v, omega, arms, dt, p):
-    """Return u_n (m,) [m/s] below which no contact may leave: each pair has its own restitution.
+def parting_aims(u_n, contacts, dt, p):
+    """Return the velocities (m,) [m/s] below which no contact may leave: each pair has its own restitution.
 
     An open contact may close: −gap/dt.  A closed one leaves with −e u_n if it comes faster than what gravity adds in
     TRUE_IMPACT steps; a slower one rests.  A fast contact with e > 0 that is still open is not stopped in this step,
     because it has to close before it bounces.
     """
-    u_n, aim = normal_velocities_2d(v, omega, contacts, arms), np.empty(contacts.a.size)
-    rests = TRUE_IMPACT * dt * np.sqrt(p.gravity[0] ** 2 + p.gravity[1] ** 2)
+    aim, rests = np.empty(contacts.a.size), TRUE_IMPACT * dt * np.sqrt(np.sum(p.gravity * p.gravity))
     for k in range(aim.size):
         e, gap = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k]
         bounces = e > 0.0 and u_n[k] < -rests
@@ -119,6 +119,22 @@ def parting_aims(contacts, v, omega, arms, dt, p):
             aim[k] = -np.inf if bounces else -gap / dt
         else:
             aim[k] = -e * u_n[k] if bounces else 0.0
+    return aim
+
+
+def forget_bounces(J, aim):
+    """Set the kept impulses J (m, d) of contacts that bounce to zero, in place."""
+    for k in range(aim.size):
+        if aim[k] > 0.0 or aim[k] == -np.inf:
+            J[k] = 0.0
+
+
+def pushing_aims(contacts, dt, p):
+    """Return the velocities (m,) [m/s] that remove the share PUSH_OUT of each overlap deeper than p.slop per step."""
+    aim = np.empty(contacts.a.size)
+    for k in range(aim.size):
+        deep = -contacts.gap[k] - p.slop
+        aim[k] = PUSH_OUT * deep / dt if deep > 0.0 else -max(contacts.gap[k], 0.0) / dt
     return aim
 
 
@@ -163,10 +179,8 @@ def begun(state, dt, p):
     """Return (v, omega, J, aim, arms): what the sweeps of a step begin with; a bounce keeps no impulse."""
     x, _, v, omega, contacts, J = state
     v, omega, J, arms = v.copy(), omega.copy(), J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
-    aim = parting_aims(contacts, v, omega, arms, dt, p)
-    for k in range(aim.size):
-        if aim[k] > 0.0 or aim[k] == -np.inf:
-            J[k, 0], J[k, 1] = 0.0, 0.0
+    aim = parting_aims(normal_velocities_2d(v, omega, contacts, arms), contacts, dt, p)
+    forget_bounces(J, aim)
     apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
     return v, omega, J, aim, arms
 
@@ -205,20 +219,30 @@ def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
     return swept(sweep_centres_2d, state, dt, p)
 
 
-def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
-    """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
+def swept_and_closed(close_all, state, dt, p):
+    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
     x, q, v, omega, contacts, J = state
-    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    v, omega = close_all(x, q, v, omega, dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
     v, omega, J, aim, arms = begun(PileState(x, q, v, omega, contacts, J), dt, p)
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep_pairs_2d(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
-        v, omega = close_joints_2d(x, q, v, omega, dt, p)
+        v, omega = close_all(x, q, v, omega, dt, p)
         if is_settled(J, before, p):
             break
     return PileState(x, q, v, omega, contacts, J)
+
+
+def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
+    """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
+    return swept_and_closed(close_joints_2d, state, dt, p)
+
+
+def contact_impulses_with_rods(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints and rods."""
+    return swept_and_closed(close_links, state, dt, p)
 
 
 def separate(load, bounds, narrow, t, state, dt, p):
@@ -232,10 +256,7 @@ def separate(load, bounds, narrow, t, state, dt, p):
     x, q, v, omega, contacts, J = state
     if contacts.a.size == 0 or np.min(contacts.gap) >= -p.slop:
         return state
-    aim, arms = np.empty(contacts.a.size), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
-    for k in range(aim.size):
-        deep = -contacts.gap[k] - p.slop
-        aim[k] = PUSH_OUT * deep / dt if deep > 0.0 else -max(contacts.gap[k], 0.0) / dt
+    aim, arms = pushing_aims(contacts, dt, p), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
     smooth = Smooth(p.inv_mass, p.inv_inertia, 0.0)
     for _ in range(p.sweeps):
@@ -278,21 +299,4 @@ def move_and_turn(load, bounds, narrow, t, state, dt, p):
 
 def leave(load, bounds, narrow, t, state, dt, p):
     """Return the state unchanged.  It fills the places of a loop that has fewer than six parts."""
-    return state
-
-
-def advance_parts(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, steps, p):
-    """Return the PileState after so many steps of a loop with six parts; `leave` stands where there is none.
-
-    They are arguments of their own, so that compiled code is kept on disk for each set of parts.
-    """
-    check_record(p, state)
-    for n in range(steps):
-        now = t + n * dt
-        state = first(load, bounds, narrow, now, state, dt, p)
-        state = second(load, bounds, narrow, now, state, dt, p)
-        state = third(load, bounds, narrow, now, state, dt, p)
-        state = fourth(load, bounds, narrow, now, state, dt, p)
-        state = fifth(load, bounds, narrow, now, state, dt, p)
-        state = sixth(load, bounds, narrow, now, state, dt, p)
     return state

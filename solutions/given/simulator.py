@@ -25,10 +25,19 @@ from ..support.convex_2d import (  # noqa: F401
     disc_bounds_of,
     disc_contacts_of,
 )
+from ..support.convex_3d import (  # noqa: F401
+    ball_bounds_of,
+    ball_contacts_of,
+    cuboid_bounds_of,
+    cuboid_contacts_of,
+    rounded_bounds,
+    rounded_contacts,
+)
 from ..support.records import check_record
 from ..support.scenes import PileState
 from ..support.small_systems import solve_band
-from .compose import Loop, Part, Settings, compose, refuses, run_parts, state_of  # noqa: F401
+from .compose import Loop, Part, Settings, compose, padded, refuses, run_parts, state_of  # noqa: F401
+from .dividing import advance_parts, divided_step, whole_step  # noqa: F401
 from .invariants import closing_speeds
 from .joints import (
     COMPOSED,
@@ -41,6 +50,8 @@ from .joints import (
     without_joined,
 )
 from .parts import *  # noqa: F403    a compiled loop is made of these
+from .parts_3d import *  # noqa: F403
+from .rods import close_with_rods, hold_with_rods, link_impulses  # noqa: F401
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most

@@ -125,3 +125,13 @@ def size_of(shape):
         return shape.half_length + shape.radius
     corners = shape.half if isinstance(shape, Box) else max(shape.corners, key=np.linalg.norm)
     return float(np.linalg.norm(corners))
+
+
+def inner_radius(shape):
+    """Return the radius [m] of the largest ball around the centre that is inside a ball or a polygon."""
+    if isinstance(shape, Ball):
+        return shape.radius
+    corners = np.asarray(shape.corners)
+    edges = np.roll(corners, -1, axis=0) - corners
+    across = corners[:, 0] * edges[:, 1] - corners[:, 1] * edges[:, 0]
+    return float(np.min(across / np.hypot(edges[:, 0], edges[:, 1])))

@@ -82,7 +82,8 @@ NO_RULE = {
     "Suspects": "made anew per step",
     **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "HalfSpace", "Hinge", "Model",
                      "Polygon", "Spring", "Weld"), "make_model checks it"),
-    **dict.fromkeys(("Composed", "Cores", "Loop", "Part", "Smooth"), "made by compose from a checked Model"),
+    **dict.fromkeys(("Composed", "Cores", "Kit", "Loop", "Part", "Rods", "Rough", "RoundedBoxes", "Smooth"),
+                    "made by compose from a checked Model"),
     "Settings": "compose checks it", "State": "a result"}
 
 

@@ -5,7 +5,8 @@ import pytest
 
 from validate.measure.accuracy import ASYMPTOTIC, relative, run_engine_to_end
 from validate.products import BUILDERS, MUJOCO, PYBULLET
-from validate.worlds.conformance import error_of
+from validate.worlds import ours
+from validate.worlds.conformance import Beside, error_of
 from validate.worlds.described import DESCRIBED
 
 MOST = 500                   # steps
@@ -51,3 +52,23 @@ def test_each_engine_runs_most_scenes():
     counts = {product.name: sum(not product.world.refuses(one.model(one.scene.parameters))
                                 for one in DESCRIBED.values()) for product in BUILDERS if product.installed()}
     assert counts.items() <= {"pymunk": 15, "pybullet": 16, "mujoco": 13, "pyb2d3": 15}.items()
+
+
+# ---------------------------------------------------------------------------------------------- our loop
+
+OURS = Beside("our loop", ours.refuses, ours.build)
+
+
+def test_our_loop_runs_every_scene():
+    assert not any(ours.refuses(one.model(one.scene.parameters)) for one in DESCRIBED.values())
+
+
+@pytest.mark.parametrize(("name", "order"), [("throw", 1), ("asymmetric_top", 2), ("heavy_top", 2)])
+def test_our_loop_runs_the_scenes_in_space_with_the_order_of_its_parts(name, order):
+    """Bodies turn by a splitting, and joints are RATTLE: both are of order 2.  Gravity alone is symplectic Euler."""
+    one = DESCRIBED[name]
+    p, steps = one.scene.parameters, [n for n in one.scene.steps if n <= 1000][-2:]
+    truth = np.array(one.scene.truth(p, one.scene.duration), float)
+    coarse, fine = (error_of(OURS, one, p, truth, n) for n in steps)
+    assert np.log(coarse / fine) / np.log(steps[1] / steps[0]) == pytest.approx(order, abs=0.2)
+    assert fine < 0.1

@@ -1,7 +1,7 @@
 """A reader's own engine in every described scene: where it agrees with the truth, with which order, what it refuses.
 
-No theory of this engine is known, and it is never compared with the theory of another one.  So only its convergence
-is judged: whether its error vanishes with its step.
+Our own loop and the installed engines stand beside it.  No theory of this engine is known, and it is never compared
+with the theory of another one.  So only its convergence is judged: whether its error vanishes with its step.
 """
 
 import importlib.util
@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable
 from contextlib import contextmanager
 from enum import StrEnum
+from functools import partial
 from html import escape
 from itertools import pairwise
 from pathlib import Path
@@ -22,7 +23,9 @@ from solutions.support.model import State, start_of
 
 from ..measure.accuracy import ASYMPTOTIC, Outcome, finite, relative, shown_order
 from ..run.store import writable
+from ..subject import modules
 from ..subject.loading import TooLong, alarm
+from . import ours
 from .described import DESCRIBED
 
 MOST = {True: 500, False: 2000}              # most steps of a run, quick or not, where there are enough shorter runs
@@ -47,6 +50,24 @@ class Reader(NamedTuple):
     name: str
     build: Callable          # (model, dt) → a world with step() and state()
     refuses: Callable        # (model) → a reason, or ""
+
+
+class Beside(NamedTuple):
+    """What stands beside a reader's engine and is no product."""
+    name: str
+    refuses: Callable
+    build: Callable
+
+    @property
+    def world(self):
+        """Return what builds its worlds, as a product does."""
+        return self
+
+    def __str__(self):
+        return self.name
+
+
+OURS = Beside("our loop", ours.refuses, partial(ours.build, compiled=modules.can_compile()))
 
 
 class Row(NamedTuple):
@@ -196,7 +217,7 @@ def conform(path, names, others, quick, out, console):
 
     It is 1 where the engine fails or departs.  Raises BadInput for a bad file or a scene without a Model.
     """
-    reader = load_engine(path)
+    reader, others = load_engine(path), (OURS, *others)
     for name in names:
         if name not in DESCRIBED:
             raise BadInput(f"scene {name!r}", "not a Model yet", f"choose from: {', '.join(DESCRIBED)}")
@@ -254,7 +275,8 @@ def page_of(reader, rows, others):
 <p>{escape(summary(rows))}</p>
 <p>Each scene is one Model, from which every engine is built. An error is relative to the truth at the end of the scene.
 No theory of this engine is known here, so only its convergence is judged: it agrees where its error vanishes with its
-step, and departs where its runs converge to another motion. The other engines ran with the most steps of a row.</p>
+step, and departs where its runs converge to another motion. The others ran with the most steps of a row. Our loop is
+composed of what each Model needs; it runs all these scenes, those in space as well.</p>
 <div class="wide"><table><thead><tr>{"".join(f"<th>{escape(head)}</th>" for head in heads)}</tr></thead><tbody>
 {body}</tbody></table></div></body></html>
 """

@@ -5,8 +5,6 @@ from validate.subject import modules
 
 from . import Push, World
 
-PLACES = 6                   # of parts in a compiled loop; `leave` stands where there are fewer
-
 
 def lesson_of(subject, compiled=False):
     """Return the lesson with the loop, with the exercises of a subject."""
@@ -27,7 +25,8 @@ def build(model, dt, of="solutions", compiled=False, **settings):
     lesson = lesson_of(of)
     loop = lesson.compose(model, lesson.Settings(**settings))
     fast = compiled and not any(callable(load) for load in model.loads)
-    advance = compiled_advance(loop, lesson_of(of, True)) if fast else plain_advance(loop)
+    advance = (compiled_advance(loop, lesson.padded(loop), lesson_of(of, True)) if fast else
+               lambda t, state, dt: lesson.run_parts(loop, t, state, dt, 1))
     history, clock = [loop.state, loop.state], [0]                     # before and after the last step
 
     def step():
@@ -38,20 +37,13 @@ def build(model, dt, of="solutions", compiled=False, **settings):
                  lambda: pushes(lesson, loop, clock[0], *history, dt) if clock[0] else [])
 
 
-def plain_advance(loop):
-    """Return the function (t, state, dt) → state of one step."""
-    def advance(t, state, dt):
-        for part in loop.parts:
-            state = part.step(loop.load, loop.bounds, loop.narrow, t, state, dt, loop.p)
-        return state
-    return advance
+def compiled_advance(loop, parts, lesson):
+    """Return the function (t, state, dt) → state of one step, with the compiled twins of the parts.
 
-
-def compiled_advance(loop, lesson):
-    """Return the same with the compiled twins of the parts, which a compiled lesson has by name."""
-    parts = [part.step.__name__ for part in loop.parts] + ["leave"] * (PLACES - len(loop.parts))
-    names = [*parts, *(function.__name__ for function in (loop.load, loop.bounds, loop.narrow))]
-    functions = [getattr(lesson, name) for name in names]
+    A compiled lesson has them by their names.
+    """
+    functions = [getattr(lesson, function.__name__)
+                 for function in (loop.step.step, *parts, loop.load, loop.bounds, loop.narrow)]
     return lambda t, state, dt: lesson.advance_parts(*functions, t, state, dt, 1, loop.p)
 
 
@@ -59,9 +51,9 @@ def pushes(lesson, loop, steps, before, after, dt):
     """Return the pushes of the last step: of its contacts, and of its joints."""
     body = {row: k for k, row in enumerate(loop.row)}
     found = [Push(body[a], body[b], J / dt) for a, b, J in zip(after.contacts.a, after.contacts.b, after.J)]
-    joints = loop.p.joints
-    if joints.a.size:
-        J = lesson.joint_impulses_2d(loop.load, (steps - 1) * dt, before, after, dt, loop.p)
-        rows = zip(joints.a, joints.b, J, loop.joint_of)
+    joints, rods = loop.p.joints, loop.p.rods
+    if loop.joint_of:
+        J = lesson.link_impulses(loop.load, (steps - 1) * dt, before, after, dt, loop.p)
+        rows = zip((*joints.a, *rods.a), (*joints.b, *rods.b), J, loop.joint_of)
         found += [Push(body[a], body.get(b, WORLD), impulse / dt, joint) for a, b, impulse, joint in rows]
     return found

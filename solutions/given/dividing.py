@@ -1,0 +1,129 @@
+"""Given with lesson 10.  Fast bodies do not pass through thin ones: a step in which they would is divided.
+
+A step finds contacts at its beginning only.  If after it two bodies have met and would be too deep in each other, or
+past each other, it is done anew, and ends where they first touch.  The rest of it is a step of its own, in which the
+contact acts as any other, with its restitution and its arms; joints stay closed.
+Suspects come from the boxes around the ways of all bodies (swept_boxes).  Where all bodies are slow, the test is a
+single pass over them.
+*Source:* lesson 6, swept volumes; event-driven integration of lessons 3 and 7.
+*Left out:* after a divided step the impulses are those of its last part.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..support.records import check_record
+from ..support.scenes import TOO_DEEP
+from .joints import Joints
+from .passing import both_sides, find_suspects, may_pass, pose_at
+
+MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
+SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
+SHORTEST = 1e-9              # part of a step that is left out [-]
+HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
+
+
+class Rough(NamedTuple):
+    """What find_suspects reads."""
+    half: np.ndarray         # (n, d) half sizes of boxes around the bodies, the least one its thickness [m]
+    inv_mass: np.ndarray
+    planes: np.ndarray
+    joints: Joints
+
+
+# ---------------------------------------------------------------------------------------------- where they touch
+
+def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes):
+    """Return the overlap (m,) [m] of each suspect when this share of the step is over; 0 of those that are apart.
+
+    The backs of planes, which suspects have as well, do not count.
+    """
+    back = shapes.half.shape[0] + sides.shape[0] // 2
+    pairs, (x, q), overlap = suspects.pairs, pose_at(before, after, share, dt), np.zeros(suspects.way.size)
+    _, _, turn = bounds(x, q, shapes)
+    found = narrow(x, turn, shapes, sides, pairs, 0.0)
+    for k in range(found.a.size):
+        i = found.a[k]
+        for s in range(pairs.first[i], pairs.first[i + 1]):
+            if pairs.partner[s] == found.b[k] and found.b[k] < back:
+                overlap[s] = max(overlap[s], -found.gap[k])
+    return overlap
+
+
+def first_touch(bounds, narrow, before, after, dt, p):
+    """Return the share of a step at which two bodies first touch that go too deep into each other in it; 1 if none do.
+
+    Too deep is more than half of the smallest half size beyond the overlap at the beginning.
+    """
+    shapes = p.half
+    if not may_pass(before, after, dt, shapes.half):
+        return 1.0
+    boxes, boxes_new = bounds(before.x, before.q, shapes), bounds(after.x, after.q, shapes)
+    suspects = find_suspects(before, after, boxes, boxes_new, dt, Rough(shapes.half, p.inv_mass, p.planes, p.joints))
+    if suspects.way.size == 0:
+        return 1.0
+    sides, free, allowed = both_sides(p.planes), 0.0, TOO_DEEP * suspects.size       # also where a turn dips in
+    begin = overlaps_at(bounds, narrow, before, after, 0.0, dt, suspects, sides, shapes)
+    for k in range(suspects.poses + 1):
+        share = suspects.begin + (k + 0.5) / suspects.poses * (suspects.end - suspects.begin)
+        share = min(share, 1.0) if k < suspects.poses else 1.0
+        more = overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes) - begin
+        s = np.argmax(more - allowed)
+        if more[s] > allowed[s]:
+            least = begin[s] + (SUNK * allowed[s] if begin[s] > 0.0 else 0.0)
+            return touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, least, free, share)
+        if np.max(more) <= 0.0:
+            free = share
+    return 1.0
+
+
+def touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, least, free, deep):
+    """Return the share of the step at which suspect s begins to overlap by more than `least` [m], by halving."""
+    for _ in range(HALVINGS):
+        middle = 0.5 * (free + deep)
+        if overlaps_at(bounds, narrow, before, after, middle, dt, suspects, sides, shapes)[s] > least:
+            deep = middle
+        else:
+            free = middle
+    return deep
+
+
+# ---------------------------------------------------------------------------------------------- steps
+
+def whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, p):
+    """Return the PileState after the six parts of a step; `leave` stands where there is none."""
+    state = first(load, bounds, narrow, t, state, dt, p)
+    state = second(load, bounds, narrow, t, state, dt, p)
+    state = third(load, bounds, narrow, t, state, dt, p)
+    state = fourth(load, bounds, narrow, t, state, dt, p)
+    state = fifth(load, bounds, narrow, t, state, dt, p)
+    return sixth(load, bounds, narrow, t, state, dt, p)
+
+
+def divided_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, p):
+    """Return the same, but divided where bodies touch that would go too deep into each other or pass each other."""
+    left, after = dt, state
+    for number in range(MOST_PARTS):
+        now = t + dt - left
+        after = whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, now, state, left, p)
+        share = first_touch(bounds, narrow, state, after, left, p)
+        if share == 1.0 or share * left < SHORTEST * dt or number == MOST_PARTS - 1:
+            break
+        part = share * left
+        after = whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, now, state, part, p)
+        state, left = after, left - part
+        if left < SHORTEST * dt:
+            break
+    return after
+
+
+def advance_parts(step, first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, steps, p):
+    """Return the PileState after so many steps of a loop with six parts; step: whole_step or divided_step.
+
+    All are arguments of their own, so that compiled code is kept on disk for each set of parts.
+    """
+    check_record(p, state)
+    for n in range(steps):
+        state = step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t + n * dt, state, dt, p)
+    return state

@@ -1,0 +1,211 @@
+"""Given with lesson 10.  The parts of our loop in space, as parts.py has them in the plane.
+
+What finds contacts is the same in both.  Between impulses a body turns by splitting_free_rotation of lesson 5, which
+holds its angular momentum, so the gyroscopic term needs no part of its own.
+"""
+
+import numpy as np
+
+from ..contact import friction_disc, velocity_sweep
+from ..simulator import weight
+from ..support.arms import (
+    apply_impulse,
+    apply_impulses,
+    arms_3d,
+    normal_velocities,
+    point_velocity_of,
+    turn_quaternions,
+)
+from ..support.contact_points import ContactSet
+from ..support.quaternions import rotate, unrotate
+from ..support.scenes import PileState
+from ..support.tuples import minus, plus, put, row, scaled
+from ..vectors import cross, dot
+from .joints import (
+    close_joints,
+    hold_joints,
+    kick,
+    spatial_inertia,
+    turn_on,
+)
+from .parts import forget_bounces, is_settled, parting_aims, pushing_aims
+from .rods import close_links
+
+# ---------------------------------------------------------------------------------------------- forces
+
+def model_load_in_space(t, x, q, v, omega, p):
+    """Return (F, tau) of gravity, springs and drag on all rows in space."""
+    F, tau = weight(t, x, q, v, omega, p)
+    for i in range(x.shape[0]):
+        if p.inv_mass[i] > 0.0:
+            put(F, i, plus(row(F, i), -p.drag, row(v, i)))
+    for s in range(p.ends.shape[0]):
+        a, b = p.ends[s, 0], p.ends[s, 1]
+        r_a, r_b = rotate(q[a], p.arms[s, :3]), rotate(q[b], p.arms[s, 3:])
+        way = x[a] + r_a - x[b] - r_b
+        u = minus(point_velocity_of(v, omega, a, r_a), point_velocity_of(v, omega, b, r_b))
+        length = np.sqrt(dot(way, way))
+        pull = -(p.laws[s, 1] * (length - p.laws[s, 0]) + p.laws[s, 2] * dot(way, u) / length) / length
+        F[a] += pull * way
+        F[b] -= pull * way
+        tau[a] += pull * cross(r_a, way)
+        tau[b] -= pull * cross(r_b, way)
+    return F, tau
+
+
+def accelerate_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads have acted for dt."""
+    x, q, v, omega, contacts, J = state
+    v, omega = kick(load, t, x, q, v, omega, dt, p)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def accelerate_half_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads have acted for ½ dt."""
+    return accelerate_in_space(load, bounds, narrow, t, state, 0.5 * dt, p)
+
+
+def accelerate_rest_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads at the end of the step have acted for ½ dt."""
+    return accelerate_in_space(load, bounds, narrow, t + dt, state, 0.5 * dt, p)
+
+
+# ---------------------------------------------------------------------------------------------- contact
+
+def sweep_pairs(v, omega, J, aim, contacts, arms, inv_inertia, p):
+    """Return (v, omega, J) after velocity_sweep of lesson 9 over contacts that have a friction of their own each."""
+    v, omega, J = v.copy(), omega.copy(), J.copy()
+    for k in range(contacts.a.size):
+        a, b, old, n = contacts.a[k], contacts.b[k], row(J, k), row(contacts.n, k)
+        r_a, r_b = row(arms.r_a, k), row(arms.r_b, k)
+        u = minus(point_velocity_of(v, omega, a, r_a), point_velocity_of(v, omega, b, r_b))
+        J_n = max(0.0, dot(n, old) + (aim[k] - dot(n, u)) / arms.k_n[k])
+        rubs = J_n > 0.0 and p.mu_of[a] > 0.0 and p.mu_of[b] > 0.0
+        stick = plus(old, -1.0 / arms.k_t[k], u)
+        J_t = friction_disc(plus(stick, -dot(n, stick), n), p.mu_of[a] * p.mu_of[b] * J_n if rubs else 0.0)
+        put(J, k, plus(J_t, J_n, n))
+        apply_impulse(v, omega, a, r_a, minus(row(J, k), old), p.inv_mass, inv_inertia)
+        apply_impulse(v, omega, b, r_b, minus(old, row(J, k)), p.inv_mass, inv_inertia)
+    return v, omega, J
+
+
+def sweep_centres(v, omega, J, aim, contacts, arms, inv_inertia, p):
+    """Return the same where nothing rubs and nothing turns: no arms, no tangent."""
+    v, J = v.copy(), J.copy()
+    for k in range(contacts.a.size):
+        a, b, n = contacts.a[k], contacts.b[k], row(contacts.n, k)
+        old, u_n = dot(n, row(J, k)), dot(n, minus(row(v, a), row(v, b)))
+        J_n = max(0.0, old + (aim[k] - u_n) / (p.inv_mass[a] + p.inv_mass[b]))
+        put(J, k, scaled(J_n, n))
+        put(v, a, plus(row(v, a), p.inv_mass[a] * (J_n - old), n))
+        put(v, b, plus(row(v, b), -p.inv_mass[b] * (J_n - old), n))
+    return v, omega, J
+
+
+def begun_in_space(state, dt, p):
+    """Return (v, omega, J, aim, arms, inv_inertia): what the sweeps of a step begin with."""
+    x, q, v, omega, contacts, J = state
+    inv_inertia = spatial_inertia(q, p.inv_inertia)
+    v, omega, J, arms = v.copy(), omega.copy(), J.copy(), arms_3d(x, p.inv_mass, inv_inertia, contacts)
+    aim = parting_aims(normal_velocities(v, omega, contacts, arms), contacts, dt, p)
+    forget_bounces(J, aim)
+    apply_impulses(v, omega, J, contacts, arms, p.inv_mass, inv_inertia)
+    return v, omega, J, aim, arms, inv_inertia
+
+
+def swept_in_space(sweep, state, dt, p):
+    """Return the state after sweeps over all contacts, until they settle."""
+    x, q, _, _, contacts, J = state
+    if contacts.a.size == 0:
+        return state
+    v, omega, J, aim, arms, inv_inertia = begun_in_space(state, dt, p)
+    for _ in range(p.sweeps):
+        before = J
+        v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
+        if is_settled(J, before, p):
+            break
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def contact_impulses_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the impulses of all contacts, each pair with its own friction."""
+    return swept_in_space(sweep_pairs, state, dt, p)
+
+
+def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same where nothing rubs and nothing turns."""
+    return swept_in_space(sweep_centres, state, dt, p)
+
+
+def swept_and_closed_in_space(close_all, state, dt, p):
+    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
+    x, q, v, omega, contacts, J = state
+    v, omega = close_all(x, q, v, omega, dt, p)
+    if contacts.a.size == 0:
+        return PileState(x, q, v, omega, contacts, J)
+    v, omega, J, aim, arms, inv_inertia = begun_in_space(PileState(x, q, v, omega, contacts, J), dt, p)
+    for _ in range(p.sweeps):
+        before = J
+        v, omega, J = sweep_pairs(v, omega, J, aim, contacts, arms, inv_inertia, p)
+        v, omega = close_all(x, q, v, omega, dt, p)
+        if is_settled(J, before, p):
+            break
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same as contact_impulses_in_space, with joints that are closed after every sweep."""
+    return swept_and_closed_in_space(close_joints, state, dt, p)
+
+
+def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints and rods."""
+    return swept_and_closed_in_space(close_links, state, dt, p)
+
+
+def separate_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state with bodies moved out of each other, as in the plane.
+
+    A body that is turned for it takes its angular velocity along, so that its kinetic energy stays.
+    """
+    x, q, v, omega, contacts, J = state
+    if contacts.a.size == 0 or np.min(contacts.gap) >= -p.slop:
+        return state
+    inv_inertia = spatial_inertia(q, p.inv_inertia)
+    aim, arms, give = pushing_aims(contacts, dt, p), arms_3d(x, p.inv_mass, inv_inertia, contacts), 0.0 * contacts.gap
+    push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
+    for _ in range(p.sweeps):
+        before = J_push
+        push, spin, J_push = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)
+        if is_settled(J_push, before, p):
+            break
+    gap = contacts.gap + dt * normal_velocities(push, spin, contacts, arms)
+    moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
+    turned, carried = turn_quaternions(q, spin, dt), omega.copy()
+    for i in range(q.shape[0]):
+        if p.inv_inertia[i, 0] > 0.0:
+            carried[i] = rotate(turned[i], unrotate(q[i], omega[i]))
+    return PileState(x + dt * push, turned, v, carried, moved, J)
+
+
+# ---------------------------------------------------------------------------------------------- joints and motion
+
+def close_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state with velocities that leave no joint open at the end of the step."""
+    x, q, v, omega, contacts, J = state
+    v, omega = close_joints(x, q, v, omega, dt, p)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def hold_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state with velocities at which the joints' points do not part."""
+    x, q, v, omega, contacts, J = state
+    v, omega = hold_joints(q, v, omega, p)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def move_and_turn_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state after all bodies have moved and turned on; their angular momenta stay."""
+    x, q, v, omega, contacts, J = state
+    q, omega = turn_on(q, omega, dt, p.inv_inertia)
+    return PileState(x + dt * v, q, v, omega, contacts, J)

@@ -1,0 +1,106 @@
+"""Fast bodies do not pass through thin ones: a step in which they would is divided where they first touch."""
+
+import numpy as np
+import pytest
+
+from solutions.given.compose import compose, run_parts, state_of
+from solutions.given.dividing import divided_step, whole_step
+from solutions.support.model import WORLD, Ball, Body, Box, Capsule, HalfSpace, Hinge, Polygon, make_model
+
+DT = 1.0 / 60.0                                # [s]
+TRIANGLE = Polygon(((-0.1, -0.1), (0.2, -0.1), (-0.1, 0.2)))
+SHAPES = Ball(0.1), Box((0.1, 0.1)), Capsule(0.1, 0.05), TRIANGLE
+
+
+def wall(d, x=0.0, half=0.01, high=1.0):
+    """Return a thin wall across the first axis that nothing moves."""
+    return Body((x,) + (0.0,) * (d - 1), shape=Box((half,) + (high,) * (d - 1)), mu=1.0, e=1.0)
+
+
+def states(model, steps, **changed):
+    """Return the State after each step."""
+    loop = compose(model)
+    loop, state, found = loop._replace(**changed), loop.state, []
+    for k in range(steps):
+        state = run_parts(loop, k * DT, state, DT, 1)
+        found.append(state_of(loop, state))
+    return found
+
+
+def test_steps_are_divided_only_where_something_can_touch():
+    ball = Body((-1.0, 0.0), 1.0, Ball(0.1))
+    assert compose(make_model([ball], (0.0, 0.0))).step.step is whole_step
+    assert compose(make_model([ball, wall(2)], (0.0, 0.0))).step.step is divided_step
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: type(shape).__name__)
+def test_a_body_of_a_hundred_metres_per_second_stops_at_a_wall_of_two_centimetres(shape):
+    model = make_model([wall(2), Body((-1.0, 0.05), 1.0, shape, v=(100.0, 0.0))], (0.0, 0.0))
+    assert states(model, 2, step=compose(model).step._replace(step=whole_step))[-1].x[1, 0] > 0.5      # it would pass
+    for s in states(model, 2):
+        assert s.x[1, 0] < -0.02
+
+
+@pytest.mark.parametrize("e", [0.5, 1.0])
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_fast_ball_bounces_off_a_thin_wall_at_the_very_time_of_its_impact(e, d):
+    rest, v = (0.0,) * (d - 1), 100.0
+    model = make_model([wall(d), Body((-1.0, *rest), 1.0, Ball(0.1), e=e, v=(v, *rest))], (0.0,) * d)
+    s = states(model, 1)[0]
+    hits = (1.0 - 0.01 - 0.1) / v
+    assert s.v[1, 0] == pytest.approx(-e * v, rel=1e-12)
+    assert s.x[1, 0] == pytest.approx(-0.11 - e * v * (DT - hits), abs=1e-9)
+
+
+def test_what_flies_past_a_corner_is_not_stopped():
+    """It comes within a millimetre of the wall's end, and its swept box touches the wall."""
+    way = np.array([1.0, 1.0]) / np.sqrt(2.0)
+    beside = np.array([-1.0, 1.0]) / np.sqrt(2.0) * 0.101              # from the corner, across the way
+    corner = np.array([-0.01, 1.0])
+    for offset, passes in ((beside, True), (0.9 * beside, False)):
+        start = corner + offset - 1.0 * way
+        s = states(make_model([wall(2), Body(tuple(start), 1.0, Ball(0.1), v=tuple(150.0 * way))], (0.0, 0.0)), 1)[0]
+        straight = np.max(np.abs(s.v[1] - 150.0 * way)) < 1e-9
+        assert straight == passes
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_two_bullets_that_meet_within_a_step_exchange_their_velocities(d):
+    rest = (0.0,) * (d - 1)
+    balls = [Body((sign * 1.0, *rest), 1.0, Ball(0.05), e=1.0, v=(-sign * 120.0, *rest)) for sign in (-1.0, 1.0)]
+    s = states(make_model(balls, (0.0,) * d), 1)[0]
+    assert s.v[:, 0] == pytest.approx([-120.0, 120.0], rel=1e-12)
+    assert s.x[:, 0] == pytest.approx([-0.05 - 120.0 * (DT - 0.95 / 120.0), 0.05 + 120.0 * (DT - 0.95 / 120.0)],
+                                      abs=1e-9)
+
+
+def test_a_ball_that_bounces_between_two_walls_several_times_in_a_step_stays_between_them():
+    model = make_model([wall(2, -0.5), wall(2, 0.5), Body((0.0, 0.0), 1.0, Ball(0.1), e=1.0, v=(150.0, 0.0))],
+                       (0.0, 0.0))
+    for s in states(model, 5):
+        assert abs(s.x[2, 0]) < 0.39 + 1e-6
+        assert abs(s.v[2, 0]) == pytest.approx(150.0, rel=1e-12)
+
+
+def test_a_rod_that_spins_fast_on_a_hinge_does_not_turn_through_a_post():
+    """Its tip would move by two metres, and past the post, in a step."""
+    rod = Body((0.0, 0.0), 1.0, Box((1.0, 0.02)), omega=120.0)
+    post = Body((0.0, 0.8), shape=Ball(0.03))
+    s = states(make_model([rod, post], (0.0, 0.0), [Hinge(0, WORLD, (0.0, 0.0))]), 1)[0]
+    assert 1.2 < s.q[0] < 0.5 * np.pi
+    assert s.x[0] == pytest.approx((0.0, 0.0), abs=1e-9)               # and the hinge holds
+    assert abs(s.omega[0]) < 1e-3 * 120.0                              # sweeps end at a thousandth
+
+
+def test_a_fast_body_that_falls_on_a_floor_does_not_sink_in():
+    floor = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+    for s in states(make_model([floor, Body((0.0, 1.0), 1.0, Box((0.1, 0.05)), mu=0.5, v=(3.0, -80.0))],
+                               (0.0, -9.81)), 3):
+        assert s.x[1, 1] > 0.049
+
+
+def test_a_plane_that_a_fast_body_leaves_hides_no_other_impact():
+    floor = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+    lid = Body((0.0, 1.0), shape=Box((1.0, 0.01)), mu=1.0, e=1.0)
+    s = states(make_model([floor, lid, Body((0.0, 0.3), 1.0, Ball(0.1), v=(0.0, 100.0))], (0.0, 0.0)), 1)[0]
+    assert s.x[2, 1] == pytest.approx(0.89, abs=1e-9)
