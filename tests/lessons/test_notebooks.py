@@ -9,6 +9,7 @@ from html import escape
 
 import nbformat
 import pytest
+from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
 from validate.notebook import figures
@@ -17,6 +18,7 @@ from validate.subject import modules
 from validate.subject.generate import exercises, stub
 from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
+from .drawn_type import DOTS, LEAST, PAGE, smallest_type
 from .kernels import kernel, ran
 
 HASTE = """import validate.notebook, matplotlib
@@ -24,7 +26,9 @@ from validate.measure import selection
 matplotlib.rcParams["figure.dpi"] = 20
 selection.NOTEBOOK = 0.002
 # nobody looks at these figures, and nobody reads these times
-%config InlineBackend.print_figure_kwargs = {"bbox_inches": None}"""
+%config InlineBackend.print_figure_kwargs = {"bbox_inches": None}
+from tests.lessons import drawn_type
+drawn_type.install()"""
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 SHORT = {"00"}               # notebooks that the default tests run, half done; --long runs all, in three states
 STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}  # share of the exercises, from the first on
@@ -37,12 +41,15 @@ def answered(state):
 
 
 def described(said):
-    """The description of each figure that a cell showed, which is the same beside the PNG and in the HTML."""
+    """(description, smallest type) of each figure that a cell showed.
+
+    The description is the same beside the PNG and in the HTML.
+    """
     shown = [content for content in json.loads(said) if "image/png" in content.get("data", {})]
     for content in shown:
         alt = content["metadata"]["image/png"]["alt"]
         assert content["data"]["text/html"].startswith(f'<img alt="{escape(alt)}"')
-        yield alt
+        yield alt, content["metadata"]["image/png"]["type"]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -83,12 +90,31 @@ def test_no_cell_reads_a_name_that_two_cells_before_it_assign(path):
                     f"{function.name} of cell {k} reads {name}; cell {min(again)} assigns it, cell {max(called)} calls")
 
 
-def test_type_in_a_figure_has_at_least_nine_points():
-    """A figure is at most 12 inches wide, so a page of 1,100 pixels shows these as nine points, too."""
-    for path in (*NOTEBOOKS, *(ROOT / "validate" / "notebook").glob("*.py"),
-                 ROOT / "validate" / "report" / "plots.py"):
-        sizes = re.findall(r"(?:fontsize|labelsize|font_size)\\?\"?[=:] ?\(?([\d.]+)", path.read_text(encoding="utf-8"))
-        assert all(float(size) >= 9.0 for size in sizes), path.name
+def test_the_size_of_type_is_that_on_the_page():
+    """A figure that is wider than the page is shown smaller, and so is one whose legend stands beside the plot."""
+    for width, title, beside, expected in ((8.0, 10.0, False, 10.0 * DOTS / 96), (8.0, 8.0, False, 8.0 * DOTS / 96),
+                                           (20.0, 10.0, False, 10.0 * PAGE / 96 / 20.0),
+                                           (9.6, 10.0, True, None)):
+        figure, axes = plt.subplots(figsize=(width, 3.0))
+        axes.plot([0, 1], label="a legend that is as long as this one")
+        axes.set_title("a title", fontsize=title)
+        if beside:
+            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        axes.tick_params(labelsize=20)
+        figure.canvas.draw()
+        size, text = smallest_type(figure)
+        plt.close(figure)
+        assert size < LEAST if beside else abs(size / expected - 1.0) < 0.1, (width, title, size)
+        assert beside or text == "a title"
+
+
+def test_a_picture_of_a_failing_case_has_type_of_at_least_nine_points():
+    from validate.notebook import cases
+    from validate.notebook.cases import marks
+    for views in (1, 2):
+        figure = marks.picture(views * [marks._FLAT], [], [], [])[0]
+        figure.canvas.draw()
+        assert smallest_type(figure, cases.SHOWN)[0] >= LEAST
 
 
 @pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] != "00"], ids=lambda path: path.stem)
@@ -151,8 +177,9 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, states, t
                 if asked and known.get(asked[1]) == expected:
                     continue
                 said = ran(client, source)
-                for alt in described(said):
+                for alt, (size, text) in described(said):
                     assert len(alt) > 20 and alt != figures.NOTHING, f"a figure has too few words ({alt}):\n{source}"
+                    assert size >= LEAST, f"{text!r} has {size:.1f} points on a page of {PAGE} px:\n{source}"
                 if asked:
                     assert f"Exercise {asked[1]}: {expected}" in said, f"{state}: {said}"
                     known[asked[1]] = expected
