@@ -15,7 +15,7 @@ def smallest_type(figure, dots=DOTS):
     The picture is cropped to what is drawn, so a legend beside the plots makes it wider, and its type smaller.
     An index or an exponent has seven tenths of the size of its text; it is not looked at.
     """
-    wide = figure.get_tightbbox(figure.canvas.get_renderer()).width + 2.0 * plt.rcParams["savefig.pad_inches"]
+    wide = figure.get_tightbbox().width + 2.0 * plt.rcParams["savefig.pad_inches"]
     shown = min(dots, PAGE / wide) / 72.0 / POINT                        # points on the page per point of the figure
     sizes = [[shown * text.get_fontsize(), text.get_text()] for text in figure.findobj(Text) if is_seen(text)]
     return min(sizes, default=[LEAST, ""])

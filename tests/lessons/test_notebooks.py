@@ -90,22 +90,26 @@ def test_no_cell_reads_a_name_that_two_cells_before_it_assign(path):
                     f"{function.name} of cell {k} reads {name}; cell {min(again)} assigns it, cell {max(called)} calls")
 
 
+def shown_type(width, size, legend=None):
+    """smallest_type of a figure that is so many inches wide; the names of its ticks are large."""
+    figure, axes = plt.subplots(figsize=(width, 3.0), layout=None if legend else "constrained")
+    axes.set_title("a title", fontsize=size)
+    axes.tick_params(labelsize=30)
+    if legend:
+        axes.plot([0, 1], label=legend)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=20)
+    figure.canvas.draw()
+    found = smallest_type(figure)
+    plt.close(figure)
+    return found
+
+
 def test_the_size_of_type_is_that_on_the_page():
     """A figure that is wider than the page is shown smaller, and so is one whose legend stands beside the plot."""
-    for width, title, beside, expected in ((8.0, 10.0, False, 10.0 * DOTS / 96), (8.0, 8.0, False, 8.0 * DOTS / 96),
-                                           (20.0, 10.0, False, 10.0 * PAGE / 96 / 20.0),
-                                           (9.6, 10.0, True, None)):
-        figure, axes = plt.subplots(figsize=(width, 3.0))
-        axes.plot([0, 1], label="a legend that is as long as this one")
-        axes.set_title("a title", fontsize=title)
-        if beside:
-            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-        axes.tick_params(labelsize=20)
-        figure.canvas.draw()
-        size, text = smallest_type(figure)
-        plt.close(figure)
-        assert size < LEAST if beside else abs(size / expected - 1.0) < 0.1, (width, title, size)
-        assert beside or text == "a title"
+    for width, size in ((8.0, 10.0), (8.0, 8.0), (20.0, 10.0), (20.0, 20.0)):
+        points, text = shown_type(width, size)
+        assert text == "a title" and abs(points / (size / 96.0 * min(DOTS, PAGE / width)) - 1.0) < 0.03
+    assert shown_type(9.6, 10.0)[0] > LEAST > shown_type(9.6, 10.0, legend="a legend of many words, and large")[0]
 
 
 def test_a_picture_of_a_failing_case_has_type_of_at_least_nine_points():
