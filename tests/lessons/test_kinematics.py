@@ -83,6 +83,21 @@ def pose(theta, target, arm):
     return np.array((target[0] - x, target[1] - y, target[2] - phi)), J
 
 
+def linear(theta, target, arm):
+    """Task of the tests: as many linear equations as one likes, e = a − J θ; target (m, 1 + n) has the columns a, J."""
+    J = target[:, 1:].copy()
+    return target[:, 0] - J @ theta, J
+
+
+EQUATIONS = ((8, 1.0), (1, 1.0), (3, 1e-12), (3, 1e6))                   # their number, and the size of e
+
+
+def equations(draw, rows, size, n=5):
+    """(e over its size, J, target) of that task for θ = 0, where all of e is exact."""
+    e, J = draw(0.3, 1.0, rows), draw(-1.0, 1.0, (rows, n))
+    return e, J, np.column_stack((size * e, J))
+
+
 def posed(draw, n, far=1.0):
     """(lengths, θ, target, e, J) of such a task, with a target that is so far away."""
     lengths, theta, e = lengths_of(draw, n), turned(draw, n), far * draw(0.3, 1.0, 3)
@@ -342,10 +357,14 @@ def test_the_elbow_keeps_its_digits_where_the_arm_is_nearly_straight_or_folded(l
           hint="the last link points along φ: put joint 3 at (x, y) − l₃ (cos φ, sin φ), then solve_2r with the same "
                "lengths and elbow; this target is within reach")
 def test_three_links_end_in_a_place_with_a_direction(lesson, draw):
-    """The first hands are short, and their elbows about right-angled: wherever such a wrist is, it is within reach."""
-    for hand, bend in ((0.2, (1.5, 2.0)), (1.0, (0.1, 3.0)), (2.0, (0.1, 3.0))):
+    """The first hands are short, and their elbows about right-angled: wherever such a wrist is, it is within reach.
+
+    A hand that is long beside the arm loses two digits of the wrist.
+    """
+    for hand, bend, size in ((0.2, (1.5, 2.0), 1.0), (1.0, (0.1, 3.0), 1.0), (2.0, (0.1, 3.0), 1.0),
+                             (30.0, (0.5, 2.5), 1.0), (1.0, (0.5, 2.5), 1e-6), (1.0, (0.5, 2.5), 1e6)):
         for elbow in (1.0, -1.0):
-            lengths = np.append(draw(1.2, 1.5, 2), hand * draw(0.9, 1.1))
+            lengths = size * np.append(draw(1.2, 1.5, 2), hand * draw(0.9, 1.1))
             theta = np.array([draw(-3.1, 3.1), elbow * draw(*bend), draw(-3.1, 3.1)])
             for turns in (0, draw.whole(1, 2), -draw.whole(5, 9)):
                 target = np.append(joints(theta, lengths)[-1], theta.sum() + 2.0 * np.pi * turns)
@@ -367,6 +386,10 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
     target = np.append(joints(theta, (3.0, 2.0, 1.0))[-1], theta.sum() - 2.0 * np.pi)
     theta_3 = lesson.solve_3r(target, np.array([3.0, 2.0, 1.0]), 1.0)[2]
     close("θ₃ of a hand that points far round, wrapped [rad]", theta_3, theta[2], SOLVED, given=f"target {target}")
+    theta = np.array([draw(-0.5, 0.5), draw(0.5, 2.5), draw(1e-9, 1e-8)])     # the hand hardly turns
+    target = np.append(joints(theta, (3.0, 2.0, 1.0))[-1], theta.sum())
+    theta_3 = lesson.solve_3r(target, np.array([3.0, 2.0, 1.0]), 1.0)[2]
+    close("θ₃ of a hand that hardly turns, over its truth [-]", theta_3 / theta[2], 1.0, 1e-4, given=f"θ = {theta}")
     raises("a wrist out of reach", BadInput, lesson.solve_3r, np.array([6.1 + scale, 0.0, np.pi]),
            np.array([3.0, 2.0, 1.0]), 1.0, naming=(7.1 + scale,), thing="distance of the target")
 
@@ -401,7 +424,7 @@ def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
 
 @exercise("11.7", points=1, hint="rows 0 to 2: a_k × (x_n − x_k), rows 3 to 5: a_k")
 def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
-    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (1, 1.0), (4, 1e-6)):      # the last one has micrometres
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):    # from a micrometre to 1000 km
         theta, axes, offsets = chain(draw, n)
         offsets *= size
         x, a, R = frames(theta, axes, offsets)
@@ -494,6 +517,11 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
         got = lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=gain, **around(theta)))
         close("change of θ towards a place and a direction, over the gain [-]", (np.asarray(got) - theta) / gain, e @ J,
               SOLVED, given=f"θ = {theta}, target {target}, α = {gain}, 3 rows")
+    for rows, size in EQUATIONS:
+        (e, J, target), gain = equations(draw, rows, size), draw(0.7, 3.0)
+        got = lesson.transpose_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), gain=gain, **NARROW))
+        close("change of θ for a linear task, over the gain and the size of e [-]", np.asarray(got) / (gain * size),
+              e @ J, ROUND_OFF, given=f"θ = 0, e = {size * e}, J = {J}, α = {gain}, {rows} rows")
 
 
 @exercise("11.9", points=0.5,
@@ -565,6 +593,11 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
         got = lesson.damped_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7, **around(theta)))
         close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), 0.01 * SOLVED,
               given=f"θ = {theta}, target {target}, λ = 0.7 m")
+    for rows, size in EQUATIONS:
+        (e, J, target), damping = equations(draw, rows, size), draw(0.5, 1.0)
+        got = lesson.damped_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), damping=damping, **NARROW))
+        close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size, damped(J, e, damping),
+              SOLVED, given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows")
     lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
     expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
     got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
@@ -745,6 +778,15 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
         got = lesson.limited_step(pose, theta, target, arm_of(lesson, lengths, damping=0.7))
         close("θ after a step towards a place and a direction [rad]", got, theta + damped(J, e, 0.7), 0.01 * SOLVED,
               given=f"θ = {theta}, target {target}, λ = 0.7 m")
+    for rows, size in EQUATIONS:
+        (e, J, target), damping = equations(draw, rows, size), draw(0.5, 1.0)
+        wish, first = e @ J, np.arange(5) == 0                                # only the first joint is at a limit
+        arm = arm_of(lesson, np.ones(5), damping=damping, low=np.where(first & (wish < 0.0), 0.0, -np.inf),
+                     high=np.where(first & (wish > 0.0), 0.0, np.inf))
+        got = lesson.limited_step(linear, np.zeros(5), target, arm)
+        close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size,
+              damped(np.where(first, 0.0, J), e, damping), SOLVED,
+              given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows, limits {arm.low} to {arm.high}")
     size, far = 2.0 ** draw.whole(-1, 1), draw(0.5, 3.0)                      # θ = 0 and whole numbers: (Jᵀ e)_1 is 0
     for side in (1.0, -1.0):
         lengths, theta, e = np.full(3, size), np.zeros(3), side * size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
@@ -835,6 +877,13 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         close("change of θ towards a place and a direction [rad]", got,
               z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], SOLVED,
               given=f"θ = {theta}, rest {rest[:5]}, κ = {much}")
+    for rows, size in EQUATIONS:                                             # what rest is away has the size of e
+        (e, J, target), z = equations(draw, rows, size, 9), draw(0.3, 1.0, 9)
+        got = lesson.null_space_step(linear, np.zeros(9), target, arm_of(lesson, np.ones(9), rest=size * z / pull,
+                                                                         pull=pull, **NARROW))
+        close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size,
+              z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9,
+              given=f"θ = 0, e = {size * e}, J = {J}, {rows} rows, κ (rest − θ) = {size * z}")
     for n, bend in ((2, 1e-13), (4, 1e-13), (2, 1.5e-11), (4, 1.5e-11)):      # σ₂ is below SINGULAR σ₁
         lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), bend * draw(1.0, 2.0, n - 1))
         e, z = draw(-0.5, 0.5, 2), pull * (rest[:n] - theta)

@@ -6,9 +6,11 @@ import re
 import symtable
 from dataclasses import fields
 from html import escape
+from pathlib import Path
 
 import nbformat
 import pytest
+from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
 from validate.notebook import figures
@@ -17,6 +19,7 @@ from validate.subject import modules
 from validate.subject.generate import exercises, stub
 from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
+from .drawn_type import DOTS, LEAST, PAGE, smallest_type
 from .kernels import kernel, ran
 
 HASTE = """import validate.notebook, matplotlib
@@ -25,6 +28,11 @@ matplotlib.rcParams["figure.dpi"] = 20
 selection.NOTEBOOK = 0.002
 # nobody looks at these figures, and nobody reads these times
 %config InlineBackend.print_figure_kwargs = {"bbox_inches": None}"""
+# the kernel's `tests` may be those of another package
+MEASURED = f"""import sys
+sys.path.append({str(Path(__file__).parent)!r})
+import drawn_type
+drawn_type.install()"""
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 SHORT = {"00"}               # notebooks that the default tests run, half done; --long runs all, in three states
 STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}  # share of the exercises, from the first on
@@ -37,12 +45,15 @@ def answered(state):
 
 
 def described(said):
-    """The description of each figure that a cell showed, which is the same beside the PNG and in the HTML."""
+    """(description, smallest type) of each figure that a cell showed.
+
+    The description is the same beside the PNG and in the HTML.
+    """
     shown = [content for content in json.loads(said) if "image/png" in content.get("data", {})]
     for content in shown:
         alt = content["metadata"]["image/png"]["alt"]
         assert content["data"]["text/html"].startswith(f'<img alt="{escape(alt)}"')
-        yield alt
+        yield alt, content["metadata"]["image/png"]["type"]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -83,12 +94,35 @@ def test_no_cell_reads_a_name_that_two_cells_before_it_assign(path):
                     f"{function.name} of cell {k} reads {name}; cell {min(again)} assigns it, cell {max(called)} calls")
 
 
-def test_type_in_a_figure_has_at_least_nine_points():
-    """A figure is at most 12 inches wide, so a page of 1,100 pixels shows these as nine points, too."""
-    for path in (*NOTEBOOKS, *(ROOT / "validate" / "notebook").glob("*.py"),
-                 ROOT / "validate" / "report" / "plots.py"):
-        sizes = re.findall(r"(?:fontsize|labelsize|font_size)\\?\"?[=:] ?\(?([\d.]+)", path.read_text(encoding="utf-8"))
-        assert all(float(size) >= 9.0 for size in sizes), path.name
+def shown_type(width, size, legend=None):
+    """smallest_type of a figure that is so many inches wide; the names of its ticks are large."""
+    figure, axes = plt.subplots(figsize=(width, 3.0), layout=None if legend else "constrained")
+    axes.set_title("a title", fontsize=size)
+    axes.tick_params(labelsize=30)
+    if legend:
+        axes.plot([0, 1], label=legend)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=20)
+    figure.canvas.draw()
+    found = smallest_type(figure)
+    plt.close(figure)
+    return found
+
+
+def test_the_size_of_type_is_that_on_the_page():
+    """A figure that is wider than the page is shown smaller, and so is one whose legend stands beside the plot."""
+    for width, size in ((8.0, 10.0), (8.0, 8.0), (20.0, 10.0), (20.0, 20.0)):
+        points, text = shown_type(width, size)
+        assert text == "a title" and abs(points / (size / 96.0 * min(DOTS, PAGE / width)) - 1.0) < 0.03
+    assert shown_type(9.6, 10.0)[0] > LEAST > shown_type(9.6, 10.0, legend="a legend of many words, and large")[0]
+
+
+def test_a_picture_of_a_failing_case_has_type_of_at_least_nine_points():
+    from validate.notebook import cases
+    from validate.notebook.cases import marks
+    for views in (1, 2):
+        figure = marks.picture(views * [marks._FLAT], [], [], [])[0]
+        figure.canvas.draw()
+        assert smallest_type(figure, cases.SHOWN)[0] >= LEAST
 
 
 @pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] != "00"], ids=lambda path: path.stem)
@@ -138,7 +172,7 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, states, t
     known = {}
     cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
     with kernel(ROOT / "notebooks") as client:
-        ran(client, HASTE)
+        ran(client, f"{HASTE}\n{MEASURED}")
         for state, solved in ((state, answered(state)) for state in states):
             for name in lesson_names():
                 (tmp_path / state).mkdir(exist_ok=True)
@@ -151,8 +185,9 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, states, t
                 if asked and known.get(asked[1]) == expected:
                     continue
                 said = ran(client, source)
-                for alt in described(said):
+                for alt, (size, text) in described(said):
                     assert len(alt) > 20 and alt != figures.NOTHING, f"a figure has too few words ({alt}):\n{source}"
+                    assert size >= LEAST, f"{text!r} has {size:.1f} points on a page of {PAGE} px:\n{source}"
                 if asked:
                     assert f"Exercise {asked[1]}: {expected}" in said, f"{state}: {said}"
                     known[asked[1]] = expected

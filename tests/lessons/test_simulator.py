@@ -992,6 +992,15 @@ def test_a_step_brings_the_lowest_point_to_the_velocity_of_the_floor_ahead(lesso
     mean = 0.5 * (omega + got[3])
     rate = np.linalg.norm(mean)
     close("orientation after a step, as a matrix", matrix(got[1]), about(mean / rate, rate * dt) @ matrix(q), MANY)
+    tiny, still = draw(1e-9, 1e-8), ball._replace(floor_v=np.zeros(3), floor_omega=np.zeros(3))
+    x_0, slow = ball.radius * np.eye(3)[2], tiny * np.append(unit_vector(draw, 2), 0.0)
+    rolls = rolling_on(lesson, x_0, slow, still) + tiny * np.eye(3)[2]
+    after = lesson.carried_step(unloaded, T_0, x_0, np.eye(4)[0], slow, rolls, dt, still)
+    close("velocity of a ball that rolls slowly, over its size [-]", np.asarray(after[2]) / tiny, slow / tiny, MANY,
+          given=f"v = {slow} m/s, ω = {rolls} rad/s")
+    close("its way, over that size [s]", (np.asarray(after[0]) - x_0) / tiny, dt * slow / tiny, MANY)
+    close("rotation vector of its turn, over that size [s/m]", 2.0 * np.asarray(after[1])[1:] / tiny, dt * rolls / tiny,
+          MANY)
     sloping = ball._replace(gravity=np.append(draw(-1.0, 1.0, 2), -G))
     pulled, free = (lesson.carried_step(load, T_0, x, q, v, omega, dt, sloping) for load in (tethered, unloaded))
     state = q[1:] - x - np.asarray(free[2]) + free[3]                     # the velocities are those after friction

@@ -766,6 +766,7 @@ SEEN = {                                                                  # of a
     "uses only the place, where the task is a place and a direction": only_the_place,
     "uses only the first two rows of the task": rows(slice(2)),
     "uses only the first three rows of the task": rows(slice(3)),
+    "uses only the first six rows of the task": rows(slice(6)),
     "omits the last row of the task": rows(slice(-1)),
     "uses reach_2d in place of the task":
         lambda task: lambda theta, target, arm: worked.reach_2d(theta, target[:2].copy(), arm),
@@ -1762,6 +1763,12 @@ edit("11.6", "takes every offset along x", "rotate(q, row(offsets, k))",
 edit("11.6", "returns the axes in the frame of the last link", "return x, a, q",
      "return x, np.stack([rotate(np.array((q[0], -q[1], -q[2], -q[3])), one) for one in a]), q")
 edit("11.6", "takes the last axis in its own frame", "return x, a, q", "a[n - 1] = axes[n - 1]; return x, a, q")
+edit("11.5", "forgets a hand that is longer than 10 m", "theta = solve_2r(wrist,",
+     "theta = solve_2r(wrist if lengths[2] < 10.0 else target[:2].copy(),")
+edit("11.5", "sets a θ₃ below 1e-6 to 0", "wrapped(phi - theta[0] - theta[1])",
+     "(lambda angle: angle if abs(angle) > 1e-6 else 0.0)(wrapped(phi - theta[0] - theta[1]))")
+edit("11.7", "shortens an offset that is longer than 6 m", "minus(row(x, n), row(x, k))",
+     "scaled(min(1.0, 6.0 / max(np.sqrt(np.sum((x[n] - x[k]) ** 2)), 1e-300)), minus(row(x, n), row(x, k)))")
 edit("11.7", "computes in single precision", "np.empty((6, n))", "np.empty((6, n), np.float32)")
 edit("11.7", "takes the first joint to be at the origin", "minus(row(x, n), row(x, k))",
      "(minus(row(x, n), row(x, k)) if k else row(x, n))")
@@ -1782,6 +1789,10 @@ edit("11.9", "computes e anew after half of the step", "return theta + arm.gain"
      "e, _ = task(theta + 0.5 * arm.gain * (e @ J), target, arm); return theta + arm.gain")
 for number, step in (("11.9", PUSHED), ("11.11", SOLVED), ("11.16", PULLED)):
     edit(number, "limits each change to π", f"return {step}", f"return theta + np.clip({step} - theta, -np.pi, np.pi)")
+    edit(number, "limits each change to 1000 rad", f"return {step}",
+         f"return theta + np.clip({step} - theta, -1e3, 1e3)")
+    edit(number, "omits changes below 1e-9 rad", f"return {step}",
+         f"return theta + np.where(np.abs({step} - theta) < 1e-9, 0.0, {step} - theta)")
 edit("11.10", "damps the singular values a little", "/ sigma[i]", "* sigma[i] / (sigma[i] ** 2 + 1e-12)")
 edit("11.10", "does not let singular values be below 1e-6", "/ sigma[i]", "/ max(sigma[i], 1e-6)")
 edit("11.11", "uses half of λ", "arm.damping * arm.damping", "0.25 * arm.damping * arm.damping")
@@ -1806,6 +1817,7 @@ edit("11.15", "multiplies the step by the gain", "theta + sum_of_rows", "theta +
 edit("11.15", "never blocks the first joint", "for k in range(theta.size):", "for k in range(1, theta.size):")
 edit("11.15", "never blocks the last joint", "for k in range(theta.size):", "for k in range(theta.size - 1):")
 edit("11.15", "takes the upper limit of the first joint for all when it blocks", "arm.high[k] and", "arm.high[0] and")
+edit("11.16", "limits the way to rest to 10 rad", "(arm.rest - theta)", "np.clip(arm.rest - theta, -10.0, 10.0)")
 edit("11.16", "limits the pull to 1 rad", PULLED, f"(lambda z: {PULLED})(np.clip(z, -1.0, 1.0))")
 edit("11.16", "normalises a pull that is longer than 1", PULLED, f"(lambda z: {PULLED})(z / max(1.0, np.sqrt(z @ z)))")
 edit("11.16", "uses a pull of at most ½", "arm.pull *", "min(arm.pull, 0.5) *")

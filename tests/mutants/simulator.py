@@ -1480,7 +1480,10 @@ edits("10.9",
       ("subtracts the old velocity from the new one", "(v + v_new)", "(v_new - v)"),
       ("rotates by half steps with the old and with the new spin", ROTATED,
        "quaternion_product(exponential(0.5 * dt * omega_new), quaternion_product(exponential(0.5 * dt * omega), q))"),
-      ("turns the ball with the floor", "return x", "omega_new[2] = ball.floor_omega[2]; return x"))
+      ("turns the ball with the floor", "return x", "omega_new[2] = ball.floor_omega[2]; return x"),
+      ("does not turn a ball that turns slowly", "(omega + omega_new)",
+       "(omega + omega_new) * (norm(omega + omega_new) > 1e-3)"),
+      ("does not move a ball that rolls slowly", "(v + v_new)", "(v + v_new) * (norm(v + v_new) > 1e-6)"))
 edits("10.10",
       ("subtracts the speed of the rim from that of the centre", "size = norm(slip)",
        "size = abs(np.hypot(v[0], v[1]) - ball.radius * np.hypot(omega[0], omega[1]))"),

@@ -19,7 +19,8 @@ from .marks import Dots, Way, is_finite, picture
 
 UNDRAWABLE = (ArithmeticError, AttributeError, IndexError, TypeError, ValueError, np.linalg.LinAlgError)
 PLAIN = {"__init__", "marks", "pieces"}      # files without entries
-DOTS_PER_INCH = 120
+DOTS_PER_INCH = 120          # of the file
+SHOWN = 96                   # pixels of a page per inch, so that type has its size in points there
 
 
 class Drawn(NamedTuple):
@@ -70,7 +71,7 @@ def drawn(case):
     listed = "; ".join(dict.fromkeys(mark.label for mark in [*given, *answer, *expected] if mark.label))
     seen = " and ".join(view.title for view in views if view.title)
     alt = f"The case in which the check of exercise {case.exercise} failed{f', seen {seen}' if seen else ''}: {listed}."
-    return Drawn(file.getvalue(), round(80 * figure.get_figwidth()), alt, " ".join(words))
+    return Drawn(file.getvalue(), round(SHOWN * figure.get_figwidth()), alt, " ".join(words))
 
 
 def _marks(how, result, arguments, whose):
