@@ -20,7 +20,7 @@ from validate.subject.modules import ROOT, SOLUTIONS
 
 from .test_live_films import CHROMIUM
 
-LONGEST = 120_000            # until a page shows something, on a busy machine [ms]
+LONGEST = 180_000            # until a page shows something, on a busy machine [ms]
 CELL = """import sys
 sys.path.insert(0, {root!r})
 from solutions.support.model import Body, Box, Ball, HalfSpace, make_model
@@ -52,16 +52,21 @@ def server(tmp_path_factory):
     lab = subprocess.Popen(command, env={**os.environ, **environment}, stdout=subprocess.DEVNULL,
                            stderr=subprocess.DEVNULL)
     try:
-        address, until = f"http://127.0.0.1:{port}", time.monotonic() + 60.0
-        while time.monotonic() < until:
-            with contextlib.suppress(OSError):
-                urllib.request.urlopen(f"{address}/api", timeout=5.0).close()
-                break
+        address, until = f"http://127.0.0.1:{port}", time.monotonic() + 1e-3 * LONGEST
+        while not answers(address):
+            assert time.monotonic() < until and lab.poll() is None, "JupyterLab does not start"
             time.sleep(0.5)
         yield address, lessons
     finally:
         lab.terminate()
         lab.wait(30)
+
+
+def answers(address):
+    with contextlib.suppress(OSError):
+        urllib.request.urlopen(f"{address}/api", timeout=5.0).close()
+        return True
+    return False
 
 
 @pytest.fixture(scope="module")

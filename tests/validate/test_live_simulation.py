@@ -14,7 +14,7 @@ from validate.notebook.live.files import sentence
 from validate.notebook.live.hand import HERTZ, Grip, offset, pulled
 from validate.notebook.live.simulation import Simulation, Tuning
 from validate.subject.generate import stub
-from validate.subject.modules import SOLUTIONS
+from validate.subject.modules import SOLUTIONS, lesson_names
 
 FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
 DOWN = (0.0, -9.81)
@@ -289,3 +289,42 @@ def test_a_save_changes_the_motion_and_not_the_state(learner):
     scene.follow()
     scene.step()
     assert scene.now().v[0, 1] == pytest.approx(v[0, 1] + 9.81 / 120.0)
+
+
+# ---------------------------------------------------------------------------------------------- earlier lessons
+
+@pytest.fixture
+def only(tmp_path):
+    """only(lesson): a folder in which that lesson alone is solved."""
+    def made(lesson):
+        for file in SOLUTIONS.glob("*.py"):
+            text = file.read_text()
+            open_ = file.stem in lesson_names() and file.stem != lesson
+            (tmp_path / file.name).write_text(stub(text) if open_ else text)
+        return tmp_path
+    return made
+
+
+def test_a_ball_bounces_by_the_impulses_of_lesson_7_alone(only):
+    """Each bounce reaches e² of the height, but for the step: it is found up to one step late."""
+    ball = Body((0.0, 1.1), 1.0, Ball(0.1), e=0.8)
+    scene = Simulation(make_model([FLOOR, ball], DOWN), only("impulses"), Tuning(dt=1 / 1000), False, "impulses")
+    heights = [ran(scene, 1).now().x[1, 1] - 0.1 for _ in range(1000)]
+    lands = int(np.argmax(np.array(heights) < 0.0))
+    assert lands == pytest.approx(np.sqrt(2.0 / 9.81) * 1000, abs=3)
+    assert max(heights[lands:]) == pytest.approx(0.64, abs=0.02)
+    assert scene.energy() < scene.expected()
+
+
+def test_a_box_that_lands_on_its_corner_turns_by_the_impulses_of_lesson_7(only):
+    box = Body((0.0, 0.4), 1.0, Box((0.2, 0.1)), e=0.5, q=0.5)
+    scene = Simulation(make_model([FLOOR, box], DOWN), only("impulses"), Tuning(), False, "impulses")
+    ran(scene, 60)
+    assert abs(scene.now().omega[1]) > 1.0 and scene.energy() < scene.expected()
+
+
+def test_a_stack_stands_by_the_sweeps_of_lesson_9_alone(only):
+    scene = Simulation(boxes(4), only("contact"), lesson="contact")
+    ran(scene, 60)
+    assert np.allclose(scene.now().x, [(0.0, 0.0), *((0.0, 0.1 + 0.2 * k) for k in range(4))], atol=2e-3)
+    assert scene.apart() < 2e-3

@@ -167,7 +167,8 @@ def test_a_film_of_what_was_seen_is_a_page():
         assert page.said[-1].startswith("Nothing has moved yet")
         await page.until(lambda: page.scene.simulation.t > 0.3)
         page.tell(do="film")
-        assert page.films[0]["page"].count('<canvas data-picture="p') == 1 and '"label": "pymunk"' in page.films[0]["page"]
+        text = page.films[0]["page"]
+        assert text.count('<canvas data-picture="p') == 1 and '"label": "pymunk"' in text
     in_a_loop(test)
 
 
