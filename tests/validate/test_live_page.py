@@ -41,7 +41,8 @@ def server(tmp_path_factory):
     for file in SOLUTIONS.glob("*.py"):
         shutil.copy(file, lessons)
     cell = nbformat.v4.new_code_cell(CELL.format(root=str(ROOT)), id="scene")
-    nbformat.write(nbformat.v4.new_notebook(cells=[cell]), folder / "live.ipynb")
+    about = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    nbformat.write(nbformat.v4.new_notebook(cells=[cell], metadata=about), folder / "live.ipynb")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -89,6 +90,7 @@ def page(server, browser):
     page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=LONGEST)
     with contextlib.suppress(Exception):                              # "Would you like to receive news?"
         page.get_by_role("button", name="No", exact=True).click(timeout=2000)
+    page.get_by_text("| Idle").wait_for(timeout=LONGEST)              # a cell that is run before its kernel is there is lost
     run_cell(page)
     yield page
     assert page.faults == []
