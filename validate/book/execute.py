@@ -78,7 +78,8 @@ def executed(path, stubs=False):
             for name, text in generate.lessons().items():
                 Path(folder, name).write_text(text, encoding="utf-8")
         lessons = folder if stubs else str(SOLUTIONS)
-        with kernel(path.parent, WORKBOOK_LESSONS=lessons, PYTHONPATH=str(ROOT)) as client:
+        # a live scene is shown as a film, because no kernel runs behind the book
+        with kernel(path.parent, WORKBOOK_LESSONS=lessons, PYTHONPATH=str(ROOT), WORKBOOK_LIVE="film") as client:
             client.execute_interactive(FIRST, timeout=LONGEST, output_hook=lambda message: None)
             for cell in book.cells:
                 if cell.cell_type == "code":

@@ -517,9 +517,9 @@ def _display3d(picture, height=380):
     key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in alone]
     key += [f'<span style="color:{colour}">→</span> {escape(arrow)}'
             for arrow, colour in zip(picture["arrows"], ARROWS)]
-    display(HTML(f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div>'
-                 f'<div>{" &nbsp; ".join(key)}</div>'
-                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
+    place = f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div>'
+    display(HTML(saving.keeping_keys(f'{place}<div>{" &nbsp; ".join(key)}</div>')
+                 + f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
                  f'<script>{PLAYER_3D.read_text()}</script>'))
 
 

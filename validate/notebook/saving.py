@@ -15,6 +15,15 @@ from ..report import plots
 
 SIGNS = {"o": "●", "s": "■", "^": "▲", "v": "▼", "D": "◆", "d": "♦", "P": "✚", "<": "◀", ">": "▶", "h": "⬢"}
 FRAMES_PER_SECOND = 25       # of a GIF: viewers round longer times between pictures to 1/100 s
+# JupyterLab reads single letters as commands while a film has the focus: M makes the cell text, and X cuts it.
+# It still gets Escape, Shift+Enter, and keys with Ctrl, Alt or Meta.
+KEEP_KEYS = ("if (!event.ctrlKey && !event.altKey && !event.metaKey && event.key !== 'Escape'"
+             " && !(event.shiftKey && event.key === 'Enter')) event.stopPropagation()")
+
+
+def keeping_keys(html):
+    """Return the HTML of a film in an element that keeps the film's keys from the page around it."""
+    return f'<div class="film" onkeydown="{escape(KEEP_KEYS)}">{html}</div>'
 
 
 def film_html(picture, height=260):
@@ -26,8 +35,8 @@ def film_html(picture, height=260):
                           f'{escape(run["label"])}' for run in alone)
     script = (Path(plots.__file__).parent / "player.js").read_text()
     style = f"width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"
-    return (f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>'
-            f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
+    return (keeping_keys(f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>')
+            + f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
             f'<script>{script}</script>')
 
 
