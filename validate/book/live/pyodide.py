@@ -21,7 +21,7 @@ WANTED = json.loads((Path(__file__).parent / "pyodide.json").read_text(encoding=
 VERSION = WANTED["info"]["version"]
 UNUSED = {                   # {package: files of its wheel that no lesson loads}; half of what a first visit would load
     "scipy": r"scipy/(misc|stats|interpolate|signal|io|cluster|ndimage|odr|fftpack|datasets)/"
-             r"|scipy/special/cython_special\.|.*/_c?y?test|.*/_test",
+             r"|scipy/special/cython_special\.|.*/_test\w*\.cpython",
     "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|matplotlib/(testing|tests)/"
                   r"|.*/DejaVu(Serif|SansMono-)|matplotlib/backends/(web_backend|qt_editor)/",
     "numpy": r"numpy/f2py/|.*\.pyi$|.*\.pxd$|numpy/linalg/lapack_lite\.",
@@ -31,7 +31,9 @@ UNUSED = {                   # {package: files of its wheel that no lesson loads
 ABSENT = "jedi", "sqlite3", "ssl"     # the kernel asks for them, and does without: they are empty packages here
 INSTALLED = "comm",                   # the kernel asks for it; pure Python, taken from this environment
 OWN = "workbook_live"
-FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", *INSTALLED, *ABSENT, OWN)   # loaded at once, together
+# loaded together when a kernel starts
+FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", *INSTALLED, *ABSENT, OWN.replace("_", "-"))
+ABOUT = re.compile(r"^(METADATA|WHEEL|entry_points\.txt|LICEN[CS]E.*|COPYING.*)$")
 DATE = (1980, 1, 1, 0, 0, 0)          # of every entry: the same sources give the same bytes
 
 
@@ -96,7 +98,7 @@ def take(place, out):
     for name in INSTALLED:
         packages[name] = wheel(out, name, metadata.version(name), installed(name))
     source = (Path(__file__).parent / f"{OWN}.py").read_bytes()
-    packages[OWN] = wheel(out, OWN, "0", {f"{OWN}.py": source})
+    packages[OWN.replace("_", "-")] = wheel(out, OWN, "0", {f"{OWN}.py": source})
     lock = {"info": WANTED["info"], "packages": packages}
     (out / "pyodide-lock.json").write_text(json.dumps(lock, sort_keys=True), encoding="utf-8")
 
@@ -112,16 +114,15 @@ def taken(folder, out, name, facts):
         kept = {one: packed.read(one) for one in packed.namelist() if not unused.match(one) and one[-1] != "/"}
     record = next(one for one in kept if one.endswith(".dist-info/RECORD"))
     lines = kept[record].decode().splitlines(keepends=True)
-    kept[record] = "".join(line for line in lines if not unused.match(line)).encode()
+    kept[record] = "".join(line for line in lines if not unused.match(line.partition(",")[0])).encode()
     pack(target, kept)
     return facts | {"sha256": sha256(target.read_bytes())}
 
 
 def installed(name):
-    """Return {path: bytes} of a package of this environment: its Python files and what is known about it."""
-    paths = [path for path in metadata.files(name) or () if ".." not in path.parts]
-    return {str(path): path.read_binary() for path in paths
-            if path.suffix not in (".pyc", ".so", ".pyd") and path.locate().is_file()}
+    """Return {path: bytes} of a package of this environment: its Python files, its names and its licence."""
+    paths = [path for path in metadata.files(name) or () if ".." not in path.parts and path.locate().is_file()]
+    return {path.as_posix(): path.read_binary() for path in paths if path.suffix == ".py" or ABOUT.search(path.name)}
 
 
 def wheel(out, name, version, content):

@@ -38,8 +38,7 @@ def build(place, out):
         drive(files, scratch / "content")
         (scratch / "overrides.json").write_text(json.dumps(SETTINGS), encoding="utf-8")
         jupyterlite(scratch, out)
-    packages = {f"packages/{path}": data for name in TESTED_BY for path, data in pyodide.installed(name).items()
-                if Path(path).suffix in (".py", "") or ".dist-info" in path}
+    packages = {f"packages/{path}": data for name in TESTED_BY for path, data in pyodide.installed(name).items()}
     tree = {f"{release.TOP}/{path}": data for path, data in files.items() if not ELSEWHERE.match(path)}
     pyodide.pack(out / "static" / "workbook.zip", tree | packages)
     configure(out / "jupyter-lite.json")
