@@ -24,15 +24,14 @@ UNUSED = {                   # {package: files of its wheel that no lesson loads
              r"|scipy/special/cython_special\.|.*/_test\w*\.cpython",
     "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|matplotlib/(testing|tests)/"
                   r"|.*/DejaVu(Serif|SansMono-)|matplotlib/backends/(web_backend|qt_editor)/",
-    "numpy": r"numpy/f2py/|.*\.pyi$|.*\.pxd$|numpy/linalg/lapack_lite\.",
     "pillow": r"PIL/_(imagingft|imagingtk|webp)\.",
     "pygments": r"pygments/lexers/(?!__init__|_mapping|python|diff|special|shell|console)",
 }
-ABSENT = "jedi", "sqlite3", "ssl"     # the kernel asks for them, and does without: they are empty packages here
+ABSENT = "jedi", "ssl"                # the kernel asks for them, and does without: they are empty packages here
 INSTALLED = "comm",                   # the kernel asks for it; pure Python, taken from this environment
 OWN = "workbook_live"
 # loaded together when a kernel starts
-FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", *INSTALLED, *ABSENT, OWN.replace("_", "-"))
+FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", "sqlite3", *INSTALLED, *ABSENT, OWN.replace("_", "-"))
 ABOUT = re.compile(r"^(METADATA|WHEEL|entry_points\.txt|LICEN[CS]E.*|COPYING.*)$")
 DATE = (1980, 1, 1, 0, 0, 0)          # of every entry: the same sources give the same bytes
 

@@ -19,6 +19,7 @@ KERNEL = "@jupyterlite/pyodide-kernel-extension:kernel"
 SAVED_WITHIN = 5                                                     # seconds after an edit: a reload loses no more
 SETTINGS = {
     "@jupyterlab/docmanager-extension:plugin": {"autosaveInterval": SAVED_WITHIN},
+    "@jupyterlab/notebook-extension:tracker": {"autoStartDefaultKernel": True},     # there is one: do not ask
     "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
 }
 ABOUT = """This notebook runs in your browser. Nothing is installed, and nothing is sent anywhere.
