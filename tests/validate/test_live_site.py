@@ -33,7 +33,7 @@ from validate.subject.modules import ROOT
 
 MOST = 40.0                  # before the first check, as a server sends it that compresses text [MB]
 TEXT = ".js", ".json", ".css", ".html", ".svg", ".ipynb", ".py", ".mjs"     # what such a server compresses
-PATIENCE = 400               # until a cell has ended, on a machine that does other things as well [s]
+PATIENCE = 240               # until a cell has ended, on a machine that does other things as well [s]
 LINK = re.compile(r'href="([^"]+)"')
 
 
@@ -249,6 +249,7 @@ def server(place):
     threading.Thread(target=httpd.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{httpd.server_address[1]}"
     httpd.shutdown()
+    httpd.server_close()
 
 
 @pytest.fixture
@@ -319,6 +320,7 @@ class Student:
 
     def writes(self, lesson, text):
         """Open a lesson from the link of its notebook, write that text, and save the file as students do."""
+        self.page.evaluate("jupyterapp.shell.currentWidget.content.scrollToItem(1)")
         self.page.get_by_role("link", name=f"lessons/{lesson}.py").first.click()
         editor = self.page.locator(".jp-FileEditor .cm-content")
         editor.click()
