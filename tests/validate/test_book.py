@@ -16,6 +16,7 @@ import pytest
 from solutions.checks import BadInput
 from validate.book import __main__ as book
 from validate.book import api, course, execute, pages, plan, sheets, weeks
+from validate.book.site import files
 from validate.grading import choice, release
 from validate.subject import modules
 from validate.subject.modules import ROOT
@@ -78,7 +79,7 @@ def test_only_the_markers_of_an_exercise_that_no_lesson_has_do_not_leak():
 
 def texts_of(site):
     """Every text of a site: pages, their blocks of code, scripts and data."""
-    for path in sorted(site.rglob("*")):
+    for path in files(site):
         if path.suffix == ".html":
             page = Texts(path.read_text(encoding="utf-8"))
             yield from ["".join(page.whole), *page.blocks]

@@ -155,7 +155,8 @@ def test_few_files_lie_at_the_root_of_validate():
 
 OTHER_NAMES = {              # of distributions that are not called like their module
     "PIL": "pillow", "_pytest": "pytest", "jupyter_client": "jupyter-client", "mujoco": "mujoco-core",
-    "pybullet_utils": "pybullet", "sphinxcontrib": "sphinxcontrib-katex", "xdist": "pytest-xdist", "yaml": "pyyaml",
+    "pybullet_utils": "pybullet", "pyodide": "jupyterlite-pyodide-kernel", "pyodide_js": "jupyterlite-pyodide-kernel",
+    "sphinxcontrib": "sphinxcontrib-katex", "xdist": "pytest-xdist", "yaml": "pyyaml",
     "zmq": "pyzmq"}
 BESIDE_THE_WORKER = {"shipping", "wire"}     # files that the sandbox holds beside grading/worker.py
 

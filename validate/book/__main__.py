@@ -17,11 +17,12 @@ from solutions.checks import BadInput
 
 from ..run.processes import one_sentence
 from ..subject import modules
-from .site import outside_requests, size, wrong_links
+from .site import LIVE, outside_requests, size, wrong_links
 
 HERE = Path(__file__).resolve().parent
 MARK = ".buildinfo"          # Sphinx writes it: a folder that holds it is a book
-MOST = 60.0                  # size of the site [MB]
+MOST = 60.0                  # size of the book [MB]
+MOST_LIVE = 80.0             # size of the lessons for the browser [MB]; a first visit loads a part of it
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 console = Console(highlight=False)
 
@@ -33,21 +34,30 @@ def book(
         Path("report"),
     notebook: Annotated[list[str] | None, typer.Option(metavar="NN", help="Only this notebook (may be repeated).")] =
         None,
+    live: Annotated[bool, typer.Option("--live", help="Also build the lessons for the reader's browser.")] = False,
+    pyodide: Annotated[Path | None, typer.Option(help="Archive of Pyodide's release, or the folder that it unpacks "
+                                                      "to; for --live.")] = None,
 ):
     """Build the book, a static website of the workbook without any answer's source.
 
     The first build runs all notebooks, which takes about ten minutes.  Later ones run those that changed.
     """
     numbers = checked(out, notebook or [])
+    if live:
+        checked_live(pyodide)
     with tempfile.TemporaryDirectory() as folder:
         source, site = Path(folder, "source"), Path(folder, "site")
         from . import pages  # imports what may be missing
         source.mkdir()
-        pages.write_all(source, numbers, report if (report / "index.html").is_file() else None, console.print)
+        pages.write_all(source, numbers, report if (report / "index.html").is_file() else None, console.print, live)
         warnings = sphinx(source, site)
+        if live:
+            from .live.site import build
+            build(pyodide, site / LIVE)
         problems = [*warnings, *wrong_links(site), *outside_requests(site)]
-        if size(site) > MOST:
-            problems.append(f"the site has {size(site):.0f} MB, and at most {MOST:.0f} are allowed")
+        for part, found, most in (("book", size(site) - size(site / LIVE), MOST), (LIVE, size(site / LIVE), MOST_LIVE)):
+            if found > most:
+                problems.append(f"the {part} has {found:.0f} MB, and at most {most:.0f} are allowed")
         if out.exists():
             shutil.rmtree(out)
         shutil.copytree(site, out)
@@ -73,6 +83,17 @@ def checked(out, numbers):
     if out.exists() and any(out.iterdir()) and not (out / MARK).is_file():
         raise BadInput(f"--out {str(out)!r}", "there, and no book", "name another folder")
     return set(numbers)
+
+
+def checked_live(pyodide):
+    """Raise BadInput if the lessons for the browser cannot be built with that Pyodide."""
+    if not importlib.util.find_spec("jupyterlite_pyodide_kernel"):
+        raise BadInput("the package jupyterlite-pyodide-kernel", "not installed",
+                       "install the extra: .venv/bin/pip install -e '.[live]'")
+    from .live import pyodide as parts
+    if pyodide is None or not pyodide.exists():
+        raise BadInput(f"--pyodide {str(pyodide or '')!r}", "not there",
+                       f"download pyodide-{parts.VERSION}.tar.bz2 from the releases of Pyodide, and name the file")
 
 
 def sphinx(source, site):

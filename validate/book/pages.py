@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..run.store import SUBSET
 from ..subject.modules import ROOT
-from . import api, course, execute, plan, sheets
+from . import api, course, execute, hosted, plan, sheets
 
 HERE = Path(__file__).resolve().parent
 SOURCE = re.compile(r'<a href="(?:\.\./)*\.\./((notebooks|solutions|validate)/[\w/.]+)">(<code>[\w/.]+</code>)</a>')
@@ -25,8 +25,8 @@ PAGES = re.compile(r"(?:docs/|\.\./)?"
                    r"((?:grading|instructors|plan|slides|students)(?=\.md)|(?:lessons|notebooks)/\w+(?=\.))")
 
 
-def write_all(folder, numbers, report, say):
-    """Write the sources of all pages into an empty folder."""
+def write_all(folder, numbers, report, say, live=False):
+    """Write the sources of all pages into an empty folder.  live: the lessons for the browser lie beside the book."""
     for part in ("notebooks", "lessons", "sheets", "extra"):
         (folder / part).mkdir(parents=True)
     shutil.copytree(HERE / "static", folder / "_static")
@@ -38,7 +38,8 @@ def write_all(folder, numbers, report, say):
         if numbers and path.stem[:2] not in numbers:
             write(folder / "notebooks" / f"{path.stem}.md", LEFT_OUT.format(path.stem))
             continue
-        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts, bool(report)), ensure_ascii=False)
+        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts, bool(report), live),
+                          ensure_ascii=False)
         (folder / "notebooks" / path.name).write_text(text, encoding="utf-8")
     (folder / "alts.json").write_text(json.dumps(alts, ensure_ascii=False), encoding="utf-8")
     for name in course.lessons():
@@ -54,7 +55,7 @@ def write_all(folder, numbers, report, say):
         shutil.copytree(report, folder / "extra" / "report", ignore=shutil.ignore_patterns("results", SUBSET))
         for page in (folder / "extra" / "report").glob("*.html"):
             write(page, with_pages_for_sources(page.read_text(encoding="utf-8")))
-    write(folder / "index.md", front(paths))
+    write(folder / "index.md", front(paths, live))
     about_report = HERE / ("validation.md" if report else "no_report.md")
     write(folder / "validation.md", about_report.read_text(encoding="utf-8"))
 
@@ -75,7 +76,7 @@ def with_pages_for_sources(page):
 
 # ---------------------------------------------------------------------------------------------- notebooks
 
-def prepared(book, stem, folder, alts, report=False):
+def prepared(book, stem, folder, alts, report=False, live=False):
     """Return an executed notebook as the book shows it.
 
     Sliders, which need a kernel, are removed, and the figure that they drew stays.  Long code is folded.  A player's
@@ -101,17 +102,19 @@ def prepared(book, stem, folder, alts, report=False):
                 alts[hashlib.sha256(b64decode(data["image/png"])).hexdigest()] = described
     lesson = stem.partition("_")[2]
     if lesson in course.lessons():
-        book.cells.insert(1, about(lesson, stem, report))
+        book.cells.insert(1, about(lesson, stem, report, live))
     return book
 
 
-def about(lesson, stem, report):
+def about(lesson, stem, report, live=False):
     """Return what the book adds to a lesson's first screen: where to work, and its scenes in the report."""
     facts = course.lessons()[lesson]
     scenes = ", ".join(f'<a href="../report/{name}.html">{name}</a>' for name in facts.scenes)
     runs = f" All runs of its scenes are in the report: {scenes}." if report else ""
-    text = (f"```{{admonition}} This page is the notebook as the worked answers run it\n:class: note\nTo work on it "
-            f"yourself, open `notebooks/{stem}.ipynb` in JupyterLab. Films play here; sliders need JupyterLab. "
+    here = hosted.buttons(stem, live, plan.repository())
+    where = "press a button, or install the workbook and" if here else "yourself,"
+    text = (f"```{{admonition}} This page is the notebook as the worked answers run it\n:class: note\n{here}To work on "
+            f"it {where} open `notebooks/{stem}.ipynb` in JupyterLab. Films play here; sliders need JupyterLab. "
             f"The lesson has {len(facts.exercises)} exercises: [what each function does](../lessons/{lesson})."
             f"{runs}\n```")
     return {"cell_type": "markdown", "id": "about-this-page", "metadata": {}, "source": text}
@@ -160,12 +163,14 @@ def glossary():
         "```{glossary}\n:sorted:\n\n" + "\n\n".join(entries) + "\n```\n"
 
 
-def front(paths):
+def front(paths, live=False):
     """Return the first page."""
     contents = "\n".join(f"notebooks/{path.stem}" for path in paths)
     functions = "\n".join(f"{lesson.number} · {name} <lessons/{name}>" for name, lesson in course.lessons().items())
     text = (HERE / "front.md").read_text(encoding="utf-8")
     about = "\n".join(f"{lesson.number} · {name} <sheets/{name}>" for name, lesson in course.lessons().items())
+    here = hosted.buttons("01_integrators", live, plan.repository(), "")
+    text = text.replace("@BUTTONS@", here)
     for name, value in {"NOTEBOOKS": contents, "LESSONS": functions, "SHEETS": about, "COMMIT": commit()}.items():
         text = text.replace(f"@{name}@", value)
     return text

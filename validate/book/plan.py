@@ -185,11 +185,17 @@ def free_exercises():
     return table(("lesson", "exercises that no other exercise calls", "points"), rows)
 
 
+def cited():
+    """Return the address of the repository that CITATION.cff gives; "" if it gives none."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    named = re.search(r"^repository-code: *[\"']?(\S+?)[\"']?$", citation, re.M)
+    return named[1] if named else ""
+
+
 def repository():
     """Return the address of the repository, from CITATION.cff or else from git; "" if neither has one."""
-    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    if named := re.search(r"^repository-code: *[\"']?(\S+?)[\"']?$", citation, re.M):
-        return named[1]
+    if named := cited():
+        return named
     said = subprocess.run(["git", "remote", "get-url", "origin"], cwd=ROOT, capture_output=True, text=True)
     address = re.fullmatch(r"https://(?:[^@/]*@)?([\w.-]+/[\w./-]+?)(?:\.git)?", said.stdout.strip())
     return f"https://{address[1]}" if address else ""

@@ -14,13 +14,11 @@ import pytest
 
 from ..subject.modules import ROOT
 
-try:
+BROWSER = sys.platform == "emscripten"                               # WebAssembly has no processes
+
+if not BROWSER:
     import multiprocessing
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
-except ImportError:                                                  # WebAssembly has no _multiprocessing
-    BROWSER = True
-else:
-    BROWSER = False
 
 
 class Ended(Exception):

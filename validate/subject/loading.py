@@ -6,6 +6,7 @@ A student's file may hold anything.  Every fault ends in an Unloadable that name
 import contextlib
 import re
 import signal
+import sys
 import threading
 import time
 import traceback
@@ -15,6 +16,7 @@ from pathlib import Path
 from solutions.checks import BadInput
 
 LOAD_WITHIN = 10.0           # a file may take so long to load [s]: ours take 0.1
+JUMPS = 4                    # our number among the tools of sys.monitoring; Python itself gives it to none
 LONGEST_REASON = 200         # of what Python says, so much is told [characters]
 
 
@@ -37,11 +39,15 @@ class TooLong(BaseException):
 def alarm(seconds, error=TooLong, own=False):
     """Raise that error after so long, even inside a loop.
 
-    Only in a main thread, and where the system has an alarm clock; an alarm around
+    Only in a main thread, and where the system has an alarm clock or is a browser; an alarm around
     this one goes on.
 
     own: count only the time that this process spends on the processor, and not that of other programs.
     """
+    if sys.platform == "emscripten":
+        with alarm_at_jumps(seconds, error):
+            yield
+        return
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -60,6 +66,32 @@ def alarm(seconds, error=TooLong, own=False):
     finally:
         signal.setitimer(clock, max(0.01, left - (now() - began)) if left else 0.0)
         signal.signal(number, around)
+
+
+@contextlib.contextmanager
+def alarm_at_jumps(seconds, error=TooLong):
+    """Do the same where there is no alarm clock: look at the time whenever Python jumps back, as every loop does.
+
+    Needs `sys.monitoring` of Python 3.12.
+    """
+    watch, jump, until = sys.monitoring, sys.monitoring.events.JUMP, time.monotonic() + seconds
+
+    def look(*place):
+        nonlocal until
+        if time.monotonic() > until:
+            until = float("inf")                 # rings once: what catches the error has loops, too
+            raise error(f"still running after {seconds:g} s")
+        if around:
+            around(*place)
+    if watch.get_tool(JUMPS) is None:
+        watch.use_tool_id(JUMPS, "alarm")
+    around = watch.register_callback(JUMPS, jump, look)
+    watch.set_events(JUMPS, jump)
+    try:
+        yield
+    finally:
+        watch.register_callback(JUMPS, jump, around)
+        watch.set_events(JUMPS, jump if around else 0)
 
 
 # ---------------------------------------------------------------------------------------------- what is said

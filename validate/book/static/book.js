@@ -6,4 +6,10 @@ const reach = () => document.querySelectorAll("pre, div.math, .katex-display, .t
 });
 addEventListener("load", reach);
 addEventListener("resize", reach);
+
+// A browser runs no lesson from a file: only a web server may give it the program.
+addEventListener("DOMContentLoaded", () => document.querySelectorAll("a[data-live]").forEach(button => {
+  if (location.protocol !== "file:") return;
+  button.outerHTML = "<span>This lesson runs in your browser when the book comes from a web server, and not from a file.</span>";
+}));
 })();

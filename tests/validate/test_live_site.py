@@ -1,0 +1,409 @@
+"""The lessons in the reader's browser: what is taken from Pyodide, and a student's first hour in a real browser.
+
+The long tests need a Pyodide or a built site: `WORKBOOK_PYODIDE=pyodide-0.27.7.tar.bz2` or `WORKBOOK_LIVE=book/live`,
+and a Chromium (`WORKBOOK_CHROMIUM`, or one on the path, or the one that playwright installs).
+"""
+
+import ast
+import base64
+import gzip
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+import zipfile
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+
+from solutions.checks import BadInput
+from validate.book import hosted, plan
+from validate.book.live import pyodide, site, workbook_live
+from validate.notebook import colab
+from validate.subject import generate, loading, modules
+from validate.subject.modules import ROOT
+
+MOST = 40.0                  # before the first check, as a server sends it that compresses text [MB]
+TEXT = ".js", ".json", ".css", ".html", ".svg", ".ipynb", ".py", ".mjs"     # what such a server compresses
+PATIENCE = 240               # until a cell has ended, on a machine that does other things as well [s]
+LINK = re.compile(r'href="([^"]+)"')
+
+
+# ---------------------------------------------------------------------------------------------- without a browser
+
+def test_every_package_that_one_needs_is_there_with_its_digest():
+    packages = pyodide.WANTED["packages"]
+    for name, one in packages.items():
+        assert set(one["depends"]) <= packages.keys(), name
+        assert one["version"] in one["file_name"] and one["imports"]
+    assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in pyodide.files().values())
+    assert set(pyodide.FIRST) <= {*packages, *pyodide.ABSENT, *pyodide.INSTALLED, "workbook-live"}
+
+
+def test_no_part_of_scipy_is_left_out_that_a_lesson_imports():
+    imported = set()
+    for folder in ("validate", "tests/lessons", "solutions"):
+        for path in (ROOT / folder).rglob("*.py"):
+            imported |= set(re.findall(r"^\s*(?:from|import) (scipy\.[\w.]+)", path.read_text(encoding="utf-8"), re.M))
+    paths = [f"{name.replace('.', '/')}/__init__.py" for name in imported]
+    assert len(paths) >= 6 and not [path for path in paths if re.match(pyodide.UNUSED["scipy"], path)]
+
+
+def pretend(folder, content):
+    """A Pyodide whose files hold their own names, and its digests."""
+    for name in pyodide.files():
+        (folder / name).write_bytes(content(name))
+    (folder / "pyodide-lock.json").write_text("{}")
+    return folder
+
+
+def test_another_pyodide_is_refused_with_the_name_of_its_file(tmp_path):
+    with pytest.raises(BadInput, match=r"pyodide\.js, not the file of Pyodide 0\.27\.7"):
+        pyodide.take(pretend(tmp_path, str.encode), tmp_path / "out")
+    with pytest.raises(BadInput, match="no Pyodide"):
+        pyodide.take(ROOT / "docs", tmp_path / "out2")
+    (tmp_path / "broken.tar.bz2").write_text("no archive")
+    with pytest.raises(BadInput, match="not readable"):
+        pyodide.take(tmp_path / "broken.tar.bz2", tmp_path / "out3")
+
+
+def small_wheel(name):
+    """The bytes of a wheel with a file of each package that is left out, and one that is kept."""
+    unused = {"scipy": "scipy/stats/x.py", "matplotlib": "matplotlib/testing/x.py", 
+              "pillow": "PIL/_webp.x.so", "pygments": "pygments/lexers/x.py"}
+    packed, paths = io.BytesIO(), [*unused.values(), "kept/x.py"]
+    with zipfile.ZipFile(packed, "w") as archive:
+        for path in paths:
+            archive.writestr(path, path)
+        archive.writestr("x.dist-info/RECORD", "".join(f"{path},,\n" for path in paths))
+    return packed.getvalue() if name.endswith(".whl") else name.encode()
+
+
+def test_the_lock_of_what_is_taken_names_its_files_and_their_digests(tmp_path, monkeypatch):
+    wanted = json.loads(json.dumps(pyodide.WANTED))
+    for one in wanted["packages"].values():
+        one["sha256"] = pyodide.sha256(small_wheel(one["file_name"]))
+    wanted["files"] = {name: pyodide.sha256(small_wheel(name)) for name in wanted["files"]}
+    monkeypatch.setattr(pyodide, "WANTED", wanted)
+    (tmp_path / "in").mkdir()
+    pyodide.take(pretend(tmp_path / "in", small_wheel), tmp_path / "out")
+    lock = json.loads((tmp_path / "out" / "pyodide-lock.json").read_text())
+    assert {*pyodide.FIRST} <= lock["packages"].keys()
+    for name, one in lock["packages"].items():
+        data = (tmp_path / "out" / one["file_name"]).read_bytes()
+        assert pyodide.sha256(data) == one["sha256"], name
+        if name in pyodide.UNUSED:
+            with zipfile.ZipFile(io.BytesIO(data)) as archive:
+                record = archive.read("x.dist-info/RECORD").decode().split(",,\n")[:-1]
+                assert {*record, "x.dist-info/RECORD"} == {*archive.namelist()} and len(record) == 4, name
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        *wanted["files"], "pyodide-lock.json", *(one["file_name"] for one in lock["packages"].values())}
+
+
+def test_each_notebook_begins_with_the_cell_that_unpacks_the_workbook(tmp_path):
+    files = {f"notebooks/{path.name}": path.read_bytes() for path in (ROOT / "notebooks").glob("*.ipynb")}
+    files |= {f"lessons/{path.name}": path.read_bytes() for path in (ROOT / "lessons").glob("*.py")}
+    site.drive(files | {"notebooks/openings.json": b"{}", "validate/check.py": b""}, tmp_path)
+    there = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
+    assert there == files.keys()
+    for path in (tmp_path / "notebooks").iterdir():
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        assert next(cell for cell in cells if cell["cell_type"] == "code")["source"] == site.FIRST_CELL
+        named = re.search(r"\.\./lessons/(\w+)\.py", cells[1]["source"])[1]
+        assert named == path.stem[3:] or path.stem == "00_start_here"
+    tree = ast.parse((Path(site.__file__).parent / "workbook_live.py").read_text(encoding="utf-8"))
+    assert "start" in {node.name for node in tree.body if isinstance(node, ast.AsyncFunctionDef)}
+
+
+def test_the_lessons_can_be_downloaded_as_one_zip(tmp_path, monkeypatch):
+    shown = []
+    monkeypatch.setattr("IPython.display.display", lambda html: shown.append(html.data))
+    (tmp_path / "springs.py").write_text("my answer")
+    workbook_live.download(tmp_path)
+    data = re.search(r'download="lessons.zip" href="data:application/zip;base64,([^"]+)"', shown[0])[1]
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(data))) as archive:
+        assert archive.read("lessons/springs.py") == b"my answer" and len(archive.namelist()) == 1
+
+
+def endless(inner, outer):
+    """A loop without an end, inside of two alarms."""
+    with loading.alarm_at_jumps(outer), loading.alarm_at_jumps(inner):
+        while True:
+            pass
+
+
+@pytest.mark.skipif(not hasattr(sys, "monitoring"), reason="sys.monitoring needs Python 3.12")
+@pytest.mark.parametrize(("inner", "outer"), [(0.1, 30.0), (30.0, 0.1)])
+def test_an_endless_loop_ends_where_there_is_no_alarm_clock(inner, outer):
+    began = time.monotonic()
+    with pytest.raises(loading.TooLong, match=r"after 0\.1 s"):
+        endless(inner, outer)
+    assert time.monotonic() - began < 10.0 and not sys.monitoring.get_events(loading.JUMPS)
+
+
+BROWSER = """
+import sys
+from pathlib import Path
+
+import IPython, matplotlib.pyplot, pytest, scipy.integrate, scipy.optimize
+here, sys.platform, sys.modules["_multiprocessing"] = sys.platform, "emscripten", None
+from validate.notebook import check
+sys.platform = here                  # Python 3.11 has no sys.monitoring for the alarm
+file = Path(sys.argv[1], "integrators.py")
+check("1.1")
+file.write_text(file.read_text().replace('raise NotImplementedError("Exercise 1.1: euler_step")',
+                                         "return x + dt * v, v + dt * acceleration(t, x, v, p)"))
+check("1.1")
+file.write_text(file.read_text().replace("return x + dt * v, v", "return x - dt * v, v"))
+check("1.1")
+"""
+
+
+def test_a_check_needs_no_process_of_its_own_in_a_browser(tmp_path):
+    for name, text in generate.lessons().items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    run = subprocess.run([sys.executable, "-c", BROWSER, tmp_path], cwd=ROOT, capture_output=True, text=True,
+                         env={**os.environ, "WORKBOOK_LESSONS": str(tmp_path), "MPLBACKEND": "agg"})
+    said = re.findall(r"Exercise 1\.1: (not attempted|passed|not yet)", run.stdout)
+    assert said == ["not attempted", "passed", "not yet"], run.stdout + run.stderr
+
+
+def test_buttons_lead_to_the_repository_or_are_left_out():
+    here = hosted.buttons("09_contact", True, "")
+    assert LINK.findall(here) == ["../live/lab/index.html?path=notebooks/09_contact.ipynb"]
+    assert hosted.buttons("09_contact", False, "https://example.org/a/b") == ""
+    links = LINK.findall(hosted.buttons("09_contact", False, "https://github.com/a/b"))
+    assert links == ["https://mybinder.org/v2/gh/a/b/main?labpath=notebooks%2F09_contact.ipynb",
+                     "https://colab.research.google.com/github/a/b/blob/main/binder/colab.ipynb"]
+    assert (ROOT / hosted.COLAB).is_file() and (ROOT / "notebooks" / "09_contact.ipynb").is_file()
+
+
+def test_readme_and_colab_have_the_address_that_citation_gives():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert readme.split("<!-- hosted -->")[1].strip() == hosted.readme(plan.cited())
+    cells = json.loads((ROOT / hosted.COLAB).read_text(encoding="utf-8"))["cells"]
+    assert f'ADDRESS = "{plan.cited()}"' in "".join(cells[1]["source"])
+
+
+def test_colab_gets_every_notebook_with_its_first_cell_and_keeps_what_a_student_wrote(tmp_path):
+    (tmp_path / "lessons").mkdir()
+    (tmp_path / "lessons" / "springs.py").write_text("mine")
+    colab.lay_out(tmp_path, "https://github.com/a/b")
+    assert (tmp_path / "lessons" / "springs.py").read_text() == "mine"
+    assert (tmp_path / "lessons" / "pbd.py").read_text() == (ROOT / "lessons" / "pbd.py").read_text()
+    for path in (ROOT / "notebooks").glob("[0-9]*.ipynb"):
+        cells = json.loads((tmp_path / path.name).read_text(encoding="utf-8"))["cells"]
+        assert "git clone -q --depth 1 https://github.com/a/b /content/workbook" in cells[1]["source"]
+        assert cells[2:] == json.loads(path.read_text(encoding="utf-8"))["cells"][1:]
+
+
+# ---------------------------------------------------------------------------------------------- in a browser
+
+class Counting(SimpleHTTPRequestHandler):
+    """Serves a site, compresses text as web servers do, and counts what it sends."""
+
+    sent: ClassVar[dict] = {}                    # {path: sizes of what was sent of it}
+
+    def do_GET(self):
+        file = Path(self.translate_path(self.path))
+        if file.suffix not in TEXT or not file.is_file():
+            self.sent.setdefault(file, []).append(file.stat().st_size if file.is_file() else 0)
+            return super().do_GET()
+        data = gzip.compress(file.read_bytes(), 6)
+        self.sent.setdefault(file, []).append(len(data))
+        self.send_response(200)
+        for name, value in (("Content-Type", self.guess_type(file)), ("Content-Encoding", "gzip"),
+                            ("Content-Length", str(len(data)))):
+            self.send_header(name, value)
+        self.end_headers()
+        self.wfile.write(data)
+
+    def log_message(self, *arguments):
+        pass
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """The folder of a built site."""
+    if "WORKBOOK_LIVE" in os.environ:
+        return Path(os.environ["WORKBOOK_LIVE"]).resolve()
+    if "WORKBOOK_PYODIDE" not in os.environ:
+        pytest.skip("no Pyodide is given: set WORKBOOK_PYODIDE to its archive, or WORKBOOK_LIVE to a built site")
+    out = tmp_path_factory.mktemp("live") / "live"
+    site.build(Path(os.environ["WORKBOOK_PYODIDE"]), out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def server(place):
+    Counting.sent = {}
+    httpd = ThreadingHTTPServer(("127.0.0.1", 0), partial(Counting, directory=str(place)))
+    threading.Thread(target=httpd.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{httpd.server_address[1]}"
+    httpd.shutdown()
+    httpd.server_close()
+
+
+@pytest.fixture
+def student(server):
+    """A student with a new browser."""
+    api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: the extra `live` has it")
+    with api.sync_playwright() as p:
+        path = os.environ.get("WORKBOOK_CHROMIUM") or shutil.which("chromium")
+        browser = p.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield Student(browser.new_page(viewport={"width": 1440, "height": 900}), server)
+        browser.close()
+
+
+FIND = """part => { const cells = jupyterapp.shell.currentWidget.content.model.cells;
+  for (let k = 0; k < cells.length; k++)
+    if (cells.get(k).type === "code" && cells.get(k).sharedModel.getSource().includes(part)) return k;
+  return -1; }"""
+RUN = """k => { const book = jupyterapp.shell.currentWidget.content; book.activeCellIndex = k;
+  jupyterapp.commands.execute("notebook:run-cell"); }"""
+STATE = """k => { const cell = jupyterapp.shell.currentWidget.content.model.cells.get(k);
+  return [cell.executionState ?? cell.sharedModel.executionState, JSON.stringify(cell.outputs.toJSON())]; }"""
+ADD = """text => { const book = jupyterapp.shell.currentWidget.content;
+  book.model.sharedModel.insertCell(2, {cell_type: "code", source: text}); }"""
+
+
+class Student:
+    """What a student does with a page of the site, and what the page asks other hosts."""
+
+    def __init__(self, page, server):
+        self.page, self.server, self.outside = page, server, []
+        page.on("request", self.watch)
+        page.route("**/jupyter-lite.json*", self.expose)
+
+    def watch(self, request):
+        if not request.url.startswith((self.server, "data:", "blob:")):
+            self.outside.append(request.url)
+
+    def expose(self, route):
+        """Give the test the program of the page, which has no other way to read outputs that are out of sight."""
+        answer = route.fetch()
+        config = answer.json()
+        config["jupyter-config-data"]["exposeAppInBrowser"] = True
+        route.fulfill(response=answer, json=config)
+
+    def open(self, stem):
+        self.page.goto(f"{self.server}/lab/index.html?path=notebooks/{stem}.ipynb", timeout=120_000)
+        self.page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=120_000)
+        self.page.wait_for_function("window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel",
+                                    timeout=120_000)
+
+    def starts(self, part):
+        """Run the cell with that text; its place."""
+        place = self.page.evaluate(FIND, part)
+        assert place >= 0, part
+        self.page.evaluate(RUN, place)
+        return place
+
+    def runs(self, part, until):
+        """Run the cell with that text; what it shows, when that contains `until`."""
+        place, began = self.starts(part), time.monotonic()
+        while time.monotonic() - began < PATIENCE:
+            time.sleep(0.3)
+            _, shown = self.page.evaluate(STATE, place)
+            if until in shown or '"output_type":"error"' in shown:
+                break
+        assert until in shown, f"{part!r} shows {shown[-1500:]}"
+        return shown
+
+    def writes(self, lesson, text):
+        """Open a lesson from the link of its notebook, write that text, and save the file as students do."""
+        self.page.evaluate("jupyterapp.shell.currentWidget.content.scrollToItem(1)")
+        self.page.get_by_role("link", name=f"lessons/{lesson}.py").first.click()
+        editor = self.page.locator(".jp-FileEditor .cm-content")
+        editor.click()
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(text)
+        self.page.keyboard.press("Control+s")
+        self.page.wait_for_function("!jupyterapp.shell.currentWidget.context.model.dirty")
+
+    def goes_back(self, stem):
+        self.page.get_by_role("tab", name=f"{stem}.ipynb").click()
+
+
+def solved(lesson, *exercises):
+    """The text of a lesson in which a student has written these exercises."""
+    return generate.stub((modules.SOLUTIONS / f"{lesson}.py").read_text(encoding="utf-8"), set(exercises))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("stem", "exercise"), [("01_integrators", "1.1"), ("09_contact", "9.1")])
+def test_a_student_with_nothing_but_a_browser_passes_an_exercise(student, stem, exercise, capsys):
+    Counting.sent.clear()
+    began, marks = time.monotonic(), {}
+    student.open(stem)
+    marks["notebook shown"] = time.monotonic() - began
+    student.runs("workbook_live.start", "The workbook is ready")
+    marks["workbook ready"] = time.monotonic() - began
+    student.runs("from validate.notebook import", "<canvas")
+    marks["first picture"] = time.monotonic() - began
+    student.runs(f'check("{exercise}")', "not attempted")
+    marks["first check"] = time.monotonic() - began
+    stored = sum(len(sizes) * file.stat().st_size for file, sizes in Counting.sent.items() if file.is_file()) / 1e6
+    sent, requests = sum(map(sum, Counting.sent.values())) / 1e6, sum(map(len, Counting.sent.values()))
+    lesson = stem[3:]
+    student.writes(lesson, solved(lesson, exercise))
+    student.goes_back(stem)
+    student.runs(f'check("{exercise}")', "passed")
+    marks["passed"] = time.monotonic() - began
+    with capsys.disabled():
+        times = ", ".join(f"{name} {seconds:.1f} s" for name, seconds in marks.items())
+        print(f"\n{stem}: {times}; before the first check {requests} requests, {sent:.1f} MB ({stored:.1f} MB on disk)")
+    assert student.outside == []
+    assert sent < MOST
+
+
+@pytest.mark.long
+def test_a_reload_loses_nothing_and_an_endless_loop_can_be_stopped(student):
+    student.open("01_integrators")
+    student.runs("workbook_live.start", "The workbook is ready")
+    student.writes("integrators", solved("integrators", "1.1"))
+    student.page.keyboard.press("Control+End")
+    student.page.keyboard.insert_text("\n# not saved by me\n")
+    student.page.wait_for_function("!jupyterapp.shell.currentWidget.context.model.dirty", timeout=60_000)
+    student.open("01_integrators")
+    student.runs("workbook_live.start", "The workbook is ready")
+    student.runs("from validate.notebook import", "<canvas")
+    student.runs('check("1.1")', "passed")
+    student.page.evaluate(ADD, "print(open('/drive/lessons/integrators.py').read()[-20:])")
+    student.runs("print(open(", "not saved by me")
+    student.page.evaluate(ADD, "while True:\n    pass")
+    student.starts("while True")
+    time.sleep(5.0)
+    student.page.get_by_title(re.compile("Restart the kernel")).first.click()
+    student.page.get_by_role("button", name="Confirm Kernel Restart").or_(
+        student.page.locator(".jp-Dialog .jp-mod-warn")).first.click()
+    student.runs("workbook_live.start", "The workbook is ready")
+    student.runs("from validate.notebook import", "<canvas")
+    student.runs('check("1.1")', "passed")
+    student.page.evaluate(ADD, "workbook_live.download()")
+    student.runs("workbook_live.download()", "Download lessons.zip")
+    with student.page.expect_download() as download:
+        student.page.get_by_role("link", name="Download lessons.zip").click()
+    with zipfile.ZipFile(download.value.path()) as archive:
+        assert archive.read("lessons/integrators.py").decode().endswith("# not saved by me\n")
+        assert len(archive.namelist()) == len(modules.lesson_names()) + 1
+
+
+@pytest.mark.long
+def test_a_check_of_an_endless_loop_says_so_in_the_browser(student):
+    text, line = solved("integrators", "1.1"), "    return x + dt * v"
+    assert line in text
+    student.open("01_integrators")
+    student.runs("workbook_live.start", "The workbook is ready")
+    student.runs("from validate.notebook import", "<canvas")
+    student.writes("integrators", text.replace(line, f"    while True:\n        pass\n{line}", 1))
+    student.goes_back("01_integrators")
+    student.runs('check("1.1")', "an answer within")

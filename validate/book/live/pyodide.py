@@ -1,0 +1,144 @@
+"""The part of Pyodide that the lessons load, taken out of a release and checked against its digests.
+
+`pyodide.json` lists the files of the official release with their SHA-256: those of its core, and those of the packages
+as its own `pyodide-lock.json` gives them.  *Left out:* dependencies that nothing here imports (fonttools, pytz), and
+parts of packages (`UNUSED`).
+"""
+
+import hashlib
+import json
+import re
+import tarfile
+import zipfile
+from contextlib import contextmanager
+from importlib import metadata
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from solutions.checks import BadInput
+
+WANTED = json.loads((Path(__file__).parent / "pyodide.json").read_text(encoding="utf-8"))
+VERSION = WANTED["info"]["version"]
+UNUSED = {                   # {package: files of its wheel that no lesson loads}; half of what a first visit would load
+    "scipy": r"scipy/(misc|stats|interpolate|signal|io|cluster|ndimage|odr|fftpack|datasets)/"
+             r"|scipy/special/cython_special\.|.*/_test\w*\.cpython",
+    "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|matplotlib/(testing|tests)/"
+                  r"|.*/DejaVu(Serif|SansMono-)|matplotlib/backends/(web_backend|qt_editor)/",
+    "pillow": r"PIL/_(imagingft|imagingtk|webp)\.",
+    "pygments": r"pygments/lexers/(?!__init__|_mapping|python|diff|special|shell|console)",
+}
+ABSENT = "jedi", "ssl"                # the kernel asks for them, and does without: they are empty packages here
+INSTALLED = "comm",                   # the kernel asks for it; pure Python, taken from this environment
+OWN = "workbook_live"
+# loaded together when a kernel starts
+FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", "sqlite3", *INSTALLED, *ABSENT, OWN.replace("_", "-"))
+ABOUT = re.compile(r"^(METADATA|WHEEL|entry_points\.txt|LICEN[CS]E.*|COPYING.*)$")
+DATE = (1980, 1, 1, 0, 0, 0)          # of every entry: the same sources give the same bytes
+
+
+@contextmanager
+def opened(place):
+    """Yield the folder that has pyodide.js: the given one, or an archive's.  Raises BadInput if there is none."""
+    with TemporaryDirectory() as scratch:
+        folder = Path(place)
+        if folder.is_file():
+            extract(folder, scratch)
+            folder = Path(scratch)
+        found = sorted(folder.rglob("pyodide-lock.json"), key=lambda path: len(path.parts))
+        if not found:
+            raise BadInput(f"--pyodide {str(place)!r}", "no Pyodide (it has no pyodide-lock.json)",
+                           f"give the release archive of Pyodide {VERSION}, or the folder that it unpacks to")
+        yield found[0].parent
+
+
+def extract(archive, folder):
+    """Unpack the files of an archive that the lessons need.  Raises BadInput if it is none."""
+    wanted = {*files(), "pyodide-lock.json"}
+    try:
+        if zipfile.is_zipfile(archive):
+            with zipfile.ZipFile(archive) as packed:
+                packed.extractall(folder, [name for name in packed.namelist() if Path(name).name in wanted])
+        else:
+            with tarfile.open(archive) as packed:
+                packed.extractall(folder, (one for one in packed if Path(one.name).name in wanted), filter="data")
+    except (OSError, EOFError, tarfile.TarError, zipfile.BadZipFile) as e:
+        raise BadInput(f"--pyodide {str(archive)!r}", f"not readable ({e})", "download it again") from None
+
+
+def files():
+    """Return {file: SHA-256} of all files that are taken from a Pyodide."""
+    return WANTED["files"] | {one["file_name"]: one["sha256"] for one in WANTED["packages"].values()}
+
+
+def refuse_others(folder):
+    """Raise BadInput for the first file that is not the official one."""
+    for name, digest in files().items():
+        file = folder / name
+        if not file.is_file():
+            raise BadInput(f"Pyodide in {str(folder)!r}", f"without {name}", f"give the full release of {VERSION}")
+        if sha256(file.read_bytes()) != digest:
+            raise BadInput(str(file), f"not the file of Pyodide {VERSION} (its SHA-256 differs)", "download it again")
+
+
+def sha256(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+def take(place, out):
+    """Write the part of a Pyodide that the lessons load, with our own packages and a lock of all of them."""
+    out.mkdir(parents=True)
+    with opened(place) as folder:
+        refuse_others(folder)
+        for name in WANTED["files"]:
+            (out / name).write_bytes((folder / name).read_bytes())
+        packages = {name: taken(folder, out, name, facts) for name, facts in WANTED["packages"].items()}
+    for name in ABSENT:
+        packages[name] = wheel(out, name, "0", {})
+    for name in INSTALLED:
+        packages[name] = wheel(out, name, metadata.version(name), installed(name))
+    source = (Path(__file__).parent / f"{OWN}.py").read_bytes()
+    packages[OWN.replace("_", "-")] = wheel(out, OWN, "0", {f"{OWN}.py": source})
+    lock = {"info": WANTED["info"], "packages": packages}
+    (out / "pyodide-lock.json").write_text(json.dumps(lock, sort_keys=True), encoding="utf-8")
+
+
+def taken(folder, out, name, facts):
+    """Copy a package without its unused files; its entry in the lock."""
+    source, target = folder / facts["file_name"], out / facts["file_name"]
+    if name not in UNUSED:
+        target.write_bytes(source.read_bytes())
+        return facts
+    unused = re.compile(UNUSED[name])
+    with zipfile.ZipFile(source) as packed:
+        kept = {one: packed.read(one) for one in packed.namelist() if not unused.match(one) and one[-1] != "/"}
+    record = next(one for one in kept if one.endswith(".dist-info/RECORD"))
+    lines = kept[record].decode().splitlines(keepends=True)
+    kept[record] = "".join(line for line in lines if not unused.match(line.partition(",")[0])).encode()
+    pack(target, kept)
+    return facts | {"sha256": sha256(target.read_bytes())}
+
+
+def installed(name):
+    """Return {path: bytes} of a package of this environment: its Python files, its names and its licence."""
+    paths = [path for path in metadata.files(name) or () if ".." not in path.parts and path.locate().is_file()]
+    return {path.as_posix(): path.read_binary() for path in paths if path.suffix == ".py" or ABOUT.search(path.name)}
+
+
+def wheel(out, name, version, content):
+    """Write a wheel of our own; its entry in the lock."""
+    about = f"{name}-{version}.dist-info"
+    described = {f"{about}/METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n".encode(),
+                 f"{about}/WHEEL": b"Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+                 f"{about}/RECORD": b""}
+    file = f"{name}-{version}-py3-none-any.whl"
+    pack(out / file, described | content)
+    return {"name": name, "version": version, "file_name": file, "install_dir": "site", "package_type": "package",
+            "sha256": sha256((out / file).read_bytes()), "imports": [name] if content else [], "depends": [],
+            "unvendored_tests": False}
+
+
+def pack(file, content):
+    """Write a zip of {path: bytes} whose bytes depend on these only."""
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as packed:
+        for path, data in content.items():
+            packed.writestr(zipfile.ZipInfo(path, DATE), data, zipfile.ZIP_DEFLATED)
