@@ -48,7 +48,7 @@ def stepped(lesson, shape, state, p, dt, steps):
 
 def largest(*differences):
     """Return the largest size of all numbers in these arrays."""
-    return max(np.max(np.abs(one)) for one in differences)
+    return np.max([np.max(np.abs(one)) for one in differences])
 
 
 # ---------------------------------------------------------------------------------------------- speeds
