@@ -1,5 +1,6 @@
 """Theory's bounds of stability are found again by experiment, and a wrong method does not find them."""
 
+import ast
 import json
 import re
 import types
@@ -17,6 +18,7 @@ from validate.report import required
 from validate.stability import integrators
 from validate.stability.case import EDGE, Checks, Examined, NotRun, Worst, bisect
 from validate.stability.examine import all_cases, examine, found_by, stored, subject_of
+from validate.subject.modules import ROOT
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
@@ -170,7 +172,7 @@ FORMULAS = {
 
 
 def scaled(value, factor):
-    """The same result, a little larger or smaller, whatever it consists of."""
+    """The same result, a little larger or smaller: a number, an array, or a tuple of them."""
     if isinstance(value, tuple):
         parts = [scaled(part, factor) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
@@ -199,6 +201,16 @@ def test_an_edge_that_is_a_hundredth_off_is_seen_on_the_map_of_amplification(mon
 def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():
     for measured in (np.nan, np.inf):
         assert not states("speed [m/s]", measured, 1.0, 0.1).holds
+
+
+def test_no_case_takes_its_largest_error_with_a_function_that_drops_a_nan():
+    """max([0.0, nan]) is 0.0, and so is max(0.0, nan); np.max and np.maximum give NaN."""
+    calls = [(path.name, node) for path in (ROOT / "validate" / "stability").glob("*.py")
+             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "max"]
+    dropping = [(name, call.lineno, ast.unparse(call)) for name, call in calls
+                if len(call.args) == 1 or any(isinstance(one, ast.Starred) for one in call.args)]
+    assert calls and not dropping, dropping
 
 
 def test_bisection_says_so_when_there_is_no_edge():

@@ -248,12 +248,12 @@ def deep_overlap(lesson, check):
     axes = [np.linspace(-0.99, 0.99, 11) * h for h in HALF]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     contacts = [lesson.ball_box(box.x + y, 0.1, box) for y in grid]
-    deepest = max(-c.gap - 0.1 for c in contacts)
+    deepest = np.max([-c.gap - 0.1 for c in contacts])
     check("The depth inside a box is at most its smallest half edge.",
           "greatest depth of a centre in a box, on a grid [m]",
           law=HALF.min(), found=deepest, within=ROUND_OFF,
           saw=f"The deepest of {len(grid)} centres is {deepest:.3f} m from a face.")
-    out = max(abs(np.max(np.abs(c.p_b - box.x) - HALF)) for c in contacts)
+    out = np.max([abs(np.max(np.abs(c.p_b - box.x) - HALF)) for c in contacts])
     check("The exit point is on the surface.", "greatest distance of p_b from the surface of the box [m]",
           law=0.0, found=out, within=ROUND_OFF, saw=f"All points p_b lie on the box, to {out:.0e} m.")
     for name, n in undefined_normals(lesson).items():
@@ -563,8 +563,8 @@ def capsules_are_as_far_apart_as_their_segments(lesson, check, rng):
         gap = lesson.capsule_capsule(x[0], x[1], 0.1, x[2], x[3], 0.2).gap
         errors.append(abs(gap - (np.linalg.norm(p - q) - 0.3)))
     check("The gap of two capsules is the distance of their segments minus the radii.",
-          "greatest error of the gap of 100 pairs of capsules [m]", law=0.0, found=max(errors), within=ROUND_OFF,
-          saw=f"The gap of 100 pairs of capsules is right to {max(errors):.0e} m.")
+          "greatest error of the gap of 100 pairs of capsules [m]", law=0.0, found=np.max(errors), within=ROUND_OFF,
+          saw=f"The gap of 100 pairs of capsules is right to {np.max(errors):.0e} m.")
 
 
 def random_polygons(rng):
@@ -581,7 +581,7 @@ def polygons_are_as_deep_as_their_differences(lesson, check, rng):
         contacts, way = lesson.polygon_contacts(a, b), depth_of(a, b)[0]
         if way < 0.0 and len(contacts.gap):
             errors.append(abs(contacts.gap.min() - way))
-    worst = max(errors, default=np.inf)
+    worst = np.max(errors) if errors else np.inf
     check("The deepest contact of overlapping polygons is as deep as the hull of their differences gives.",
           "greatest error of the deepest contact of 100 pairs of polygons [m]",
           law=0.0, found=worst, within=ROUND_OFF,

@@ -384,8 +384,9 @@ def sag_of_a_soft_contact(lesson, check):
     curves, hertzes, fine = [], np.array([30.0, 40.0, 50.0, 65.0, 80.0]), np.linspace(30.0, 80.0, 51)
     for name, shape, times in (("a disc", DISC, 1.0), ("a box", BOX, 1.25)):
         for dt, substeps in ((1.0 / 60.0, 4), (1.0 / 240.0, 1), (1.0 / 240.0, 4), (1.0 / 1000.0, 1)):
-            worst = max(abs(sag(lesson, shape, hertz, dt, substeps) / (times * G / (2.0 * np.pi * hertz) ** 2) - 1.0)
-                        for hertz in (40.0, 80.0))
+            theory = lambda hertz, times=times: times * G / (2.0 * np.pi * hertz) ** 2
+            worst = np.max([abs(sag(lesson, shape, hertz, dt, substeps) / theory(hertz) - 1.0)
+                            for hertz in (40.0, 80.0)])
             check("A soft contact sinks by k_n F/(2π hertz)² for any step.",
                   f"relative error of the depth of {name}, 1/{1.0 / dt:.0f} s in {substeps} [-]",
                   law=0.0, found=worst, within=2e-11,
@@ -620,7 +621,7 @@ def parted(lesson, shape, x, looks, pause):
     for _ in range(looks):
         state = after(lesson, shape, state, pile, pause)
         highest = np.maximum(highest, np.max(state.x[:len(x), -1]))
-    return highest, max(0.0, -np.min(state.contacts.gap, initial=0.0))
+    return highest, np.max(-state.contacts.gap, initial=0.0)
 
 
 def sliding(lesson, shape, degrees, mu, seconds):
@@ -697,7 +698,7 @@ def extremes(lesson, check):
         left = np.maximum(left, overlap)
         check("A body that begins inside another comes out, and is not ejected.",
               f"height of {name} above the place on top, at most [m]",
-              law=0.0, found=max(0.0, highest - len(x) + 0.5), within=0.037,
+              law=0.0, found=np.maximum(0.0, highest - len(x) + 0.5), within=0.037,
               saw=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm of overlap remain.")
     check("After two seconds they overlap by no more than contacts sag.", "largest overlap that is left [m]",
           law=0.0, found=left, within=1e-4, saw=f"After two seconds {1e3 * left:.3f} mm of overlap are left.")
@@ -759,7 +760,7 @@ def extremes_in_space(lesson, check):
         highest, overlap = parted(lesson, shape, x, 10, 0.1)
         check("A body that begins inside another comes out, and is not ejected.",
               f"height of {name} above the place on top, at most, and overlap in the end [m]",
-              law=0.0, found=max(0.0, highest - len(x) + 0.5) + overlap, within=0.037,
+              law=0.0, found=np.maximum(0.0, highest - len(x) + 0.5) + overlap, within=0.037,
               saw=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm of overlap remain.")
     for mu in (0.0, np.inf):
         speed, _ = sliding(lesson, CUBE, 40.0, mu, 0.25)
@@ -861,8 +862,8 @@ def pyramid_of_pybullet():
         world.run(60)
         slopes.append(steepest(world.judged()))
     world.close()
-    return {"law": np.sqrt(2.0), "found": max(slopes) / MU, "within": 0.01,
-            "saw": f"pybullet's friction goes up to {max(slopes) / MU:.4f} μ times the normal force."}
+    return {"law": np.sqrt(2.0), "found": np.max(slopes) / MU, "within": 0.01,
+            "saw": f"pybullet's friction goes up to {np.max(slopes) / MU:.4f} μ times the normal force."}
 
 
 @case("judge", "A judge for any solver, an engine's included", compiled=False)
@@ -931,11 +932,11 @@ def closed_forms(lesson, check):
     stacks = {n: column(np.ones(n))[0] for n in (2, 3, 5, 10, 20)}
     check.agree("The contraction of a stack is the spectral radius of a sweep.",
                 "contraction of a stack: largest error [-]",
-                max(abs(lesson.stack_contraction(n) - relaxed_radius(A, 1.0)) for n, A in stacks.items()), 1e-12)
+                np.max([abs(lesson.stack_contraction(n) - relaxed_radius(A, 1.0)) for n, A in stacks.items()]), 1e-12)
     check.agree("The contraction of a mass ratio is the spectral radius of a sweep.",
                 "contraction of a mass ratio: largest error [-]",
-                max(abs(lesson.mass_ratio_contraction(r) - relaxed_radius(column((1.0, r))[0], 1.0))
-                    for r in (0.1, 1.0, 10.0, 1000.0)), 1e-12)
+                np.max([abs(lesson.mass_ratio_contraction(r) - relaxed_radius(column((1.0, r))[0], 1.0))
+                        for r in (0.1, 1.0, 10.0, 1000.0)]), 1e-12)
     beyond, off = [0.0], [0.0]
     for n, A in stacks.items():
         omega, rho = lesson.best_relaxation(np.cos(0.5 * np.pi / n) ** 2)
@@ -943,7 +944,7 @@ def closed_forms(lesson, check):
         beyond.append(radius - min(relaxed_radius(A, w) for w in np.linspace(1.0, 1.999, 800)))
         off.append(abs(radius - rho))
     check.agree("No relaxation does better than 2/(1 + √(1 − ρ)).", "radius beyond the best of a search [-]",
-                max(beyond), 1e-7)
+                np.max(beyond), 1e-7)
     check.agree("At the best relaxation a sweep leaves ω − 1 of the error.",
                 "radius at the best relaxation: largest error [-]", np.max(off), 1e-7)
     nearest_of_the_disc(lesson, check)

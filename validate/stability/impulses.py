@@ -147,7 +147,7 @@ def overlapping_discs_come_apart(lesson, check):
     apart, still = lesson.advance_discs(step, row[None], np.zeros((1, 5, 2)), SHORT, 400,
                                         lesson.Discs(np.full(5, RADIUS), inverse_masses, 0.8))
     before, after = ((1.0 / inverse_masses) @ places / np.sum(1.0 / inverse_masses) for places in (row, apart[0]))
-    overlap, fastest = max(0.0, (2.0 * RADIUS - np.diff(apart[0, :, 0])).max()), np.abs(still).max()
+    overlap, fastest = np.max(2.0 * RADIUS - np.diff(apart[0, :, 0]), initial=0.0), np.abs(still).max()
     way = np.linalg.norm(after - before)
     check("Five discs in a row, each a quarter inside the next, separate.", "largest overlap after 400 steps [m]",
           law=0.0, found=overlap, within=ROUND_OFF, saw=f"After 400 steps the largest overlap is {overlap:.0e} m.")

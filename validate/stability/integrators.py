@@ -87,7 +87,7 @@ def flips(lesson, method, edges):
 
 def departure(measured, edges):
     """Return the largest relative error of measured edges {ζ: hω}; the absolute error where theory gives 0."""
-    return max(abs(measured[zeta] - h) / (h or 1.0) for zeta, h in edges.items())
+    return np.max([abs(measured[zeta] - h) / (h or 1.0) for zeta, h in edges.items()])
 
 
 def turning(lesson, method, h_omega, steps, flatness=1.0):
@@ -163,7 +163,7 @@ def edge_picture(title, measured, sentence):
     """Draw theory's edges over ζ as lines and the measured ones as dots: measured = {method: {ζ: hω}}."""
     drawn = []
     for method, edges in measured.items():
-        fine = np.linspace(0.0, max(edges), 121)
+        fine = np.linspace(0.0, np.max(list(edges)), 121)
         drawn.append(series(f"{method.label}, theory", fine, [EDGES[method](zeta) for zeta in fine], LINE))
         drawn.append(series(f"{method.label}, measured", edges.keys(), edges.values(), DOTS))
     return Picture(title, "damping ratio ζ [-]", "longest stable hω [-]", drawn, sentence)
@@ -249,7 +249,7 @@ def edges_agree(lesson, check, method, edges, claim):
     measured = {zeta: edge(lesson, method, zeta) for zeta in edges}
     worst, flipped, count = departure(measured, edges), flips(lesson, method, edges), len(edges)
     check(claim, f"largest relative error of the edge at {count} damping ratios [-]", law=0.0, found=worst, within=EDGE,
-          saw=f"From ζ = {min(edges):g} to {max(edges):g} the measured edge differs from theory by at most "
+          saw=f"From ζ = {min(edges):g} to {np.max(list(edges)):g} the measured edge differs from theory by at most "
               f"{worst:.1e}.")
     check("The edge flips within ±0.1 %.", f"edges that flip [of {count}]", law=count, found=flipped, within=0.0,
           saw=f"At {flipped} of {count} damping ratios a run stays bounded 0.1 % below the bound, and grows 0.1 % "

@@ -67,7 +67,7 @@ def transpose_gain(lesson, check):
         check("The transpose converges for α < 2/σ₁², σ₁ the largest singular value of J.",
               f"largest gain, {name} [1/m²]", law=law, found=edge, within=FOUR_DIGITS * law,
               saw=f"{name} are stable up to a gain of {edge:.5g}/m².")
-    fine = np.linspace(np.log10(min(laws)), np.log10(max(laws)), 20)
+    fine = np.linspace(*np.log10([np.min(laws), np.max(laws)]), 20)
     return Picture("The largest gain", "log₁₀ of 2/σ₁²", "log₁₀ of the largest gain", [
         series("theory", fine, fine, LINE), log_series("measured", laws, edges, DOTS)],
         "A gain that suits one arm is a hundred times too large for another: longer arms need smaller gains.")
@@ -108,7 +108,7 @@ def straight_arm(lesson, check):
         check("A straight arm is a saddle: each iteration multiplies a small bend by a factor above 1.",
               f"factor per iteration of {name}, target at {distances[k]:.1f} m [-]",
               law=laws[k], found=factors[k], within=FOUR_DIGITS * laws[k],
-              saw=f"{name}: a bend grows by {min(factors):.3f} to {max(factors):.3f} per iteration.")
+              saw=f"{name}: a bend grows by {np.min(factors):.3f} to {np.max(factors):.3f} per iteration.")
         curves += [series(f"theory, {label}", distances, np.log10(laws), LINE),
                    series(label, distances, np.log10(factors), DOTS)]
     near_singular(lesson, check)
@@ -408,8 +408,8 @@ def extremes(lesson, check):
     """Check both edges of the ring, the centre of one without a hole, angles of many turns, and refused values."""
     way = np.array([np.cos(2.0), np.sin(2.0)])
     for lengths in ((1.0, 1.0), (1.0, 0.6), (1.0, 1e-6), (1e-3, 1e3)):
-        off = max(left_by_closed_form(lesson, r * way, lengths, elbow)
-                  for r in annulus(lengths) if r > 0.0 for elbow in (1.0, -1.0)) / sum(lengths)
+        off = np.max([left_by_closed_form(lesson, r * way, lengths, elbow)
+                      for r in annulus(lengths) if r > 0.0 for elbow in (1.0, -1.0)]) / sum(lengths)
         check("The closed form reaches both edges of the ring.",
               f"way that is left at the edges over the reach, lengths {lengths[0]:g} and {lengths[1]:g} m [-]",
               law=0.0, found=off, within=1e-14,

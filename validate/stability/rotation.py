@@ -203,7 +203,7 @@ def fast_spin(lesson, check):
     runs = {m: tried(lesson, m, CYLINDER, FAST, MS, steps) for m in LABEL}
     check("A step with L as its state keeps L at any spin.",
           f"largest change of L in {len(KEEP_L)} steps of the lesson [kg m²/s]", law=0.0,
-          found=max(np.abs(runs[m][1] - I * FAST).max() if runs[m] else np.inf for m in KEEP_L), within=0.0,
+          found=np.max([np.abs(runs[m][1] - I * FAST).max() if runs[m] else np.inf for m in KEEP_L]), within=0.0,
           saw=f"At 10⁴ rad/s and 10 rad per step, {steps:,} steps change no digit of L.")
     for method in ("splitting_step", "composed_splitting_step"):
         off = relative_turn(runs[method][0], symmetric_top(I, np.array(FAST), seconds))
@@ -326,7 +326,7 @@ def falls(lesson, spin):
 
 def fallen(lesson, spin):
     """Return the largest tilt [rad] in 40 s from nearly upright: enough for one fall unless within 2 % of the edge."""
-    return max(tilts(lesson, spin, 1e-5, 0.01, 40.0, 1))
+    return np.max(list(tilts(lesson, spin, 1e-5, 0.01, 40.0, 1)))
 
 
 def lowest_cosine(spin):

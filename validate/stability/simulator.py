@@ -60,7 +60,7 @@ def stepped(lesson, shape, state, p, dt, steps):
 
 def largest(*differences):
     """Return the largest size of all numbers in these arrays."""
-    return max(np.max(np.abs(one)) for one in differences)
+    return np.max([np.max(np.abs(one)) for one in differences])
 
 
 # ---------------------------------------------------------------------------------------------- speeds
@@ -73,7 +73,7 @@ def deepest(lesson, speed, margin, dt):
         state, p = round_bodies(lesson, [(0.0, height)], 0.1, 1.0, 0.005, (0.0, 0.0), 0.0, 5, margin)
         state = state._replace(v=np.array([(0.0, -speed), (0.0, 0.0)]))
         depths.append(0.1 - stepped(lesson, DISC, state, p, dt, 4).x[0, 1])
-    return max(0.0, *depths)
+    return np.max([0.0, *depths])
 
 
 @case("margin-and-speed", "The fastest body that a margin stops", compiled=False)
@@ -442,7 +442,7 @@ def invariants(lesson, rng):
 def gains_and_differences(lesson, rng):
     energies, work = rng.normal(size=(2, 6))
     rest, now = energies - work, np.zeros(1)
-    gain = max(rest[k] - rest[j] for k in range(6) for j in range(k + 1))
+    gain = np.max([rest[k] - rest[j] for k in range(6) for j in range(k + 1)])
     # the second run is ahead by 0.5, 1.5 and 1 J, and is 2, 3 and 9 times as fast
     ends = iter((rest, rest + 0.5, rest, rest + 1.5, rest, rest + 1.0))
     lengths = iter((2.0, 1.0, 3.0, 1.0, 9.0, 1.0))
@@ -552,7 +552,7 @@ def loads_of_a_slip(lesson, rng):
         seen.append(t)
         return p.m * p.gravity, np.zeros(3)
     lesson.exact_rolling_step(load, t, rng.normal(size=3), np.array(UPRIGHT), v, omega, 2.0 * end, ball)
-    return (min(seen), max(seen)), (t, t + end)
+    return (np.min(seen), np.max(seen)), (t, t + end)
 
 
 @random_law("A floor that travels and turns has the velocity of each of its points.",
@@ -794,7 +794,7 @@ def sweeps_until_settled(lesson, check):
           law=0.5 * (1.0 + rho), found=left[0] / bound, within=0.5 * (1.0 - rho) + 0.01,
           saw=f"It leaves {left[0]:.1e} of the largest force.")
     check.agree("Later steps, which start from the last impulses, leave less.",
-                "largest error of the forces after 2 to 32 steps [-]", max(left[1:]), bound)
+                "largest error of the forces after 2 to 32 steps [-]", np.max(left[1:]), bound)
     check.agree("Then the discs rest.", "speed of the discs after 60 steps, over g dt [-]",
                 largest(after(60, settled).v) / (G * dt), bound)
     above, p = make([R + 0.005])
