@@ -14,7 +14,7 @@ from ..checks import UNIT, BadInput, WrongShape
 FLAT_BODY_TOLERANCE = 1e-12  # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
 SMALL = 2000                 # numbers in a state up to which a checked record is remembered [-]
 MOST_KNOWN = 64              # records that are remembered [-]
-CHECKED = set()              # the content of records that were found right
+CHECKED: set = set()         # the content of records that were found right
 ROUND = 1e-9                 # allowed difference of the moments of a round body, over the largest [-]
 
 

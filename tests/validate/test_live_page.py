@@ -90,7 +90,7 @@ def page(server, browser):
     page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=LONGEST)
     with contextlib.suppress(Exception):                              # "Would you like to receive news?"
         page.get_by_role("button", name="No", exact=True).click(timeout=2000)
-    page.get_by_text("| Idle").wait_for(timeout=LONGEST)              # a cell that is run before its kernel is there is lost
+    page.get_by_text("| Idle").wait_for(timeout=LONGEST)              # a cell that is run before its kernel is lost
     run_cell(page)
     yield page
     assert page.faults == []

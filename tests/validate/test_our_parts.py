@@ -9,7 +9,7 @@ from validate.measure import our_parts
 from validate.measure.selection import Plan, select
 from validate.report import audit, words
 from validate.worlds.described import DESCRIBED
-from validate.worlds.ours import PLACES, lesson_of
+from validate.worlds.ours import lesson_of
 
 PLAN = Plan(quick=False, speeds=("plain",))
 

@@ -1,6 +1,6 @@
 """Cost and effect of each part of our loop in a scene.
 
-A loop with all parts runs every scene that is a Model in the plane: it has loads of all kinds, searches for contacts of
+A loop with all parts runs every scene that is a Model: it has loads of all kinds, searches for contacts of
 shapes of all kinds, lets them rub, closes joints and turns what moves.  From it one part at a time is left out, as the
 engines' switches do.  The loop that `compose` makes of the Model leaves out all that the scene does not need.
 """
@@ -18,7 +18,7 @@ from solutions.support.model import make_model
 from solutions.support.shapes import Ball
 
 from ..check import jsonable
-from ..worlds.ours import PLACES, lesson_of
+from ..worlds.ours import lesson_of
 from . import dimension
 from .accuracy import relative
 from .timing import Timed, interleaved
@@ -39,6 +39,11 @@ WITH, OWN = "all parts", "the scene's loop"
 SMALL = 0.01                 # radius of a body without a shape over the least distance of two bodies, or over 1 m [-]
 STEPS, PROBE = 500, 2        # steps of a run, and of one that finds out how long a step takes
 LONGEST, SEEN = 0.03, 0.5    # a run that is timed, or observed, ends sooner if it would take longer than this [s]
+
+
+class Part(NamedTuple):
+    """A function of a step."""
+    step: Callable
 
 
 class Run(NamedTuple):
@@ -84,15 +89,25 @@ def variants(lesson, model):
     """
     own, full = lesson.compose(model), lesson.compose(shaped(model))
     names = tuple(part.step.__name__ for part in own.parts)
-    load = full.load if any(callable(load) for load in model.loads) else lesson.model_load
-    full = full._replace(load=load, bounds=lesson.convex_bounds_2d, narrow=lesson.convex_contacts_2d)
-    every = SMOOTH if names[:1] == SMOOTH[:1] else ALL
-    found = {WITH: (every, full)}
+    named = partial(in_dimension, lesson, model.d)
+    load = full.load if any(callable(load) for load in model.loads) else getattr(lesson, named("model_load"))
+    bounds, narrow = ((lesson.convex_bounds_2d, lesson.convex_contacts_2d) if model.d == 2 else
+                      (lesson.rounded_bounds, lesson.rounded_contacts))
+    full = full._replace(load=load, bounds=bounds, narrow=narrow)
+    every = SMOOTH if names[:1] == (named(SMOOTH[0]),) else ALL
+    found = {WITH: (tuple(map(named, every)), full)}
     for part, (functions, fields) in WITHOUT.items():
-        kept = tuple(filter(None, (functions.get(name, name) for name in every)))
+        kept = tuple(named(other) for other in (functions.get(name, name) for name in every) if other)
         zero = {field: 0.0 * getattr(full.p, field) for field in fields}
-        found[part] = kept, full._replace(p=full.p._replace(**zero))
+        step = own.step._replace(step=lesson.whole_step) if part == "detection" else full.step
+        found[part] = kept, full._replace(p=full.p._replace(**zero), step=step)
     return {**found, OWN: (names, own)}
+
+
+def in_dimension(lesson, d, name):
+    """Return the name of a function of a loop in the plane, or of its twin in space."""
+    twin = f"{name.removesuffix('_of_pairs')}_in_space"
+    return twin if d == 3 and hasattr(lesson, twin) else name
 
 
 def shaped(model):
@@ -108,15 +123,15 @@ def shaped(model):
 def advancing(lesson, names, loop):
     """Return the function (steps, dt) → PileState of a loop, with the functions of a plain or a compiled lesson."""
     twin = lambda function: getattr(lesson, function.__name__, function)
-    step = [getattr(lesson, name) for name in (*names, *["leave"] * (PLACES - len(names)))]
+    parts = lesson_of("solutions").padded(loop._replace(parts=[Part(getattr(lesson, name)) for name in names]))
     rest = twin(loop.load), twin(loop.bounds), twin(loop.narrow), 0.0, loop.state
-    return lambda steps, dt: lesson.advance_parts(*step, *rest, dt, steps, loop.p)
+    return lambda steps, dt: lesson.advance_parts(twin(loop.step.step), *map(twin, parts), *rest, dt, steps, loop.p)
 
 
 def rows_of(selection, described, model, p, speeds):
     """Return the rows of all parts at these speeds."""
     plain, see = lesson_of(selection.plan.of), partial(seen_in, described, p)
-    loops, lifted = variants(plain, model), dimension.in_both(plain, shaped(model)) or {}
+    loops, lifted = variants(plain, model), (dimension.in_both(plain, shaped(model)) if model.d == 2 else None) or {}
 
     def composed(lesson):
         return {name: Run(advancing(lesson, *one), partial(see, partial(plain.state_of, one[1])))

@@ -25,7 +25,6 @@ from solutions.support.scenes import PileState
 from solutions.support.shapes import HalfSpace
 
 from ...worlds import chipmunk
-from ...worlds.ours import plain_advance
 from .files import Followed
 from .hand import Grip, hand_force, pulled
 from .loops import LOOPS
@@ -86,7 +85,6 @@ class Simulation:
     def _compose(self):
         composed = self.simulator.compose(self.now_model, self.simulator.Settings(sweeps=self.tuning.sweeps))
         self.loop = LOOPS[self.lesson](composed, self.simulator, self.exercises)
-        self.advance_loop = plain_advance(self.loop)
         self.turns = any(part.step is self.simulator.move_and_turn for part in self.loop.parts)
 
     def set(self, **changes):
@@ -125,7 +123,7 @@ class Simulation:
             raise self.trouble
         self._forget_the_future()
         state, work = self._with_hand(self.state)
-        after = self.advance_loop(self.t, state, self.tuning.dt)
+        after = self.simulator.run_parts(self.loop, self.t, state, self.tuning.dt, 1)
         self._check(after)
         if self.driven:
             work += work_of_driven_rows(after, self.tuning.dt, self.loop.p)

@@ -40,9 +40,9 @@ LONGEST_PRINT = 400          # characters of what a step prints that are shown
 STOPPED = "Stopped. ▶ goes on."
 AGAIN = " Save the file, and the scene goes on."
 
-alive = {}                   # {cell: [(request, its scene)]}; a cell that runs again closes what it has shown
-playing = set()              # scenes whose task runs
-saved = []                   # the handler of SIGINT while none plays
+alive: dict = {}             # {cell: [(request, its scene)]}; a cell that runs again closes what it has shown
+playing: set = set()         # scenes whose task runs
+saved: list = []             # the handler of SIGINT while none plays
 
 
 # ---------------------------------------------------------------------------------------------- the Stop button

@@ -177,7 +177,7 @@ def two_edges(lesson, rng):
             "first.", "face on face: largest error of the contacts [-, m]", EXACT)
 def face_on_face(lesson, rng):
     """Lay a face of one box on a face of another, turned and shifted so that both stick out."""
-    k, f, half = *rng.integers(3, size=2), rng.uniform(0.5, 0.8, (2, 3))
+    (k, f), half = rng.integers(3, size=2), rng.uniform(0.5, 0.8, (2, 3))
     turn, side = rng.uniform(0.1, 1.4), rng.choice((-1.0, 1.0))
     R = matrix_of(random_quaternions(rng, 1)[0])
     n, u, w = (R[:, (k + e) % 3] for e in range(3))
@@ -191,7 +191,7 @@ def face_on_face(lesson, rng):
 @random_law("A box touches a plane with the corners that reach it, and fills the box along the axes around it.",
             "box on a plane: largest error of the contacts and bounds [-, m]", EXACT)
 def box_on_a_plane(lesson, rng):
-    q, half, x, n = random_quaternions(rng, 1)[0], rng.uniform(0.3, 1.0, 3), *rng.normal(size=(2, 3))
+    q, half, (x, n) = random_quaternions(rng, 1)[0], rng.uniform(0.3, 1.0, 3), rng.normal(size=(2, 3))
     n, R = n / np.linalg.norm(n), matrix_of(q)
     corners = corners_of(x, R, half)
     offset = rng.uniform(-0.4, DEEPEST) - np.min(corners @ n)

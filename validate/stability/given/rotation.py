@@ -33,7 +33,7 @@ def times_of_torques(lesson, rng):
             "torque about an axis: largest error of L [kg m²/s]", EXACT)
 def torque_about_an_axis(lesson, rng):
     """The gyroscopic term is 0 there, so both steps with ω as their state add dt τ."""
-    k, still, grows, spin = rng.integers(3), *rng.normal(size=3)
+    k, (still, grows, spin) = rng.integers(3), rng.normal(size=3)
     axis, dt, t = np.eye(3)[k], 0.02, rng.uniform(0.0, 1.0)
     body = lesson.make_rigid_body(2.0, rng.uniform(1.0, 1.9, 3))
     torque = lambda t, q, L, body: (still + t * grows) * axis
