@@ -44,15 +44,19 @@ def test_a_part_that_is_left_out_changes_the_motion_where_the_scene_needs_it_and
 
 
 def test_every_scene_in_the_plane_runs_with_all_parts_as_it_does_with_its_own(monkeypatch):
-    """Two steps of each: the loops differ in what they leave out, not in what they compute."""
+    """Two steps of each: the loops differ in what they leave out, not in what they compute.
+
+    In the machine the two searches list the contacts in different orders, and sweeps end when they change no impulse
+    by more than a share.
+    """
     monkeypatch.setattr(our_parts, "SEEN", 0.0)
+    lesson = lesson_of("solutions")
     for name, one in DESCRIBED.items():
-        selection = select(name, PLAN)
-        model = one.model(selection.first[1])
-        if lesson_of("solutions").refuses(model):
+        if lesson.refuses(one.model(select(name, PLAN).first[1])):
             assert measured(name)["note"]
         else:
-            assert parts(name)[our_parts.TOTAL]["change"] < 1e-9, name
+            within = lesson.Settings().settled if name == "machine" else 1e-9
+            assert parts(name)[our_parts.TOTAL]["change"] < within, name
 
 
 def test_the_loop_in_space_moves_as_the_one_in_the_plane(monkeypatch):

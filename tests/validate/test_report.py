@@ -288,3 +288,24 @@ def test_no_page_names_what_only_a_programmer_knows():
         scene = modules.bind_scene(name)
         for text in (*map(modules.report_text, filter(None, (scene.truth, scene.law))), theory(scene)):
             assert not internal.findall(text), name
+
+
+def test_a_legend_of_fourteen_lines_is_lower_than_its_plot_and_no_wider():
+    short, long = ["gyroscopic, implicit: 1.00"] * 7, ["pybullet, reduced coordinates: 1.00"] * 7
+    assert plots.columns_of([*short, *long], 8) == 2 and plots.LINE * 8 / 9 * 8 < 0.5 * plots.HEIGHT
+    assert plots.columns_of([*long, *long], 8) == 1 and plots.columns_of(["Euler: 1.00"] * 6, 9) == 3
+
+
+@pytest.mark.parametrize(("curve", "predicted", "allowed"), [
+    ({"rows": []}, "–", "–"),
+    ({"rows": [{"predicted": None, "limit": 0.02, "band": None}]}, "–", "≤ 0.02"),
+    ({"rows": [{"predicted": None, "limit": None, "band": None}]}, "–", "–"),
+    ({"rows": [{"predicted": [1.1], "limit": 0.11, "band": 0.01}]}, "0.1", "± 0.01")])
+def test_a_row_shows_the_error_that_theory_predicts_and_how_far_it_may_be_off(curve, predicted, allowed):
+    assert words.theory_of(curve, [1.0]) == {"predicted": predicted, "allowed": allowed}
+
+
+@pytest.mark.parametrize(("x", "digits", "shown"), [
+    (126.0, 2, "130"), (99.6, 2, "100"), (300.0, 2, "300"), (9999.0, 2, "10000"), (0.5, 2, "0.5"), (999.9, 3, "1000")])
+def test_a_number_between_a_hundredth_and_ten_thousand_has_no_exponent(x, digits, shown):
+    assert numbers.number(x, digits) == shown

@@ -324,22 +324,33 @@ def _save(figure, path):
 
 
 LETTER = 0.076                  # mean width of a letter of the legend [in]: 0.61 of 9 points
-LINE = 0.172                    # height of a line of the legend [in]
+LINE = 0.172                    # height of a line of the legend [in], at 9 points
+MANY = 8                        # entries of a legend from which on its letters are smaller
 
 
 def _legend_below(figure, axes, title):
     """Put the legend below the axes, in as many columns as fit, so that the picture is as narrow as a phone."""
     labels = axes.get_legend_handles_labels()[1]
-    longest = max(map(len, labels))
-    columns = min(3, max(1, int((WIDTH - 0.1) / (0.62 + 0.95 * LETTER * longest))), len(labels))
+    size = 9 if len(labels) <= MANY else 8
+    columns = columns_of(labels, size)
     lines = -(-len(labels) // columns) + bool(title)
-    below, height = 0.55 + LINE * lines, HEIGHT + LINE * lines
+    below, height = 0.55 + LINE * size / 9.0 * lines, HEIGHT + LINE * size / 9.0 * lines
     figure.set_size_inches(WIDTH, height)
     left = 0.8
     figure.subplots_adjust(left / WIDTH, below / height, 1.0 - 0.15 / WIDTH, 1.0 - 0.22 / height)
-    figure.legend(*axes.get_legend_handles_labels(), loc="lower left", bbox_to_anchor=(0.01, 0.0), fontsize=9,
-                  title=title, title_fontsize=9, alignment="left", ncols=columns, columnspacing=1.2, borderpad=0.2,
+    figure.legend(*axes.get_legend_handles_labels(), loc="lower left", bbox_to_anchor=(0.01, 0.0), fontsize=size,
+                  title=title, title_fontsize=size, alignment="left", ncols=columns, columnspacing=1.2, borderpad=0.2,
                   handlelength=2.2, labelspacing=0.35)
+
+
+def columns_of(labels, size):
+    """Return the number of columns, at most three, that a legend in letters of this size [pt] has room for."""
+    def width(column):
+        return (0.62 + 0.95 * LETTER * max(map(len, column))) * size / 9.0
+    for count in (3, 2):
+        if count <= len(labels) and sum(map(width, np.array_split(labels, count))) <= WIDTH:
+            return count
+    return 1
 
 
 def _margins(figure, axes, title):
