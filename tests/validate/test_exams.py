@@ -94,7 +94,8 @@ def test_every_exam_says_what_it_asks_and_what_each_contestant_gives_up():
 
 # a parameter of each scene, wrong by a tenth; springs and dampers of the governor are so stiff that none shows
 WRONG = {
-    "squeezer": "inertia", "four_bars": "g", "bricard": "g", "long_pendulum": "g", "governor": "ball", "tossed_box": "w1"}
+    "squeezer": "inertia", "four_bars": "g", "bricard": "g", "long_pendulum": "g", "governor": "ball",
+    "tossed_box": "w1"}
 
 
 @pytest.mark.parametrize("name", WRONG)
