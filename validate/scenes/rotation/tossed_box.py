@@ -167,7 +167,7 @@ def sanity_checks():
     p, simple = CASES["complex"], CASES["simple"]
     energy = lambda q: 0.5 * q.m * np.dot(body(q).v, body(q).v) + 0.5 * np.sum(q.moments() * q.omega() ** 2)
     return (states("energy of the simple and of the complex case, as published [J]", (energy(simple), energy(p)),
-                   (5.001041625, 368.54641249999997), 1e-9),
+                   (5.001041625, 368.54641249999997), 5e-6),         # from moments that are rounded to six digits
             states("ω in the body after a period, by an elliptic integral [rad/s]", rate_in_body(truth(p, period(p))),
                    p.omega(), 1e-8),
             states("ω in the body after 1 s, by Euler's equations alone [rad/s]", rate_in_body(truth(p, T)),
