@@ -25,6 +25,7 @@ UNUSED = {                   # {package: files of its wheel that no lesson loads
     "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|matplotlib/(testing|tests)/"
                   r"|.*/DejaVu(Serif|SansMono-)|matplotlib/backends/(web_backend|qt_editor)/",
     "pillow": r"PIL/_(imagingft|imagingtk|webp)\.",
+    "openblas": r"(?!)",     # nothing, but its own archive is not compressed
     "pygments": r"pygments/lexers/(?!__init__|_mapping|python|diff|special|shell|console)",
 }
 ABSENT = "jedi", "ssl"                # the kernel asks for them, and does without: they are empty packages here
@@ -103,7 +104,7 @@ def take(place, out):
 
 
 def taken(folder, out, name, facts):
-    """Copy a package without its unused files; its entry in the lock."""
+    """Copy a package without its unused files, compressed; its entry in the lock."""
     source, target = folder / facts["file_name"], out / facts["file_name"]
     if name not in UNUSED:
         target.write_bytes(source.read_bytes())
@@ -111,9 +112,9 @@ def taken(folder, out, name, facts):
     unused = re.compile(UNUSED[name])
     with zipfile.ZipFile(source) as packed:
         kept = {one: packed.read(one) for one in packed.namelist() if not unused.match(one) and one[-1] != "/"}
-    record = next(one for one in kept if one.endswith(".dist-info/RECORD"))
-    lines = kept[record].decode().splitlines(keepends=True)
-    kept[record] = "".join(line for line in lines if not unused.match(line.partition(",")[0])).encode()
+    for record in [one for one in kept if one.endswith(".dist-info/RECORD")]:
+        lines = kept[record].decode().splitlines(keepends=True)
+        kept[record] = "".join(line for line in lines if not unused.match(line.partition(",")[0])).encode()
     pack(target, kept)
     return facts | {"sha256": sha256(target.read_bytes())}
 
