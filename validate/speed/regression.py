@@ -1,4 +1,4 @@
-"""What became slower since an earlier commit: `python -m validate.speed.regression --base HEAD~1`.
+"""What became slower since an earlier commit: `python -m validate.speed.regression [--base COMMIT]`.
 
 One compiled method of each lesson runs in turn at both commits, each in a process of its own with the packages of this
 environment.  Times are CPU times of one thread, in units of an engine's step that runs beside them, so machine and load
@@ -25,6 +25,7 @@ from ..measure.selection import Plan, select
 from ..measure.timing import interval, time_ours
 from ..methods import BACKTRACKING, CONTINUOUS, LOOP_2D, RATTLE, RK4, RUNGE_KUTTA, SLIDING, TRIANGLES
 from ..run.processes import one_sentence
+from ..run.store import full_run
 from ..subject import modules
 from . import benchmark, piles, targets
 
@@ -170,8 +171,9 @@ def judged(lesson, samples):
     return (lesson, f"{np.median(samples):.2f}", f"{low:.2f} to {high:.2f}", verdict), slower
 
 
-def main(base: Annotated[str, typer.Option(help="The commit to compare with.")] = "HEAD~1"):
+def main(base: Annotated[str | None, typer.Option(help="Else that of the last full run that was kept.")] = None):
     """Compare one compiled method of each lesson with the same at an earlier commit; exit with 1 if one is slower."""
+    base = base or (full_run() or {"commit": "HEAD~1"})["commit"]
     table = Table("lesson", f"time, now over {base}", "interval", "", box=None, header_style="bold")
     with checkout(base) as folder:
         if not (folder / Path(__file__).relative_to(modules.ROOT)).exists():

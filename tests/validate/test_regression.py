@@ -1,0 +1,37 @@
+"""What became slower since an earlier commit: the verdict follows the interval, and a bad commit is refused."""
+
+import subprocess
+import sys
+
+import pytest
+
+from validate.speed import regression
+from validate.subject.modules import ROOT, lesson_names
+
+
+def test_every_lesson_has_a_method_that_is_timed():
+    assert list(regression.WORK) == list(lesson_names())
+
+
+@pytest.mark.parametrize(("ratio", "words", "slower"), [
+    (1.0, "as quick", False), (1.12, "as quick", False), (1.3, "slower", True), (0.7, "quicker", False)])
+def test_a_method_is_slower_if_the_whole_interval_is(ratio, words, slower):
+    samples = [ratio * (1.0 + 0.01 * k) for k in range(-4, 5)]
+    row, found = regression.judged("springs", samples)
+    assert found == slower and words in row[-1]
+
+
+def test_one_slow_round_of_nine_decides_nothing():
+    assert not regression.judged("springs", [1.0] * 7 + [3.0, 3.0])[1]
+
+
+def test_ratios_are_in_steps_of_the_engine():
+    """A machine of half the speed doubles both times."""
+    now, then = (lambda lesson: (0.4, 0.2)), (lambda lesson: (0.1, 0.1))
+    assert regression.ratios(now, then, "springs") == [2.0] * regression.ROUNDS
+
+
+def test_an_unknown_commit_gets_one_sentence():
+    done = subprocess.run([sys.executable, "-m", "validate.speed.regression", "--base", "no-such-commit"], cwd=ROOT,
+                          capture_output=True, text=True)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and "no-such-commit" in done.stderr
