@@ -59,6 +59,7 @@ def from_solutions(tree, home=""):
                 yield node, module.removeprefix("solutions").removeprefix(".")
 
 
+@cache
 def starred(module):
     """Return the modules below solutions of which a module there imports everything."""
     return [there for node, there in from_solutions(trees()[module], module) if node.names[0].name == "*"]
@@ -78,6 +79,7 @@ def calls():
     return found
 
 
+@cache
 def defined(place):
     """Return (module, function) where it is defined; None where it is no function.
 
