@@ -60,21 +60,14 @@ def farthest(one, other, model):
 
 
 @pytest.mark.long
-@pytest.mark.xdist_group("compiled simulator")
-@pytest.mark.parametrize(("product", "settings", "most"), [(PYBULLET, {}, 3e-3), (MUJOCO, {}, 2e-2)], ids=str)
-def test_a_mixed_machine_moves_alike_in_our_loop_and_in_engines(product, settings, most):
-    """For 0.3 s; the engines with hard contacts come closer with the step."""
-    if not product.installed() or not modules.can_compile():
-        pytest.skip(f"{product} or numba is not installed")
-    model, T = mixed_machine(), 0.3
-    reference = history(ours.build(model, 1.0 / 8000.0, compiled=True, sweeps=400, settled=1e-6), 2400, 800)
-    apart = []
-    for rate in (1000, 4000):
-        seen = history(product.world.build(model, 1.0 / rate, **settings), round(T * rate), rate // 10)
-        apart.append(farthest(seen, reference, model)[-1])
-    assert apart[1] < most
-    if product is PYBULLET:
-        assert apart[1] < 0.6 * apart[0]
+def test_a_mixed_machine_moves_alike_in_our_loop_and_in_engines():
+    """For 0.3 s.  Two codes of order 1 that fall are up to g T dt apart; MuJoCo's contacts are soft besides."""
+    model, T, rate = mixed_machine(), 0.3, 200
+    seen = history(ours.build(model, 1.0 / rate), round(T * rate), round(T * rate))
+    for product, most in ((PYBULLET, G * T / rate), (MUJOCO, G * T / rate + 0.02)):      # 0.02: measured, 19 mm
+        if product.installed():
+            other = history(product.world.build(model, 1.0 / 4000.0), 1200, 1200)
+            assert farthest(seen, other, model)[-1] < most, product.name
 
 
 # ---------------------------------------------------------------------------------------------- forces as results
