@@ -1,7 +1,7 @@
 """A reader's own engine in every described scene: where it agrees with the truth, with which order, what it refuses.
 
-The installed engines stand beside it, and in a full run our own loop.  No theory of this engine is known, and it never meets that of
-another one.  So only its convergence is judged: whether its error vanishes with its step.
+The installed engines stand beside it, and in a full run our own loop.  No theory of this engine is known, and it never
+meets that of another one.  So only its convergence is judged: whether its error vanishes with its step.
 """
 
 import importlib.util
