@@ -1,7 +1,8 @@
 """A reader's own engine in every described scene: where it agrees with the truth, with which order, what it refuses.
 
-Our own loop and the installed engines stand beside it.  No theory of this engine is known, and it is never compared
-with the theory of another one.  So only its convergence is judged: whether its error vanishes with its step.
+The installed engines stand beside it, and in a full run our own loop.  No theory of this engine is known, and it is
+never compared with the theory of another one.  So only its convergence is judged: whether its error vanishes with its
+step.
 """
 
 import importlib.util
@@ -217,7 +218,7 @@ def conform(path, names, others, quick, out, console):
 
     It is 1 where the engine fails or departs.  Raises BadInput for a bad file or a scene without a Model.
     """
-    reader, others = load_engine(path), (OURS, *others)
+    reader, others = load_engine(path), others if quick else (OURS, *others)     # our loop has to be compiled
     for name in names:
         if name not in DESCRIBED:
             raise BadInput(f"scene {name!r}", "not a Model yet", f"choose from: {', '.join(DESCRIBED)}")
@@ -275,8 +276,8 @@ def page_of(reader, rows, others):
 <p>{escape(summary(rows))}</p>
 <p>Each scene is one Model, from which every engine is built. An error is relative to the truth at the end of the scene.
 No theory of this engine is known here, so only its convergence is judged: it agrees where its error vanishes with its
-step, and departs where its runs converge to another motion. The others ran with the most steps of a row. Our loop is
-composed of what each Model needs; it runs all these scenes, those in space as well.</p>
+step, and departs where its runs converge to another motion. The others ran with the most steps of a row. Our own loop,
+which is composed of what each Model needs, runs all these scenes, in the plane and in space; a full run shows it.</p>
 <div class="wide"><table><thead><tr>{"".join(f"<th>{escape(head)}</th>" for head in heads)}</tr></thead><tbody>
 {body}</tbody></table></div></body></html>
 """
