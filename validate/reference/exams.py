@@ -24,8 +24,8 @@ HIGH, LOW = 1e-3, 1e-1       # largest errors of the classes of high and of low 
 def iftomm_error(y, reference):
     """Return the root mean square, over all outputs and components, of |y − reference| / max(|reference|, 1e-3).
 
-    Source: González, González and Cuadrado, IFToMM library of computational benchmark problems; the same measure for
-    all of its problems.
+    Source: González, González, Luaces and Cuadrado 2010, for IFToMM's library of computational benchmark problems; all
+    of its problems have this measure.
     """
     y, reference = np.asarray(y, float), np.asarray(reference, float)
     return float(np.sqrt(np.mean((np.abs(y - reference) / np.maximum(np.abs(reference), THRESHOLD)) ** 2)))
@@ -45,8 +45,9 @@ def largest_relative_error(y, reference):
 
 
 def digits(error):
-    """Return the number of correct digits that belongs to a largest relative error, for readers; "" below one."""
-    return f"{-np.log10(error):.1f} digits" if 0.0 < error < 0.1 else ""
+    """Return the whole number of correct digits that belongs to a largest relative error, for readers; "" below one."""
+    whole = int(np.floor(-np.log10(error))) if 0.0 < error < 1.0 else 0
+    return f"{whole} digit{'s' if whole > 1 else ''}" if whole else ""
 
 
 # ---------------------------------------------------------------------------------------------- Andrews' squeezer
