@@ -90,7 +90,7 @@ def page(server, browser):
     page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=LONGEST)
     with contextlib.suppress(Exception):                              # "Would you like to receive news?"
         page.get_by_role("button", name="No", exact=True).click(timeout=2000)
-    page.get_by_text("| Idle").wait_for(timeout=LONGEST)              # a cell that is run before its kernel is lost
+    page.get_by_text("| Idle").wait_for(timeout=LONGEST)              # a cell that runs before its kernel does is lost
     run_cell(page)
     yield page
     assert page.faults == []
@@ -175,9 +175,28 @@ def test_a_cell_that_runs_twice_has_one_scene_and_a_page_that_is_loaded_again_ha
     page.reload(timeout=LONGEST)
     page.wait_for_selector(".live-scene canvas", timeout=LONGEST)
     until(page, "+data.frame > 0")
-    page.locator(".live-scene button").first.click()
     t = shown(page, "t")
     until(page, f"data.t !== '{t}'")
+
+
+def test_a_finger_pulls_a_body_in_a_narrow_page_and_nothing_is_cut_off(page):
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.locator(".jp-Notebook .jp-Cell").first.click()
+    page.keyboard.press("Control+b")                                  # without the list of files beside it
+    page.locator(".live-scene canvas").first.scroll_into_view_if_needed()
+    page.wait_for_timeout(500)
+    client, (x, y) = page.context.new_cdp_session(page), place(page, 3)
+    touch = lambda kind, *points: client.send("Input.dispatchTouchEvent", {
+        "type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]})
+    touch("touchStart", (x, y))
+    for k in range(1, 6):
+        touch("touchMove", (x + 6 * k, y - 6 * k))
+    until(page, "data.held === '3'")
+    touch("touchEnd")
+    until(page, "data.held === '-1'")
+    wide = page.evaluate("""[...document.querySelectorAll('.live-scene, .live-scene *')]
+        .map(one => one.scrollWidth - one.clientWidth).reduce((a, b) => Math.max(a, b), 0)""")
+    assert wide <= 1
 
 
 def test_a_film_of_what_was_seen_is_downloaded(page):

@@ -297,7 +297,7 @@ def test_a_page_that_does_not_answer_gets_no_flood_and_pauses_the_scene(monkeypa
     async def test(opened):
         page = opened(answers=False)
         await page.until(lambda: not page.scene.runs)
-        assert len(page.frames) <= widget.IN_FLIGHT + 1 and page.scene.lost
+        assert len(page.frames) <= widget.IN_FLIGHT + 1 and page.scene.wanted
         page.answers = True
         page.tell(do="here")                                          # the page is back
         await page.runs()
@@ -316,6 +316,21 @@ def test_a_page_that_is_closed_pauses_the_scene_and_one_that_is_loaded_again_get
         assert page.scene.simulation.t == t and len(page.frames) == shown + 1
         page.tell(do="play")
         await page.runs()
+    in_a_loop(test)
+
+
+def test_a_page_that_is_loaded_again_goes_on_unless_the_reader_has_paused_the_scene():
+    async def test(opened):
+        page = opened()
+        await page.runs()
+        page.tell(do="gone")
+        page.tell(do="hello", play=True)
+        await page.runs()
+        assert sum(task.get_coro().__name__ == "_run" for task in asyncio.all_tasks()) == 1
+        page.tell(do="pause")
+        page.tell(do="gone")
+        page.tell(do="hello", play=True)
+        assert not page.scene.runs
     in_a_loop(test)
 
 

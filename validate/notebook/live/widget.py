@@ -80,7 +80,8 @@ class LiveScene(anywidget.AnyWidget):
 
     def __init__(self, simulation, scene):
         self.simulation, self.speed = simulation, 1.0
-        self.runs = self.broken = self.inside = self.stopped = self.lost = False
+        self.runs = self.broken = self.inside = self.stopped = False
+        self.wanted = bool(scene.get("play"))                        # whether it should run while a page shows it
         self.said, self.tone, self.views, self.task = "", "", 0, None
         self.sent, self.answered, self.next, self.echo = 0, 0, 0.0, 0
         self.heard = self.looked = time.monotonic()
@@ -92,20 +93,26 @@ class LiveScene(anywidget.AnyWidget):
 
     def play(self):
         """Let the scene run; it needs a running event loop, which a kernel has."""
-        self.broken = self.lost = False
+        self.broken, self.wanted = False, True
         if not self.runs and self.comm is not None:
             self.runs, self.stopped, self.answered = True, False, self.sent
             self.heard = time.monotonic()
             self.say("")
-            self.task = asyncio.get_running_loop().create_task(self._run())
+            if self.task is None or self.task.done():    # else it has not seen yet that it was to end, and goes on
+                self.task = asyncio.get_running_loop().create_task(self._run())
 
     def pause(self, why="", tone=""):
-        self.runs = False
+        self.runs = self.wanted = False
         self.say(why, tone)
+
+    def wait(self):
+        """Pause until a page shows the scene again."""
+        self.runs = False
+        self.say(self.said, self.tone)
 
     def step(self):
         """Make one step and pause."""
-        self.runs = self.broken = False
+        self.runs = self.wanted = self.broken = False
         self.simulation.follow()
         if self._advance(1):
             self.say("")
@@ -119,7 +126,7 @@ class LiveScene(anywidget.AnyWidget):
 
     def seek(self, t):
         """Show a moment of the past, and pause there."""
-        self.runs = False
+        self.runs = self.wanted = False
         self.simulation.seek(t)
         self.say("")
         self._picture()
@@ -164,21 +171,22 @@ class LiveScene(anywidget.AnyWidget):
                 self._picture()
 
     def _opened(self, message):
-        """A page shows the scene; the first one starts it."""
+        """A page shows the scene, which runs unless a reader has paused it or wants no moving pictures."""
         self.views += 1
+        self.wanted = self.wanted and bool(message.get("play"))
         self.answered = self.sent
         self.say(self.said, self.tone)
         self._picture()
-        if message.get("play") or self.lost:
+        if self.wanted:
             self.play()
 
     def _closed(self, _):
         self.views = max(0, self.views - 1)
         if not self.views:
-            self.pause()
+            self.wait()
 
     def _seen(self, _):
-        if self.lost:
+        if self.wanted and self.views:
             self.play()
 
     # ------------------------------------------------------------------------------------------ the loop
@@ -197,8 +205,7 @@ class LiveScene(anywidget.AnyWidget):
                     self.stopped = False
                     self.pause(STOPPED, "info")
                 elif time.monotonic() - self.heard > UNSEEN:
-                    self.lost = True
-                    self.pause()
+                    self.wait()
                 else:
                     await asyncio.sleep(max(0.001, FRAME - (time.perf_counter() - began)))
         finally:
