@@ -298,6 +298,7 @@ class Student:
     def open(self, stem):
         self.page.goto(f"{self.server}/lab/index.html?path=notebooks/{stem}.ipynb", timeout=120_000)
         self.page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=120_000)
+        self.goes_back(stem)                     # JupyterLab shows last what was open before a reload
         self.page.wait_for_function("window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel",
                                     timeout=120_000)
 

@@ -37,7 +37,6 @@ def build(place, out):
         scratch = Path(scratch)
         pyodide.take(place, scratch / "lite" / "static" / "pyodide")
         drive(files, scratch / "content")
-        (scratch / "overrides.json").write_text(json.dumps(SETTINGS), encoding="utf-8")
         jupyterlite(scratch, out)
     packages = {f"packages/{path}": data for name in TESTED_BY for path, data in pyodide.installed(name).items()}
     tree = {f"{release.TOP}/{path}": data for path, data in files.items() if not ELSEWHERE.match(path)}
@@ -79,8 +78,7 @@ def with_first_cell(notebook, lesson):
 def jupyterlite(scratch, out):
     """Run the build of JupyterLite.  Raises RuntimeError if it fails."""
     command = [sys.executable, "-m", "jupyterlite_core.app", "build", "--lite-dir", scratch / "lite", "--contents",
-               scratch / "content", "--settings-overrides", scratch / "overrides.json", "--output-dir", out.resolve(),
-               "--no-sourcemaps", "--no-unused-shared-packages"]
+               scratch / "content", "--output-dir", out.resolve(), "--no-sourcemaps", "--no-unused-shared-packages"]
     command += [word for app in APPS for word in ("--apps", app)]
     run = subprocess.run(list(map(str, command)), cwd=scratch, capture_output=True, text=True,
                          env={**os.environ, "SOURCE_DATE_EPOCH": "315532800"})
@@ -89,8 +87,9 @@ def jupyterlite(scratch, out):
 
 
 def configure(file):
-    """Let the kernel load its packages together, and let it ask no package index."""
+    """Let the kernel load its packages together, let it ask no package index, and let JupyterLab save often."""
     config = json.loads(file.read_text(encoding="utf-8"))
+    config["jupyter-config-data"]["settingsOverrides"] = SETTINGS
     settings = config["jupyter-config-data"].setdefault("litePluginSettings", {}).setdefault(KERNEL, {})
     settings["disablePyPIFallback"] = True
     settings["loadPyodideOptions"] = {"packages": list(pyodide.FIRST)}
