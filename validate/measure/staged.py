@@ -23,8 +23,8 @@ def lessons_without(lessons, part):
 def step_without(lesson, dim, part):
     """Return contact_step_2d (dim 2) or contact_step (dim 3) of lesson 10 without one of PARTS.
 
-    Without rotation no load turns a body, and none changes its orientation.  Without detection there is no contact
-    either.  Without contact the contacts are found and not used.
+    Without rotation neither a load nor a contact turns a body, and none changes its orientation.  Without detection
+    there is no contact either.  Without contact the contacts are found and not used.
     """
     velocities = lesson.new_velocities_2d if dim == 2 else lesson.new_velocities
     push = pushed_2d if dim == 2 else pushed
@@ -32,6 +32,7 @@ def step_without(lesson, dim, part):
     def step(load, bounds, narrow, t, state, dt, p):
         x, q, v, omega, old, J = state
         if part == "rotation":
+            p = p._replace(inv_inertia=0.0 * p.inv_inertia)
             v, omega = v + dt * p.inv_mass[:, None] * load(t, x, q, v, omega, p)[0], omega.copy()
         else:
             v, omega = velocities(load, t, x, q, v, omega, dt, p)
