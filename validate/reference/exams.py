@@ -418,19 +418,15 @@ def bricard_angle(g, T):
                      dense_output=True).sol
 
 
-def rattle_3d(made, gravity, h, steps):
-    """Return centres (n, 3) of a Mechanism in space that was released at rest, after steps of RATTLE.
+def joints_3d(made):
+    """Return (gaps(x, R), rows(R), impulses(left, right, R, u)) of the joints of a Mechanism in space.
 
-    Bodies turn by the splitting of `turns.py`, and all joints are solved by least squares, in which rows may depend on
-    each other.  The last body is the world.
+    x (n, 3), and R (n + 1, 3, 3) with that of the world.  impulses: (n, 6) on the bodies, at the rows `right`, that add
+    −u at the rows `left`, by least squares, in which rows may depend on each other.
     """
     n, W, I = len(made.m) - 1, 1.0 / made.m[:-1], made.inertia[:-1]
     a, b = made.a, made.b
     own = [made.places - made.x[body] for body in (a, b)]                # all begin without a rotation
-    small = CLOSED * np.max(np.abs(made.places))
-    cross = lambda r: np.cross(np.eye(3), r).T                           # cross(r) @ w = w × r
-    frames = lambda q: np.array([turns.matrix(one) for one in q] + [np.eye(3)])
-    moved = lambda q, L: [turns.free_splitting(one, tuple(l), tuple(i), h) for one, l, i in zip(q, L, I)]
 
     def arms(R):
         return [np.einsum("kij,kj->ki", R[body], r) for r, body in zip(own, (a, b))]
@@ -444,7 +440,7 @@ def rattle_3d(made, gravity, h, steps):
         G = np.zeros((len(a), 3, n + 1, 6))
         for sign, body, arm in zip((1.0, -1.0), (a, b), arms(R)):
             for k, r in enumerate(arm):
-                G[k, :, body[k], :3], G[k, :, body[k], 3:] = sign * np.eye(3), sign * cross(r)
+                G[k, :, body[k], :3], G[k, :, body[k], 3:] = sign * np.eye(3), sign * np.cross(np.eye(3), r).T
         return G[:, :, :n].reshape(3 * len(a), 6 * n)
 
     def over_mass(R, J):
@@ -452,9 +448,21 @@ def rattle_3d(made, gravity, h, steps):
         turned = np.einsum("kij,kj,klj,klm->kim", R[:n], 1.0 / I, R[:n], J[:, 3:])
         return np.concatenate((W[:, None, None] * J[:, :3], turned), axis=1).reshape(6 * n, -1)
 
-    def impulses(left, right, R, amount):
-        return right.T @ np.linalg.lstsq(left @ over_mass(R, right.T), -amount, rcond=1e-10)[0]
+    def impulses(left, right, R, u):
+        return (right.T @ np.linalg.lstsq(left @ over_mass(R, right.T), -u, rcond=1e-10)[0]).reshape(n, 6)
+    return gaps, rows, impulses
 
+
+def rattle_3d(made, gravity, h, steps):
+    """Return centres (n, 3) of a Mechanism in space that was released at rest, after steps of RATTLE.
+
+    Bodies turn by the splitting of `turns.py`.  The last body is the world.
+    """
+    n, W, I = len(made.m) - 1, 1.0 / made.m[:-1, None], made.inertia[:-1]
+    gaps, rows, impulses = joints_3d(made)
+    small = 10.0 * CLOSED * np.max(np.abs(made.places))
+    frames = lambda q: np.array([turns.matrix(one) for one in q] + [np.eye(3)])
+    moved = lambda q, L: [turns.free_splitting(one, tuple(l), tuple(i), h) for one, l, i in zip(q, L, I)]
     x, q, v, L = made.x[:n], [(1.0 + 0j, 0j)] * n, np.zeros((n, 3)), np.zeros((n, 3))
     for _ in range(steps):
         v, R = v + 0.5 * h * gravity, frames(q)
@@ -462,16 +470,16 @@ def rattle_3d(made, gravity, h, steps):
         for _ in range(CORRECTIONS):
             end = frames(moved(q, L))
             gap = gaps(x + h * v, end)
-            if np.max(np.abs(gap)) <= 10.0 * small:
+            if np.max(np.abs(gap)) <= small:
                 break
-            J = impulses(rows(end), here, R, gap / h).reshape(n, 6)
-            v, L = v + W[:, None] * J[:, :3], L + J[:, 3:]
+            J = impulses(rows(end), here, R, gap / h)
+            v, L = v + W * J[:, :3], L + J[:, 3:]
         x, q = x + h * v, moved(q, L)
         v, R = v + 0.5 * h * gravity, frames(q)
         there = rows(R)
         rates = np.hstack((v, np.array([world_rate(R[k], L[k], I[k]) for k in range(n)]))).ravel()
-        J = impulses(there, there, R, there @ rates).reshape(n, 6)
-        v, L = v + W[:, None] * J[:, :3], L + J[:, 3:]
+        J = impulses(there, there, R, there @ rates)
+        v, L = v + W * J[:, :3], L + J[:, 3:]
     return x
 
 

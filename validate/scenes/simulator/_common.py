@@ -22,11 +22,6 @@ def joined_3d(made, gravity):
     return state.x, state.q, made.v, made.omega, make_joints(state, rows, made.a, made.b, made.places, 0.0)
 
 
-def advance_joined(lessons, step, load, state, dt, steps):
-    """Return the same after this number of steps."""
-    return *lessons.simulator.advance_free(step, load, 0.0, *state[:4], dt, steps, state[4]), state[4]
-
-
 def hinged_model(made, gravity, springs=(), loads=()):
     """Return the Model of a Mechanism in the plane."""
     world = len(made.m) - 1

@@ -17,7 +17,7 @@ from validate.scene import MUJOCO, PYBULLET, Scene, by_order, engine, no_limit, 
 from validate.scenes._common import check_positives, constantly
 from validate.scenes.drawing import seen
 from validate.scenes.exams import built, iftomm
-from validate.scenes.simulator._common import advance_joined, joined_3d
+from validate.scenes.simulator._common import joined_3d
 
 T = 0.5                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
@@ -38,7 +38,7 @@ def start(p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    return advance_joined(lessons, step, acceleration, state, dt, steps)
+    return *lessons.simulator.advance_free(step, acceleration, 0.0, *state[:4], dt, steps, state[4]), state[4]
 
 
 def observe(state, p):

@@ -27,7 +27,7 @@ from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Exam, Scene, by_order, engine, no_limit, ours
 from validate.scenes._common import check_positives, constantly
 from validate.scenes.exams import built
-from validate.scenes.simulator._common import advance_joined, hinged_model, joined_2d
+from validate.scenes.simulator._common import hinged_model, joined_2d
 
 T = 0.03                     # [s]: the crank makes two and a half revolutions
 STEPS = (50, 100, 150, 200, 500, 1000, 2000, 5000)   # a film of the fourth has one step for each picture
@@ -71,7 +71,7 @@ def driven(t, x, q, v, omega, p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    return advance_joined(lessons, step, acceleration, state, dt, steps)
+    return *lessons.simulator.advance_free(step, acceleration, 0.0, *state[:4], dt, steps, state[4]), state[4]
 
 
 def directions(angles):
