@@ -22,7 +22,7 @@ class Page:
     """Answers a kernel as live.js does."""
 
     def __init__(self, client):
-        self.client, self.comm, self.t, self.said, self.errors, self.closed = client, None, -1.0, [], [], []
+        self.client, self.comm, self.t, self.said, self.errors, self.closed = client, None, 0.0, [], [], []
 
     def send(self, kind, content, **metadata):
         message = self.client.session.msg(kind, content, metadata=metadata)
@@ -129,7 +129,8 @@ def test_a_cell_that_runs_again_closes_its_first_scene(page):
     first = page.comm
     page.shows(CELL.format(root=str(ROOT)))
     assert page.comm != first and first in page.closed
-    request = page.run("import asyncio; assert sum('_run' in str(t) for t in asyncio.all_tasks()) == 1", "count")
+    count = "sum('LiveScene._run' in str(task) for task in asyncio.all_tasks())"
+    request = page.run(f"import asyncio; assert {count} == 1", "count")
     page.listen(lambda message: idle(message, request))
     assert page.errors == []
 

@@ -221,13 +221,14 @@ ENDLESS = """while True:
             pass"""
 
 
-def test_an_endless_loop_is_stopped_and_told(learner, monkeypatch):      # noqa: F811
-    monkeypatch.setattr(widget, "LONGEST", 0.5)
+@pytest.mark.parametrize(("loop", "limit"), [(ENDLESS, "LONGEST"), ("__import__('time').sleep(1e6)", "LONGEST_WAIT")])
+def test_an_endless_loop_is_stopped_and_told(loop, limit, learner, monkeypatch):      # noqa: F811
+    monkeypatch.setattr(widget, limit, 0.5)
 
     async def test(opened):
         page = opened(learner.folder)
         await page.runs()
-        learner("simulator", with_line(ENDLESS))
+        learner("simulator", with_line(loop))
         await page.until(lambda: page.scene.broken)
         place = r"\(simulator.py, line \d+, in new_velocities_2d\)\."
         assert re.match(rf"✗ a step is still running after 0.5 s {place}", page.said[-1]), page.said

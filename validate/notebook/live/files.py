@@ -6,9 +6,9 @@ from pathlib import Path
 from solutions.checks import BadInput, Diverged
 
 from ...subject import modules
-from ...subject.loading import TooLong
+from ...subject.loading import TooLong, alarm
 
-HERE = Path(__file__).parent
+HERE, ALARM = Path(__file__).parent, alarm.__wrapped__.__code__.co_filename
 
 
 class Followed:
@@ -61,7 +61,7 @@ def place_of(error, folder):
 
     An error that the simulation itself has found is of no line.
     """
-    frames = traceback.extract_tb(error.__traceback__)
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != ALARM]
     own = [frame for frame in frames if Path(frame.filename).parent == folder.resolve()] or frames[-1:]
     if not own or Path(own[-1].filename) == HERE / "simulation.py":
         return ""

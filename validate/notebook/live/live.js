@@ -8,7 +8,7 @@ const HEAD = ["n", "t", "pace", "ms", "energy", "expected", "apart", "overlap", 
 const REACH = { mouse: 6, pen: 10, touch: 22 };          // so far from a body it is still grabbed [px]
 const ACK = 6;                                           // the kernel hears of every so many pictures: a message costs it time
 const ARROW = 26;                                        // length of the arrow of a mean body's weight [px]
-const CROWD = 60;                                        // above so many contacts, forces are short thin lines without heads
+const CROWD = 60;                                        // above so many, forces are short thin lines without heads, and outlines thin
 const TRACE = 900;                                       // pictures of the curves
 const BACK = 1 / 30;                                     // by which one press of the comma goes back [s]
 const SPEEDS = [[0.1, "⅒"], [0.25, "¼"], [0.5, "½"], [1, "1"], [2, "2"]];
@@ -322,7 +322,11 @@ function render({ model, el }) {
     shapes(0, k => free[k] && k !== head.held, colours.ours, 0.22);
     if (head.held >= 0) shapes(0, k => k === head.held, colours.hand, 0.3);
     links();
-    if (head.beside) { pen.setLineDash([4, 3]); shapes(1, k => free[k], colours.engine, 0); pen.setLineDash([]); }
+    if (head.beside) {
+      pen.setLineDash([4, 3]); if (n > CROWD) { pen.lineWidth = 0.8; pen.globalAlpha = 0.6; }
+      shapes(1, k => free[k], colours.engine, 0);
+      pen.setLineDash([]); pen.lineWidth = 1.5; pen.globalAlpha = 1;
+    }
     if (ui.look.forces.checked) forces();
     if (head.held >= 0) hand();
     ruler(); curves(); report();

@@ -29,7 +29,8 @@ from .files import sentence
 HERE = Path(__file__).parent
 FRAME = 1.0 / 60.0           # between two pictures, at least [s]
 BUSY = 0.6                   # share of the time of a picture that steps may take, so that messages are heard
-LONGEST = 2.0                # for which the steps of one picture may run before they are stopped [s]
+LONGEST = 2.0                # processor time that the steps of one picture may take before they are stopped [s]
+LONGEST_WAIT = 20.0          # time by the clock, for code that waits and does not compute [s]
 LONGEST_GAP = 0.1            # of the time that a scene makes up for, for example after another cell has run [s]
 UNSEEN = 3.0                 # after so long without a sign of the page the scene pauses [s]
 IN_FLIGHT = 30               # pictures that the page has not acknowledged yet, at most
@@ -238,7 +239,8 @@ class LiveScene(anywidget.AnyWidget):
         try:
             try:
                 self.inside = True
-                with alarm(LONGEST), np.errstate(all="ignore"), contextlib.redirect_stdout(printed):
+                with alarm(LONGEST_WAIT), alarm(LONGEST, own=True), np.errstate(all="ignore"), \
+                        contextlib.redirect_stdout(printed):
                     while done < steps and (done == 0 or time.perf_counter() - began < within):
                         self.simulation.step()
                         done += 1
