@@ -134,11 +134,15 @@ def test_the_lessons_can_be_downloaded_as_one_zip(tmp_path, monkeypatch):
         assert archive.read("lessons/springs.py") == b"my answer" and len(archive.namelist()) == 1
 
 
+def forever():
+    while True:
+        pass
+
+
 def endless(inner, outer):
-    """A loop without an end, inside of two alarms."""
+    """A loop without an end, inside of two alarms, in a function of its own as in a student's file."""
     with loading.alarm_at_jumps(outer), loading.alarm_at_jumps(inner):
-        while True:
-            pass
+        forever()
 
 
 @pytest.mark.skipif(not hasattr(sys, "monitoring"), reason="sys.monitoring needs Python 3.12")
