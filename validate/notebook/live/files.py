@@ -5,10 +5,10 @@ from pathlib import Path
 
 from solutions.checks import BadInput, Diverged
 
-from ...subject import modules
-from ...subject.loading import TooLong, alarm
+from ...subject import loading, modules
+from ...subject.loading import TooLong
 
-HERE, ALARM = Path(__file__).parent, alarm.__wrapped__.__code__.co_filename
+HERE, ALARM = Path(__file__).parent, loading.__file__
 
 
 class Followed:
