@@ -72,7 +72,8 @@ def alarm(seconds, error=TooLong, own=False):
 def alarm_at_jumps(seconds, error=TooLong):
     """Do the same where there is no alarm clock: look at the time whenever Python jumps back, as every loop does.
 
-    Needs `sys.monitoring` of Python 3.12.
+    Needs `sys.monitoring` of Python 3.12.  *Left out:* a loop without a body, `while True: pass`, of which Python 3.12
+    reports no jump.
     """
     watch, jump, until = sys.monitoring, sys.monitoring.events.JUMP, time.monotonic() + seconds
 
