@@ -216,11 +216,21 @@ def test_pymunk_goes_on_from_its_own_state_after_a_setting():
     assert np.ptp(whole.engine_state.x[:, 1]) > 0.05
 
 
-def test_a_model_that_our_loop_cannot_run_is_refused():
-    rod = make_model([Body((0.0, 0.0), 1.0, Ball(0.1)), Body((1.0, 0.0), 1.0, Ball(0.1))], DOWN,
-                     [Distance(0, 1, (0.0, 0.0), (0.0, 0.0))])
-    with pytest.raises(BadInput, match="a model for a live scene is"):
-        Simulation(rod, SOLUTIONS)
+def test_a_model_in_space_is_refused():
+    with pytest.raises(BadInput, match="a model for a live scene is one in space"):
+        Simulation(make_model([Body((0.0, 0.0, 0.0), 1.0)], (0.0, 0.0, -9.81)), SOLUTIONS)
+
+
+def test_a_rod_keeps_its_length_and_the_energy_of_its_balls():
+    """A pendulum whose bob hangs on a rod from a fixed ball."""
+    bodies = [Body((0.0, 0.0), np.inf, Ball(0.1)), Body((1.0, 0.0), 1.0, Ball(0.1))]
+    scene = Simulation(make_model(bodies, DOWN, [Distance(0, 1, (0.0, 0.0), (0.0, 0.0))]), SOLUTIONS, beside=False)
+    before = scene.energy()
+    for _ in range(60):
+        scene.step()
+    x = scene.state.x
+    assert np.linalg.norm(x[1] - x[0]) == pytest.approx(1.0, abs=1e-6) and abs(x[1, 1] - x[0, 1]) > 0.5
+    assert scene.energy() == pytest.approx(before, abs=0.15)              # the first order of the loop, of 9.81 J
 
 
 # ---------------------------------------------------------------------------------------------- the learner's file

@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_friction, check_restitution, finite_number, positive_number, whole_number
-from solutions.given.compose import compose, refuses
-from solutions.given.invariants import work_of_driven_rows
+from solutions.given.rows import Settings, rows_of
 from solutions.support.model import (
     Distance,
     State,
@@ -56,11 +55,11 @@ class Simulation:
     """The two worlds, now."""
 
     def __init__(self, model, folder, tuning=None, beside=True, lesson="simulator"):
-        if why := refuses(model):
-            raise BadInput("a model for a live scene", why, "take another one")
+        if model.d == 3:
+            raise BadInput("a model for a live scene", "one in space", "take one in the plane")
         self.model, self.code, self.beside, self.lesson = model, Followed(folder), beside, lesson
-        self.tuning, self.first = checked(tuning or Tuning()), compose(model)      # data only: no exercise is called
-        self.row, self.loop, self.trouble, self.grip = self.first.row, None, None, None
+        self.tuning, (_, self.first, self.row) = checked(tuning or Tuning()), rows_of(model, Settings())
+        self.loop, self.trouble, self.grip = None, None, None
         self.now_model = self.tuned()
         self.driven = any(not can_move(body) and (np.any(body.v) or np.any(body.omega)) for body in model.bodies)
         self.reset()
@@ -109,7 +108,7 @@ class Simulation:
 
     def reset(self):
         """Return to the start of the Model."""
-        self.t, self.state, self.given, self.grip = 0.0, self.first.state, 0.0, None
+        self.t, self.state, self.given, self.grip = 0.0, self.first, 0.0, None
         self.engine, self.engine_state, self.ahead = None, start_of(self.model) if self.beside else None, AHEAD
         self.past, self.bytes = deque(), 0
         self.origin = self.energy()
@@ -126,7 +125,7 @@ class Simulation:
         after = self.simulator.run_parts(self.loop, self.t, state, self.tuning.dt, 1)
         self._check(after)
         if self.driven:
-            work += work_of_driven_rows(after, self.tuning.dt, self.loop.p)
+            work += self.simulator.work_of_driven_rows(after, self.tuning.dt, self.loop.p)
         if self.beside:
             self.step_engine()
         self.state, self.t, self.given = after, self.t + self.tuning.dt, self.given + work
