@@ -14,11 +14,12 @@ import pytest
 
 from ..subject.modules import ROOT
 
-BROWSER = sys.platform == "emscripten"                               # WebAssembly has no processes
-
-if not BROWSER:
+try:
     import multiprocessing
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
+    PROCESSES = True
+except ImportError:                                                  # WebAssembly has none
+    PROCESSES = False
 
 
 class Ended(Exception):
@@ -27,7 +28,7 @@ class Ended(Exception):
 
 def run(*arguments):
     """Return what pytest prints.  Raises Ended when the code under test ends its process; this one survives."""
-    return (in_this_one if BROWSER else in_a_process)(*arguments)
+    return (in_a_process if PROCESSES else in_this_one)(*arguments)
 
 
 def in_a_process(*arguments):

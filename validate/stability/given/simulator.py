@@ -721,6 +721,23 @@ def overlap_goes(lesson, rng):
     return (*end[:4], end.contacts.gap), (x, q, state.v, state.omega, np.array([gap + away]))
 
 
+@random_law("A rod carries what hangs on it: its impulse in a step is m g dt, whatever the body's spin.",
+            "a rod at rest: largest error of its impulse [N s]", 1e-8)
+def weight_on_a_rod(lesson, rng):
+    """Hang a ball on a rod from the world, along gravity, in the plane and in space."""
+    found, truth = [], []
+    for d in (2, 3):
+        g, m, dt, length = rng.normal(size=d), rng.uniform(0.5, 3.0), rng.uniform(0.001, 0.01), rng.uniform(0.5, 2.0)
+        spin = float(rng.normal()) if d == 2 else tuple(rng.normal(size=3))
+        hung = model.Body(tuple(length * g / np.linalg.norm(g)), m, shapes.Ball(0.1), omega=spin)
+        rod = model.Distance(0, model.WORLD, (0.0,) * d, (0.0,) * d)
+        loop = lesson.compose(model.make_model([hung], tuple(g), [rod]))
+        after = lesson.run_parts(loop, 0.0, loop.state, dt, 1)
+        found.append(lesson.link_impulses(loop.load, 0.0, loop.state, after, dt, loop.p)[0])
+        truth.append(-m * g * dt)
+    return tuple(found), tuple(truth)
+
+
 @case("loop-from-a-model", "A loop that is composed from a Model", compiled=False)
 def loop_from_a_model(lesson, check):
     """Compare the loads, parts and sweeps of a composed loop with vectors, and its motions with closed forms.
@@ -728,7 +745,7 @@ def loop_from_a_model(lesson, check):
     A spring pulls −(k (l − l₀) + c l̇) along its line, drag −k v.  Parts: see each law.
     """
     check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
-                        overlap_goes), seed=35, times=10)
+                        overlap_goes, weight_on_a_rod), seed=35, times=10)
     right_parts(lesson, check)
     pairs_of_a_model(check)
     composed_motions(lesson, check)
