@@ -33,8 +33,9 @@ def parts(name):
 
 
 @pytest.mark.parametrize(("name", "needed"), [
-    ("oscillator", set()), ("linear_drag", set()), ("rod_chain", {"rotation", "joints"}),
-    ("slide_then_roll", {"rotation", "detection", "contact", "friction"})])
+    ("oscillator", set()), ("linear_drag", set()),
+    pytest.param("rod_chain", {"rotation", "joints"}, marks=pytest.mark.long),
+    pytest.param("slide_then_roll", {"rotation", "detection", "contact", "friction"}, marks=pytest.mark.long)])
 def test_a_part_that_is_left_out_changes_the_motion_where_the_scene_needs_it_and_only_there(name, needed, monkeypatch):
     monkeypatch.setattr(our_parts, "SEEN", 2.0)
     found = parts(name)
@@ -59,6 +60,7 @@ def test_every_scene_runs_with_all_parts_as_it_does_with_its_own(monkeypatch):
             assert parts(name)[our_parts.TOTAL]["change"] < within, name
 
 
+@pytest.mark.long
 def test_the_loop_in_space_moves_as_the_one_in_the_plane(monkeypatch):
     monkeypatch.setattr(our_parts, "SEEN", 2.0)
     assert parts("slide_then_roll")[our_parts.DIMENSION]["change"] < 1e-9
