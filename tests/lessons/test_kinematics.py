@@ -857,6 +857,29 @@ def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
               given=f"target {target} m, limits {arm.low} to {arm.high}")
 
 
+def hold_straight_arms(lesson, draw, rest, pull):
+    """The step of 11.16 on arms that are straight, hardly bent and nearly straight."""
+    for n, bend in ((2, 1e-13), (4, 1e-13), (2, 1.5e-11), (4, 1.5e-11)):      # σ₂ is below SINGULAR σ₁
+        lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), bend * draw(1.0, 2.0, n - 1))
+        e, z = draw(-0.5, 0.5, 2), pull * (rest[:n] - theta)
+        sideways, r = np.array([-np.sin(theta[0]), np.cos(theta[0])]), np.cumsum(lengths[::-1])[::-1]
+        arm = arm_of(lesson, lengths, rest=rest[:n], pull=pull, **NARROW)
+        got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e, arm)
+        close("change of θ of an arm that is straight [rad]", np.asarray(got) - theta,
+              z + r * (sideways @ e - r @ z) / (r @ r), 1e-9, given=f"θ = {theta}, rest {rest[:n]}, e = {e} m")
+    theta = np.append(draw(-3.0, 3.0), draw(1e-4, 2e-4, 3))              # a little bent
+    e, J, z = draw(-0.5, 0.5, 2), slopes(theta, lengths), pull * (rest[:4] - theta)
+    got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e,
+                                 arm_of(lesson, lengths, rest=rest[:4], pull=pull))
+    close("change of θ of an arm that is hardly bent, times its smallest angle [rad²]",
+          1e-4 * (np.asarray(got) - theta), 1e-4 * (z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]), 1e-8,
+          given=f"θ = {theta}, rest {rest[:4]}, e = {e} m")
+    theta = np.array([draw(-3.0, 3.0), draw(1e-8, 2e-8)])                # nearly straight: σ₂ is above SINGULAR σ₁
+    e, J, arm = draw(0.2, 0.5, 2), slopes(theta, lengths[:2]), arm_of(lesson, lengths[:2], rest=rest[:2], pull=pull)
+    change = np.asarray(lesson.null_space_step(reach, theta, joints(theta, lengths[:2])[-1] + e, arm)) - theta
+    close("J Δθ of an arm that is nearly straight [m]", J @ change, e, 1e-5, given=f"θ = {theta}, e = {e} m")
+
+
 @exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: it cancels the motion of the end due to z")
 def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
     for task, count in TASKS:
@@ -884,25 +907,7 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size,
               z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9,
               given=f"θ = 0, e = {size * e}, J = {J}, {rows} rows, κ (rest − θ) = {size * z}")
-    for n, bend in ((2, 1e-13), (4, 1e-13), (2, 1.5e-11), (4, 1.5e-11)):      # σ₂ is below SINGULAR σ₁
-        lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), bend * draw(1.0, 2.0, n - 1))
-        e, z = draw(-0.5, 0.5, 2), pull * (rest[:n] - theta)
-        sideways, r = np.array([-np.sin(theta[0]), np.cos(theta[0])]), np.cumsum(lengths[::-1])[::-1]
-        arm = arm_of(lesson, lengths, rest=rest[:n], pull=pull, **NARROW)
-        got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e, arm)
-        close("change of θ of an arm that is straight [rad]", np.asarray(got) - theta,
-              z + r * (sideways @ e - r @ z) / (r @ r), 1e-9, given=f"θ = {theta}, rest {rest[:n]}, e = {e} m")
-    theta = np.append(draw(-3.0, 3.0), draw(1e-4, 2e-4, 3))              # a little bent
-    e, J, z = draw(-0.5, 0.5, 2), slopes(theta, lengths), pull * (rest[:4] - theta)
-    got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e,
-                                 arm_of(lesson, lengths, rest=rest[:4], pull=pull))
-    close("change of θ of an arm that is hardly bent, times its smallest angle [rad²]",
-          1e-4 * (np.asarray(got) - theta), 1e-4 * (z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]), 1e-8,
-          given=f"θ = {theta}, rest {rest[:4]}, e = {e} m")
-    theta = np.array([draw(-3.0, 3.0), draw(1e-8, 2e-8)])                # nearly straight: σ₂ is above SINGULAR σ₁
-    e, J, arm = draw(0.2, 0.5, 2), slopes(theta, lengths[:2]), arm_of(lesson, lengths[:2], rest=rest[:2], pull=pull)
-    change = np.asarray(lesson.null_space_step(reach, theta, joints(theta, lengths[:2])[-1] + e, arm)) - theta
-    close("J Δθ of an arm that is nearly straight [m]", J @ change, e, 1e-5, given=f"θ = {theta}, e = {e} m")
+    hold_straight_arms(lesson, draw, rest, pull)
 
 
 @exercise("11.16", points=0.5, hint="among all angles that reach the target, the arm comes to rest near arm.rest")
