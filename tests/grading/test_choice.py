@@ -91,6 +91,7 @@ def test_a_right_answer_that_hands_a_record_of_a_given_module_to_a_given_functio
     assert {test["status"] for test in found["tests"]} == {"passed"}
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("in_sandbox")
 @pytest.mark.xdist_group("a graded class")
 def test_a_class_is_graded_by_the_exercises_that_were_set(tmp_path):

@@ -125,6 +125,7 @@ def test_two_programs_run_as_two_users():
     assert len({inside("import os; print(os.getuid())") for _ in range(5)}) == 5
 
 
+@pytest.mark.long
 def test_the_points_are_those_of_the_other_way(monkeypatch):
     text = example.worked("springs").replace("p.k", "1.01 * p.k", 1).encode()
     settings = marking.settings(("springs",), "a secret")

@@ -65,6 +65,7 @@ def test_a_class_folder_on_the_path_is_refused(below, tmp_path):
     assert len(done.stderr.splitlines()) == 1 and not (tmp_path.parent / "out").exists()
 
 
+@pytest.mark.long
 def test_a_class_is_graded_from_inside_its_folder(hostile):
     """As `grade .` does it: one honest student among folders with the names of Python's modules."""
     sandbox.for_tests(pytest.skip, pytest.fail)

@@ -192,6 +192,7 @@ def energy(x, v, network):
     return np.sum(m * (0.5 * np.sum(v[1:] ** 2, axis=1) + 9.81 * x[1:, 1]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("step", "order"), [(pbd.rope_step, 2), (pbd.composed_rope_step, 4)])
 def test_a_rope_converges_to_rattle_with_its_order_and_keeps_links_and_energy(step, order):
     x, v, rope = hanging(5, np.array([1.0, 0.5, 2.0, 0.7, 1.3, 4.0]))

@@ -83,6 +83,7 @@ def test_a_projected_particle_in_a_smooth_bowl_loses_height_and_less_with_shorte
 
 # ---------------------------------------------------------------------------------------------- 5 rotation
 
+@pytest.mark.long
 def test_the_average_precession_of_a_top_is_larger_than_that_of_the_fast_top():
     for spin, more in ((30.0, 1.13), (50.0, 1.04), (300.0, 1.001)):
         times = np.linspace(0.0, 60.0, 60001)

@@ -79,6 +79,7 @@ print(sum(sum(twin.stats.cache_misses.values()) for twin in (scene.law, integrat
     assert in_a_new_process(ask) == "0"
 
 
+@pytest.mark.long
 @needs_numba
 def test_two_processes_that_save_at_once_lose_nothing(tmp_path):
     (tmp_path / "lower.py").write_text("def base(x):\n    return x + x\n")
