@@ -205,15 +205,23 @@ def show(races, bodies):
 def draw(races, bodies, path):
     """Draw time against overlap of all engines and of ours, one picture for each kind: the lower left is best."""
     import matplotlib.pyplot as plt
-    figure, panels = plt.subplots(1, len(races), figsize=(4.4 * len(races), 4.2), squeeze=False, layout="constrained")
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    figure, panels = plt.subplots(1, len(races), figsize=(5.2 * len(races), 4.2), squeeze=False, layout="constrained")
     for panel, (name, rows) in zip(panels[0], races.items()):
-        panel.scatter(*zip(*[(one.overlap[1], one.ours) for _, one in rows]), color="#0072B2", marker="o", label="ours")
-        for rival, one in rows:
-            panel.scatter(one.overlap_engine[1], one.engine, color=rival.product.colour, marker=rival.product.marker,
-                          label=f"{rival.product}, {rival.settings.partition(':')[0]}")
+        points = [("ours", "", "#0072B2", "o", rows[0][1].overlap[1], np.median([one.ours for _, one in rows]))]
+        points += [(rival.product.name, rival.settings.partition(":")[0], rival.product.colour, rival.product.marker,
+                    one.overlap_engine[1], one.engine) for rival, one in rows]
+        for engine, settings, colour, marker, overlap, ms in points:
+            panel.scatter(overlap, ms, color=colour, marker=marker, s=60)
+            panel.annotate(f"{engine}\n{settings.partition(',')[0]}".strip(), (overlap, ms), (6, 4), color=colour,
+                           textcoords="offset points", fontsize=9)
         panel.set(xscale="log", yscale="log", title=f"{bodies:,} {name}", xlabel="mean overlap [mm]",
                   ylabel="CPU time of a step [ms]")
-        panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.18))
+        panel.margins(0.3)
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
     figure.savefig(path)
     plt.close(figure)
 
