@@ -35,3 +35,10 @@ def test_an_unknown_commit_gets_one_sentence():
     done = subprocess.run([sys.executable, "-m", "validate.speed.regression", "--base", "no-such-commit"], cwd=ROOT,
                           capture_output=True, text=True)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and "no-such-commit" in done.stderr
+
+
+@pytest.mark.parametrize(("kept", "found"), [(None, None), ({"commit": "no-such-commit"}, None),
+                                             ({"commit": "HEAD"}, "HEAD")])
+def test_without_a_commit_to_compare_with_nothing_is_compared(monkeypatch, kept, found):
+    monkeypatch.setattr(regression, "full_run", lambda: kept)
+    assert regression.of_the_last_full_run() == found

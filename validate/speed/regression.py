@@ -134,6 +134,12 @@ def checkout(revision):
             git("worktree", "remove", "--force", folder)
 
 
+def of_the_last_full_run():
+    """Return the commit of the full run that is kept; None where there is none, as in a clone without its history."""
+    commit = (full_run() or {}).get("commit", "")
+    return commit if commit and git("cat-file", "-e", f"{commit}^{{commit}}").returncode == 0 else None
+
+
 def git(*arguments):
     return subprocess.run(["git", *arguments], cwd=modules.ROOT, capture_output=True, text=True)
 
@@ -173,7 +179,10 @@ def judged(lesson, samples):
 
 def main(base: Annotated[str | None, typer.Option(help="Else that of the last full run that was kept.")] = None):
     """Compare one compiled method of each lesson with the same at an earlier commit; exit with 1 if one is slower."""
-    base = base or (full_run() or {"commit": "HEAD~1"})["commit"]
+    base = base or of_the_last_full_run()
+    if base is None:
+        print("no full run is kept whose commit is in this repository, so nothing is compared")
+        return
     table = Table("lesson", f"time, now over {base}", "interval", "", box=None, header_style="bold")
     with checkout(base) as folder:
         if not (folder / Path(__file__).relative_to(modules.ROOT)).exists():
