@@ -138,8 +138,13 @@ def pushing_aims(contacts, dt, p):
     return aim
 
 
-def sweep_pairs_2d(v, omega, J, aim, give, contacts, arms, p):
-    """Return (v, omega, J) after velocity_sweep_2d of lesson 9 over contacts that have a friction of their own each."""
+def sweep_alike_2d(v, omega, J, aim, contacts, arms, inv_inertia, p):
+    """Return (v, omega, J) after velocity_sweep_2d of lesson 9 over rigid contacts that have one friction."""
+    return velocity_sweep_2d(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
+
+
+def sweep_pairs_2d(v, omega, J, aim, contacts, arms, inv_inertia, p):
+    """Return the same over contacts that have a friction of their own each."""
     v, omega, J = v.copy(), omega.copy(), J.copy()
     for k in range(contacts.a.size):
         a, b, n_x, n_y = contacts.a[k], contacts.b[k], contacts.n[k, 0], contacts.n[k, 1]
@@ -156,12 +161,12 @@ def sweep_pairs_2d(v, omega, J, aim, give, contacts, arms, p):
         J[k, 0], J[k, 1] = J[k, 0] + d_x, J[k, 1] + d_y
         v[a, 0], v[a, 1] = v[a, 0] + p.inv_mass[a] * d_x, v[a, 1] + p.inv_mass[a] * d_y
         v[b, 0], v[b, 1] = v[b, 0] - p.inv_mass[b] * d_x, v[b, 1] - p.inv_mass[b] * d_y
-        omega[a] += p.inv_inertia[a] * (a_x * d_y - a_y * d_x)
-        omega[b] -= p.inv_inertia[b] * (b_x * d_y - b_y * d_x)
+        omega[a] += inv_inertia[a] * (a_x * d_y - a_y * d_x)
+        omega[b] -= inv_inertia[b] * (b_x * d_y - b_y * d_x)
     return v, omega, J
 
 
-def sweep_centres_2d(v, omega, J, aim, give, contacts, arms, p):
+def sweep_centres_2d(v, omega, J, aim, contacts, arms, inv_inertia, p):
     """Return the same where nothing rubs and nothing turns: no arms, no tangent."""
     v, J = v.copy(), J.copy()
     for k in range(contacts.a.size):
@@ -176,13 +181,13 @@ def sweep_centres_2d(v, omega, J, aim, give, contacts, arms, p):
 
 
 def begun(state, dt, p):
-    """Return (v, omega, J, aim, arms): what the sweeps of a step begin with; a bounce keeps no impulse."""
+    """Return (v, omega, J, aim, arms, inv_inertia): what the sweeps of a step begin with; a bounce keeps no impulse."""
     x, _, v, omega, contacts, J = state
     v, omega, J, arms = v.copy(), omega.copy(), J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     aim = parting_aims(normal_velocities_2d(v, omega, contacts, arms), contacts, dt, p)
     forget_bounces(J, aim)
     apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
-    return v, omega, J, aim, arms
+    return v, omega, J, aim, arms, p.inv_inertia
 
 
 def is_settled(J, before, p):
@@ -190,15 +195,18 @@ def is_settled(J, before, p):
     return np.max(np.abs(J - before)) <= p.settled * np.max(np.abs(J))
 
 
-def swept(sweep, state, dt, p):
-    """Return the state after sweeps over all contacts, until they settle."""
+def swept(begin, sweep, state, dt, p):
+    """Return the state after sweeps over all contacts, until they settle.
+
+    begin: (state, dt, p) → what the sweeps begin with;    sweep: over all contacts, in the plane or in space
+    """
     x, q, _, _, contacts, J = state
     if contacts.a.size == 0:
         return state
-    v, omega, J, aim, arms = begun(state, dt, p)
+    v, omega, J, aim, arms, inv_inertia = begin(state, dt, p)
     for _ in range(p.sweeps):
         before = J
-        v, omega, J = sweep(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
+        v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         if is_settled(J, before, p):
             break
     return PileState(x, q, v, omega, contacts, J)
@@ -206,29 +214,29 @@ def swept(sweep, state, dt, p):
 
 def contact_impulses(load, bounds, narrow, t, state, dt, p):
     """Return the state after the impulses of all contacts, with one friction for all."""
-    return swept(velocity_sweep_2d, state, dt, p)
+    return swept(begun, sweep_alike_2d, state, dt, p)
 
 
 def contact_impulses_of_pairs(load, bounds, narrow, t, state, dt, p):
     """Return the same with a friction of each pair."""
-    return swept(sweep_pairs_2d, state, dt, p)
+    return swept(begun, sweep_pairs_2d, state, dt, p)
 
 
 def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    return swept(sweep_centres_2d, state, dt, p)
+    return swept(begun, sweep_centres_2d, state, dt, p)
 
 
-def swept_and_closed(close_all, state, dt, p):
+def swept_and_closed(begin, sweep, close_all, state, dt, p):
     """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
     x, q, v, omega, contacts, J = state
     v, omega = close_all(x, q, v, omega, dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
-    v, omega, J, aim, arms = begun(PileState(x, q, v, omega, contacts, J), dt, p)
+    v, omega, J, aim, arms, inv_inertia = begin(PileState(x, q, v, omega, contacts, J), dt, p)
     for _ in range(p.sweeps):
         before = J
-        v, omega, J = sweep_pairs_2d(v, omega, J, aim, np.zeros(aim.size), contacts, arms, p)
+        v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         v, omega = close_all(x, q, v, omega, dt, p)
         if is_settled(J, before, p):
             break
@@ -237,12 +245,12 @@ def swept_and_closed(close_all, state, dt, p):
 
 def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
     """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
-    return swept_and_closed(close_joints_2d, state, dt, p)
+    return swept_and_closed(begun, sweep_pairs_2d, close_joints_2d, state, dt, p)
 
 
 def contact_impulses_with_rods(load, bounds, narrow, t, state, dt, p):
     """Return the same with joints and rods."""
-    return swept_and_closed(close_links, state, dt, p)
+    return swept_and_closed(begun, sweep_pairs_2d, close_links, state, dt, p)
 
 
 def separate(load, bounds, narrow, t, state, dt, p):

@@ -28,7 +28,7 @@ from .joints import (
     spatial_inertia,
     turn_on,
 )
-from .parts import forget_bounces, is_settled, parting_aims, pushing_aims
+from .parts import forget_bounces, is_settled, parting_aims, pushing_aims, swept, swept_and_closed
 from .rods import close_links
 
 # ---------------------------------------------------------------------------------------------- forces
@@ -113,54 +113,24 @@ def begun_in_space(state, dt, p):
     return v, omega, J, aim, arms, inv_inertia
 
 
-def swept_in_space(sweep, state, dt, p):
-    """Return the state after sweeps over all contacts, until they settle."""
-    x, q, _, _, contacts, J = state
-    if contacts.a.size == 0:
-        return state
-    v, omega, J, aim, arms, inv_inertia = begun_in_space(state, dt, p)
-    for _ in range(p.sweeps):
-        before = J
-        v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        if is_settled(J, before, p):
-            break
-    return PileState(x, q, v, omega, contacts, J)
-
-
 def contact_impulses_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the state after the impulses of all contacts, each pair with its own friction."""
-    return swept_in_space(sweep_pairs, state, dt, p)
+    return swept(begun_in_space, sweep_pairs, state, dt, p)
 
 
 def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    return swept_in_space(sweep_centres, state, dt, p)
-
-
-def swept_and_closed_in_space(close_all, state, dt, p):
-    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
-    x, q, v, omega, contacts, J = state
-    v, omega = close_all(x, q, v, omega, dt, p)
-    if contacts.a.size == 0:
-        return PileState(x, q, v, omega, contacts, J)
-    v, omega, J, aim, arms, inv_inertia = begun_in_space(PileState(x, q, v, omega, contacts, J), dt, p)
-    for _ in range(p.sweeps):
-        before = J
-        v, omega, J = sweep_pairs(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        v, omega = close_all(x, q, v, omega, dt, p)
-        if is_settled(J, before, p):
-            break
-    return PileState(x, q, v, omega, contacts, J)
+    return swept(begun_in_space, sweep_centres, state, dt, p)
 
 
 def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same as contact_impulses_in_space, with joints that are closed after every sweep."""
-    return swept_and_closed_in_space(close_joints, state, dt, p)
+    return swept_and_closed(begun_in_space, sweep_pairs, close_joints, state, dt, p)
 
 
 def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same with joints and rods."""
-    return swept_and_closed_in_space(close_links, state, dt, p)
+    return swept_and_closed(begun_in_space, sweep_pairs, close_links, state, dt, p)
 
 
 def separate_in_space(load, bounds, narrow, t, state, dt, p):

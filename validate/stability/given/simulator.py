@@ -693,11 +693,11 @@ def sweeps_of_pairs(lesson, rng):
     state, p, arms, contacts = rubbing(lesson, rng)
     aim = rng.normal(size=6)
     rub = swept_by_hand(state, p, contacts, aim, p.mu_of[contacts.a] * p.mu_of[contacts.b])
-    got = lesson.sweep_pairs_2d(state.v, state.omega, state.J, aim, 0.0 * aim, contacts, arms, p)
+    got = lesson.sweep_pairs_2d(state.v, state.omega, state.J, aim, contacts, arms, p.inv_inertia, p)
     still = SimpleNamespace(**{**vars(p), "inv_inertia": 0.0 * p.inv_inertia})
     state = state._replace(J=np.abs(rng.normal(size=(6, 1))) * contacts.n, omega=0.0 * state.omega)
     smooth = swept_by_hand(state, still, contacts, aim, np.zeros(6))
-    centres = lesson.sweep_centres_2d(state.v, state.omega, state.J, aim, 0.0 * aim, contacts, arms, still)
+    centres = lesson.sweep_centres_2d(state.v, state.omega, state.J, aim, contacts, arms, still.inv_inertia, still)
     return (*got, *centres), (*rub, *smooth)
 
 
