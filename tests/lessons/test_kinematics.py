@@ -759,6 +759,18 @@ def test_sweeps_reach_a_target_and_keep_all_lengths(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- limits and redundancy
 
+def hold_a_joint_that_nothing_pushes(lesson, draw):
+    """The step of 11.15 with a joint at its limit where (Jᵀ e)_1 is 0."""
+    size, far = 2.0 ** draw.whole(-1, 1), draw(0.5, 3.0)                      # θ = 0 and whole numbers: (Jᵀ e)_1 is 0
+    for side in (1.0, -1.0):
+        lengths, theta, e = np.full(3, size), np.zeros(3), side * size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
+        free = damped(slopes_of(theta, lengths, 3), e, size)
+        low, high = np.where(free > 0.0, (-9.0, 0.0, -9.0), -9.0), np.where(free > 0.0, 9.0, (9.0, 0.0, 9.0))
+        arm, target = arm_of(lesson, lengths, damping=size, low=low, high=high), e + points_of(theta, lengths, 3)
+        close("θ after a step, with a joint at its limit that Jᵀ e does not push [rad]",
+              lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
+
+
 @exercise("11.15", points=0.5, hint="a joint inside its limits, or at one but pushed inwards, moves as in damped_step")
 def test_limits_that_stop_nothing_change_nothing(lesson, draw):
     for task, count in TASKS:
@@ -787,14 +799,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
         close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size,
               damped(np.where(first, 0.0, J), e, damping), SOLVED,
               given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows, limits {arm.low} to {arm.high}")
-    size, far = 2.0 ** draw.whole(-1, 1), draw(0.5, 3.0)                      # θ = 0 and whole numbers: (Jᵀ e)_1 is 0
-    for side in (1.0, -1.0):
-        lengths, theta, e = np.full(3, size), np.zeros(3), side * size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
-        free = damped(slopes_of(theta, lengths, 3), e, size)
-        low, high = np.where(free > 0.0, (-9.0, 0.0, -9.0), -9.0), np.where(free > 0.0, 9.0, (9.0, 0.0, 9.0))
-        arm, target = arm_of(lesson, lengths, damping=size, low=low, high=high), e + points_of(theta, lengths, 3)
-        close("θ after a step, with a joint at its limit that Jᵀ e does not push [rad]",
-              lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
+    hold_a_joint_that_nothing_pushes(lesson, draw)
 
 
 @exercise("11.15", points=0.5,

@@ -51,11 +51,16 @@ def write_all(folder, numbers, report, say, live=False):
     write(folder / "plan.md", plan.filled(linked((ROOT / "docs" / "plan.md").read_text(encoding="utf-8"))))
     for name in course.lessons():
         write(folder / "sheets" / f"{name}.md", sheets.page(name, bool(report)))
+    write(folder / "index.md", front(paths, live))
+    write_report(folder, report)
+
+
+def write_report(folder, report):
+    """Write the report into the book, if there is one, and the page about it."""
     if report:
         shutil.copytree(report, folder / "extra" / "report", ignore=shutil.ignore_patterns("results", SUBSET))
         for page in (folder / "extra" / "report").glob("*.html"):
             write(page, with_pages_for_sources(page.read_text(encoding="utf-8")))
-    write(folder / "index.md", front(paths, live))
     about_report = HERE / ("validation.md" if report else "no_report.md")
     write(folder / "validation.md", about_report.read_text(encoding="utf-8"))
 

@@ -116,17 +116,16 @@ CLOSED = 1e-15               # gap at which Newton's method ends, over the size 
 CORRECTIONS = 50
 
 
-def rattle_2d(made):
-    """Return RATTLE's step (law, t, y, u, h) → (y, u) of a Mechanism in the plane; y, u (n, 3): x, y, angle and rates.
+def joints_2d(made):
+    """Return (gaps(y), rows(y), pushed(left, right, amount)) of the hinges of a Mechanism in the plane.
 
-    All hinges are closed at the end of the step, and what they hold has no relative velocity there.  The matrix is
-    dense and solved by least squares.  Source: Hairer, Lubich, Wanner 2006, VII.1.
+    y (n, 3): x, y and angle of each body.  pushed: changes of all velocities by impulses at the rows `right` that add
+    `amount` at the rows `left`, by least squares.
     """
     joints, bodies = np.arange(len(made.a)), len(made.m)
     W = np.stack((1.0 / made.m, 1.0 / made.m, 1.0 / made.inertia), axis=1).ravel()
     z, places = made.x @ (1.0, 1j), made.places @ (1.0, 1j)
     own = [(places - z[body]) * np.exp(-1j * made.q[body]) for body in (made.a, made.b)]
-    small = CLOSED * np.max(np.abs(places))
 
     def arms(y):
         return [r * np.exp(1j * y[body, 2]) for r, body in zip(own, (made.a, made.b))]
@@ -144,6 +143,17 @@ def rattle_2d(made):
 
     def pushed(left, right, amount):
         return W * (right.T @ np.linalg.lstsq(left * W @ right.T, amount, rcond=1e-12)[0])
+    return gaps, rows, pushed
+
+
+def rattle_2d(made):
+    """Return RATTLE's step (law, t, y, u, h) → (y, u) of a Mechanism in the plane; y, u (n, 3): x, y, angle and rates.
+
+    All hinges are closed at the end of the step, and what they hold has no relative velocity there.
+    Source: Hairer, Lubich, Wanner 2006, VII.1.
+    """
+    gaps, rows, pushed = joints_2d(made)
+    small = CLOSED * np.max(np.abs(made.places @ (1.0, 1j)))
 
     def step(law, t, y, u, h):
         u, here = u + 0.5 * h * law(t, y, u), rows(y)

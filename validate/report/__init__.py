@@ -97,13 +97,7 @@ def texts(results, stability, about):
 
     lessons = list(dict.fromkeys(r["lesson"] for r in results))
     coverage = about.get("coverage") or {}
-    found = {f"{r['scene']}.html": page(
-        "scene.html", r=r, headline=words.headline(r), findings=words.leading(r),
-        seen_in_steps=words.seen_in_steps(r),
-        races=races.rows(races.of(r)), parts=words.our_parts([r]),
-        warning=words.busy_warning([r], about.get("cores")), notebook=about.get("notebooks", {}).get(r["lesson"]),
-        exercises=[(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],
-        cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
+    found = {f"{r['scene']}.html": page("scene.html", **of_scene(r, stability, about, coverage)) for r in results}
     if coverage:
         found["coverage.html"] = page(
             "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
@@ -122,6 +116,16 @@ def texts(results, stability, about):
     found |= tables.texts(results, stability)
     found |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
     return found
+
+
+def of_scene(r, stability, about, coverage):
+    """Return what the page of a scene shows, by its names in the template."""
+    return {"r": r, "headline": words.headline(r), "findings": words.leading(r),
+            "seen_in_steps": words.seen_in_steps(r), "races": races.rows(races.of(r)), "parts": words.our_parts([r]),
+            "warning": words.busy_warning([r], about.get("cores")),
+            "notebook": about.get("notebooks", {}).get(r["lesson"]),
+            "exercises": [(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],
+            "cases": [case for case in stability if case["lesson"] == r["lesson"]]}
 
 
 def write(out, results, stability, about, pool, bars, measured):
