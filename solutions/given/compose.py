@@ -72,7 +72,7 @@ from .parts_3d import (
     separate_in_space,
 )
 from .rods import close_with_rods, hold_with_rods
-from .rows import Composed, Settings, lengths_of, points_of, rods_in, rows_in_order, rows_of
+from .rows import Composed, Settings, in_order, lengths_of, points_of, rods_in, rows_in_order, rows_of
 
 FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
 
@@ -245,7 +245,7 @@ def shapes_of_loop(model):
 
 def state_of(loop, state):
     """Return the State of all bodies of the model, in its order."""
-    return State(*(rows[loop.row] for rows in state[:4]))
+    return in_order(loop.row, state)
 
 
 def padded(loop):

@@ -14,6 +14,7 @@ from ..support.model import (
     Distance,
     Drag,
     Hinge,
+    State,
     Weld,
     friction_of,
     make_model,
@@ -74,6 +75,11 @@ def rows_in_order(model):
     row = np.empty(len(order), np.int64)
     row[order] = np.arange(len(order))
     return row
+
+
+def in_order(row, state):
+    """Return the State of all bodies of the model, in its order; row: the row of each body."""
+    return State(*(rows[row] for rows in state[:4]))
 
 
 def rows_of(model, settings):

@@ -5,7 +5,6 @@ shapes of all kinds, lets them rub, closes joints and turns what moves.  From it
 engines' switches do.  The loop that `compose` makes of the Model leaves out all that the scene does not need.
 """
 
-import time
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
@@ -21,7 +20,7 @@ from ..check import jsonable
 from ..worlds.ours import lesson_of
 from . import dimension
 from .accuracy import relative
-from .timing import Timed, interleaved
+from .timing import Timed, interleaved, seconds_per_step
 
 ALL = ("accelerate", "detect_unjoined", "separate", "contact_impulses_with_joints", "move_and_turn")
 SMOOTH = ("accelerate_half", "detect_unjoined", "contact_impulses_with_joints", "move_and_turn", "accelerate_rest",
@@ -37,7 +36,7 @@ WITHOUT = {                  # {part: ({function: the one in its place, or None}
 TOTAL, DIMENSION = "all that the scene leaves out", "the third dimension"
 WITH, OWN = "all parts", "the scene's loop"
 SMALL = 0.01                 # radius of a body without a shape over the least distance of two bodies, or over 1 m [-]
-STEPS, PROBE = 500, 2        # steps of a run, and of one that finds out how long a step takes
+STEPS, PROBE = 500, 2        # steps of a run, and of the shortest one
 LONGEST, SEEN = 0.03, 0.5    # a run that is timed, or observed, ends sooner if it would take longer than this [s]
 
 
@@ -181,15 +180,8 @@ def length_of_run(scene, advance, longest):
     """Return (dt, steps) of a run: all of T, or as much of it as takes `longest` [s]."""
     n = next((n for n in scene.steps if n >= STEPS), scene.steps[-1])
     dt = scene.duration / n
-    pace = min(seconds_per_step(advance, dt) for _ in range(3))      # the first run may compile
+    pace = seconds_per_step(Timed("", "", n, dt, prepared(advance)), longest)
     return dt, min(n, max(PROBE, int(longest / pace)))
-
-
-def seconds_per_step(advance, dt):
-    """Return how long a step of a short run takes [s]."""
-    begin = time.perf_counter()
-    advance(PROBE, dt)
-    return (time.perf_counter() - begin) / PROBE
 
 
 def observed(run, steps, dt):

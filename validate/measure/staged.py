@@ -26,27 +26,61 @@ def step_without(lesson, dim, part):
     Without rotation neither a load nor a contact turns a body, and none changes its orientation.  Without detection
     there is no contact either.  Without contact the contacts are found and not used.
     """
-    velocities = lesson.new_velocities_2d if dim == 2 else lesson.new_velocities
-    push = pushed_2d if dim == 2 else pushed
+    accelerate, push, turned = {
+        2: (lesson.new_velocities_2d, pushed_2d, lambda q, omega, dt: q + dt * omega),
+        3: (lesson.new_velocities, pushed, lesson.turn_quaternions)}[dim]
+    meet = {"detection": nothing_met, "contact": met_by(lesson, left_alone)}.get(part, met_by(lesson, push))
+    bodies = itself
+    if part == "rotation":
+        accelerate, turned, bodies = straight, kept, that_cannot_turn
 
     def step(load, bounds, narrow, t, state, dt, p):
         x, q, v, omega, old, J = state
-        if part == "rotation":
-            p = p._replace(inv_inertia=0.0 * p.inv_inertia)
-            v, omega = v + dt * p.inv_mass[:, None] * load(t, x, q, v, omega, p)[0], omega.copy()
-        else:
-            v, omega = velocities(load, t, x, q, v, omega, dt, p)
-        if part != "detection":
-            low, high, turn = bounds(x, q, p.half)
-            found = lesson.find_contacts(narrow, x, low, high, turn, p)
-            if part != "contact":
-                J = lesson.kept_impulses(found, old, J, p.margin)
-                v, omega, J = push(lesson, x, turn, v, omega, J, found, dt, p)
-                old = found
-        if part != "rotation":
-            q = q + dt * omega if dim == 2 else lesson.turn_quaternions(q, omega, dt)
-        return lesson.PileState(x + dt * v, q, v, omega, old, J)
+        p = bodies(p)
+        v, omega = accelerate(load, t, x, q, v, omega, dt, p)
+        v, omega, old, J = meet(bounds, narrow, x, q, v, omega, old, J, dt, p)
+        return lesson.PileState(x + dt * v, turned(q, omega, dt), v, omega, old, J)
     return step
+
+
+def itself(p):
+    """Return the bodies as they are."""
+    return p
+
+
+def that_cannot_turn(p):
+    """Return the bodies without inverse moments of inertia."""
+    return p._replace(inv_inertia=0.0 * p.inv_inertia)
+
+
+def straight(load, t, x, q, v, omega, dt, p):
+    """Return (v, omega) after the forces of a load alone."""
+    return v + dt * p.inv_mass[:, None] * load(t, x, q, v, omega, p)[0], omega.copy()
+
+
+def kept(q, omega, dt):
+    """Return the orientations as they are."""
+    return q
+
+
+def nothing_met(bounds, narrow, x, q, v, omega, old, J, dt, p):
+    """Return (v, omega, contacts, J) without a search for contacts."""
+    return v, omega, old, J
+
+
+def met_by(lesson, push):
+    """Return the function that finds contacts and lets them push."""
+    def met(bounds, narrow, x, q, v, omega, old, J, dt, p):
+        low, high, turn = bounds(x, q, p.half)
+        found = lesson.find_contacts(narrow, x, low, high, turn, p)
+        v, omega, J = push(lesson, x, turn, v, omega, lesson.kept_impulses(found, old, J, p.margin), found, dt, p)
+        return v, omega, found, J
+    return met
+
+
+def left_alone(lesson, x, turn, v, omega, J, contacts, dt, p):
+    """Return (v, omega, J) as they are: contacts push nothing."""
+    return v, omega, 0.0 * J
 
 
 def pushed_2d(lesson, x, turn, v, omega, J, contacts, dt, p):

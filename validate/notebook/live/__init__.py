@@ -4,7 +4,7 @@
     live(model)
 
 Bodies can be grabbed and thrown.  A save of lessons/simulator.py, or of a lesson that it calls, is followed at once.
-*Left out:* space, and Distance, which our loop does not have.
+*Left out:* space.
 """
 
 import os

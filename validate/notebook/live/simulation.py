@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_friction, check_restitution, finite_number, positive_number, whole_number
-from solutions.given.rows import Settings, rows_of
+from solutions.given.rows import Settings, in_order, rows_of
 from solutions.support.model import (
     Distance,
     State,
@@ -252,11 +252,6 @@ class Simulation:
         if all(one.beside is not None for one in self.past):
             films["pymunk"] = [picture_of(self.model, one.beside, width)[0] for one in self.past]
         return self.past[-1].t - self.past[0].t, mine[0][1], films
-
-
-def in_order(row, state):
-    """Return the State of the bodies, in the order of the Model."""
-    return State(*(rows[row] for rows in state[:4]))
 
 
 def checked(tuning):
