@@ -75,8 +75,8 @@ def check_record(p, state):
 
     state: the array whose rows p describes (x; the angles of an arm), or a PileState, which is checked as well.
     Compiled code passes over this call.  validate/subject/modules.py makes it in plain Python before the compiled loop
-    starts.  A small record that was checked before is known by its content, because a check takes as long as fifty
-    compiled steps.
+    starts.  A small record that was found right is known by its content, and is not checked again: the check of a net
+    takes longer than ten compiled steps of it.
     """
     known = content(p), state.shape if isinstance(state, np.ndarray) else content(state)
     if known in CHECKED:
@@ -89,8 +89,8 @@ def check_record(p, state):
 
 
 def content(value):
-    """Return a key that only values of the same types with the same content share, such as a record edited by hand and
-    then set back.
+    """Return a key for the types and the content of a value.  A record that is edited by hand has another key, and its
+    old key again when the edit is undone.
     """
     if isinstance(value, np.ndarray):
         return value.dtype.char, value.shape, value.tobytes()

@@ -1,4 +1,4 @@
-"""Published benchmarks: the errors and classes of those who stated them, and motions that nobody has published.
+"""Published benchmarks: the errors and classes of those who stated them, and motions without published numbers.
 
 Nothing here uses the functions of `solutions`.
 """

@@ -2,7 +2,7 @@
 
 Kinds: discs, boxes (in the plane), spheres, bricks (in space).  Ours and an engine run the same bodies from the same
 settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping, in a process of their own.  Times are CPU times
-of all its threads.  An engine runs with its defaults, and tuned until its bodies overlap about as little as ours.
+of all its threads.  An engine runs with its defaults, and tuned so that its bodies overlap less.
 Overlaps are judged by `reference/overlaps.py`, which uses no code of the lessons.
 
 The cost of a step should grow as n to the power of 1, within a tenth, from 100 to 10,000 bodies; all sizes are timed in
@@ -42,7 +42,7 @@ class Rival(NamedTuple):
     product: Product
     settings: str            # for people
     make: Callable           # (kind, state, pile) → what has run(steps) and places()
-    goal: dict               # {kind: greatest ratio of times, ours over its}, where its bodies overlap as little
+    goal: dict               # {kind: greatest ratio of times, ours over its}
 
 
 PLANE = (

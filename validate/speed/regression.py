@@ -2,7 +2,7 @@
 
 One compiled method of each lesson runs in turn at both commits, each in a process of its own with the packages of this
 environment.  Times are CPU times of one thread, in units of an engine's step that runs beside them, so machine and load
-cancel.  A method is slower if even the lower end of the interval of its ratio exceeds SLOWER.
+cancel.  A method counts as slower only if the whole interval of its ratio lies above SLOWER.
 """
 
 import json

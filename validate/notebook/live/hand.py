@@ -10,7 +10,7 @@ import numpy as np
 
 HERTZ, ZETA = 5.0, 1.0       # of the spring with the body that it holds, and its damping ratio
 STRONGEST = 60.0             # force of the hand over the weight of the body [-]: bodies are not pulled through others
-WEIGHT = 9.81                # [N/kg] that this ratio refers to, whatever gravity is
+WEIGHT = 9.81                # [N/kg] that this ratio refers to, also under another gravity
 
 
 class Grip(NamedTuple):

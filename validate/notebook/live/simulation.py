@@ -30,7 +30,7 @@ from .loops import LOOPS
 
 SECONDS_KEPT = 30.0          # of the past
 KEPT_PER_SECOND = 30.0       # states of the past
-MOST_KEPT = 48_000_000       # bytes of the past, whatever the number of bodies
+MOST_KEPT = 48_000_000       # bytes of the past, for any number of bodies
 AHEAD = 1.0                  # steps by which pymunk's first velocities run ahead: it moves first and pushes then
 
 

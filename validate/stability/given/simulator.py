@@ -721,7 +721,7 @@ def overlap_goes(lesson, rng):
     return (*end[:4], end.contacts.gap), (x, q, state.v, state.omega, np.array([gap + away]))
 
 
-@random_law("A rod carries what hangs on it: its impulse in a step is m g dt, whatever the body's spin.",
+@random_law("A rod carries what hangs on it: its impulse in a step is m g dt, for every spin of the body.",
             "a rod at rest: largest error of its impulse [N s]", 1e-8)
 def weight_on_a_rod(lesson, rng):
     """Hang a ball on a rod from the world, along gravity, in the plane and in space."""
