@@ -7,6 +7,7 @@ import numpy as np
 
 from ..reference.contact_laws import ITERATED, Allowed, Motion, Step, Touching
 from ..reference.orientation import quaternion_matrix
+from .bullet import CONTACT_ERP, WARM
 
 SLOP = 1e-5                  # of pybullet, by default [m]
 FIRST, LATER = 2, 8          # number of watched steps at the beginning of a run, and afterwards
@@ -18,25 +19,32 @@ def ends_early(iterations):
     return tuple((name, why) for name in ITERATED)
 
 
-def pymunk_rules(iterations):
+def pymunk_rules(iterations, creeps=""):
     """Return what is Allowed to pymunk.
+
+    creeps: why its contacts still have a residual at the end; empty where bodies come to rest
 
     *Source:* Chipmunk's cpArbiter.c: cpArbiterUpdate takes over the impulses of a contact that it still remembers, and
     cpArbiterApplyCachedImpulse returns at the first step of a collision.
     """
-    why = ("it remembers the impulse of a contact that opens for up to three steps, counts it as applied when the contact "
-           "comes back, and does not apply it")
-    return Allowed(iterations, rules=(("unapplied", why), *ends_early(iterations)))
+    why = ("it remembers the impulse of a contact that opens for up to three steps, counts it as applied when the "
+           "contact comes back, and does not apply it")
+    rules = ("unapplied", why), *ends_early(iterations)
+    return Allowed(iterations, rules=(*rules, ("rest", creeps)) if creeps else rules)
 
 
-def bullet_rules(iterations):
+def bullet_rules(iterations, creeps=False):
     """Return what is Allowed to pybullet.
+
+    creeps: its solver begins with a tenth of the last impulses, as by default, and does not finish a tower at rest
 
     *Source:* Bullet's btSequentialImpulseConstraintSolver.cpp: an iteration visits the friction of a contact only if
     its normal impulse is above zero.
     """
     why = "it leaves the friction of a contact as it was when its normal impulse falls to zero"
-    return Allowed(iterations, SLOP, (("loose", why), *ends_early(iterations)))
+    rules = ("loose", why), *ends_early(iterations)
+    slow = f"with warmStartingFactor {WARM} its sweeps do not accumulate over the steps, so that a tower creeps"
+    return Allowed(iterations, SLOP, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules)
 
 
 def watched_steps(steps):
@@ -78,11 +86,10 @@ class NearTheEdge:
 
 
 def touching(rows, d):
-    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, returned, axes)."""
-    a, b, n, p_a, p_b, gap, J, mu, returned, axes = zip(*rows) if rows else ((),) * 10
-    vectors = (np.reshape(np.array(each, float), (-1, d)) for each in (n, p_a, p_b))
-    return Touching(np.array(a, int), np.array(b, int), *vectors, np.array(gap, float),
-                    np.reshape(np.array(J, float), (-1, d)), np.array(mu, float), np.array(returned, bool),
+    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes)."""
+    a, b, n, p_a, p_b, gap, J, mu, ghosts, axes = zip(*rows) if rows else ((),) * 10
+    n, p_a, p_b, J, ghosts = (np.reshape(np.array(each, float), (-1, d)) for each in (n, p_a, p_b, J, ghosts))
+    return Touching(np.array(a, int), np.array(b, int), n, p_a, p_b, np.array(gap, float), J, np.array(mu, float), ghosts,
                     np.reshape(np.array(axes, float), (-1, 2, 3)) if d == 3 else None)
 
 
@@ -90,7 +97,7 @@ class Pymunk:
     """A space whose bodies move or are static."""
 
     def __init__(self, space, dt):
-        self.space, self.dt = space, dt
+        self.space, self.dt, self.remembered = space, dt, {}
         self.bodies = [body for body in space.bodies if body.body_type == body.DYNAMIC]
 
     def step(self):
@@ -106,10 +113,20 @@ class Pymunk:
         It moves the bodies, with what removes the overlaps of the last step, before it finds contacts.
         """
         before, overlap = self.motion(), max((-row[5] for row in self.contacts()), default=0.0)
+        self.remembered.clear()
+        self.space.on_collision(pre_solve=self.remember)
         self.step()
+        self.space.on_collision(pre_solve=None)
         inverse, after = np.array([(1.0 / body.mass, 1.0 / body.moment) for body in self.bodies]), self.motion()
         return Step(self.dt, np.array(tuple(self.space.gravity)), inverse[:, 0], inverse[:, 1], before, after, after.x,
                     overlap, touching(self.contacts(), 2))
+
+    def remember(self, arbiter, space, data):
+        """Note the impulses that a contact has before it is solved, where they are not applied: in its first step."""
+        if arbiter.is_first_contact:
+            kept = arbiter._arbiter
+            self.remembered[frozenset(map(id, arbiter.shapes))] = [
+                (kept.contacts[k].jnAcc, kept.contacts[k].jtAcc) for k in range(kept.count)]
 
     def contacts(self):
         """Return rows of all contact points: pymunk's own method reports only their sum.
@@ -129,9 +146,11 @@ class Pymunk:
                 point = kept.contacts[k]
                 places = [np.array((shape.body.position.x + r.x, shape.body.position.y + r.y))
                           for shape, r in ((first, point.r1), (second, point.r2))]
-                J = point.jnAcc * n + point.jtAcc * np.array((-n[1], n[0]))          # on the second
+                axes = np.array((n, (-n[1], n[0])))
+                J = np.array((point.jnAcc, point.jtAcc)) @ axes                      # on the second
+                ghosts = self.remembered.get(frozenset((id(first), id(second))), {})
                 rows[id(first), id(second), k] = (*ends[::-1], n, *places[::-1], float(n @ (places[1] - places[0])), J,
-                                                  mu, arbiter.is_first_contact, None)
+                                                  mu, np.array(ghosts[k] if ghosts else (0.0, 0.0)) @ axes, None)
         for body in self.bodies:
             body.each_arbiter(add)
         return list(rows.values())
@@ -171,6 +190,6 @@ class Bullet:
         for c in self.pb.getContactPoints() or ():
             F = c[9] * np.array(c[7]) + c[10] * np.array(c[11]) + c[12] * np.array(c[13])
             a, b = (number.get(body, len(self.bodies)) for body in c[1:3])
-            rows.append((a, b, c[7], c[5], c[6], c[8], self.dt * F, self.mu[c[1]] * self.mu[c[2]], False,
+            rows.append((a, b, c[7], c[5], c[6], c[8], self.dt * F, self.mu[c[1]] * self.mu[c[2]], 0.0 * F,
                          (c[11], c[13])))
         return rows

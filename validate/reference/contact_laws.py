@@ -37,7 +37,7 @@ class Touching(NamedTuple):
     gap: np.ndarray          # (c,) below zero where they overlap [m]
     J: np.ndarray            # (c, d) on a [N s]
     mu: np.ndarray           # (c,) [-]
-    returned: np.ndarray     # (c,) whether the contact had opened and has come back in this step
+    ghosts: np.ndarray       # (c, d) the part of J that it counts as applied and has not applied [N s]
     axes: np.ndarray | None = None   # (c, 2, d) of a pyramid of friction; None: Coulomb's cone
 
 
@@ -59,7 +59,7 @@ class Step(NamedTuple):
         moments = [grounded(Motion(in_space(one.x), in_space(one.v), turning(one.omega, self.inv_inertia)[0]))
                    for one in (self.before, self.after)]
         t = self.touching
-        vectors = {name: in_space(getattr(t, name)) for name in ("n", "p_a", "p_b", "J")}
+        vectors = {name: in_space(getattr(t, name)) for name in ("n", "p_a", "p_b", "J", "ghosts")}
         return Step(self.dt, in_space([self.gravity])[0], np.append(self.inv_mass, 0.0), still_below(inverse), *moments,
                     still_below(in_space(self.centres)), self.overlap, t._replace(**vectors))
 
@@ -68,6 +68,7 @@ class Allowed(NamedTuple):
     """What an engine's own rules say beyond the laws of contact."""
     iterations: int          # per step
     slop: float = 0.0        # overlap up to which its solver lets bodies approach: a named tolerance [m]
+    recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
     rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
 
 
@@ -139,7 +140,7 @@ def jumps(step, J):
 
 
 def unexplained(step):
-    """Return what the reported impulses leave of the change of velocities, (Δv, Δω), and the rate of gyration [rad/s].
+    """Return what the applied impulses leave of the change of velocities, (Δv, Δω), and the rate of gyration [rad/s].
 
     A free body in space changes ω by −I⁻¹ (ω × I ω) dt; that is the rate of gyration.
     """
@@ -148,50 +149,27 @@ def unexplained(step):
     for k, inverse in enumerate(step.inv_inertia):
         if np.trace(inverse) > 0.0 and np.linalg.matrix_rank(inverse) == 3:
             spin[k] = step.dt * inverse @ np.cross(omega[k], np.linalg.solve(inverse, omega[k]))
-    dv, domega = jumps(step, step.touching.J)
+    dv, domega = jumps(step, step.touching.J - step.touching.ghosts)
     return (moves * (step.after.v - step.before.v - step.dt * step.gravity) - dv,
             step.after.omega - omega + spin - domega, spin)
 
 
-def explained_by(step, dv, domega, returned):
-    """Return (J (c, 3) of returned contacts alone that explains dv and domega best, what it leaves of both)."""
-    _, gyration, _ = scales(step)
-    directions = [(c, axis) for c in np.flatnonzero(returned) for axis in range(3)]
-    J, columns = np.zeros_like(step.touching.J), []
-    for c, axis in directions:
-        one = np.zeros_like(J)
-        one[c, axis] = 1.0
-        v, omega = jumps(step, one)
-        columns.append(np.concatenate((v.ravel(), (gyration[:, None] * omega).ravel())))
-    if columns:
-        right = np.concatenate((dv.ravel(), (gyration[:, None] * domega).ravel()))
-        for (c, axis), size in zip(directions, np.linalg.lstsq(np.array(columns).T, right, rcond=1e-10)[0]):
-            J[c, axis] = size
-    v, omega = jumps(step, J)
-    return J, dv - v, domega - omega
-
-
 def balances(step):
-    """Return {quantity: value} of the balances, impulses that were applied (c, 3), and rates of gyration.
-
-    Impulses between two velocities do the work J · (u + u')/2, exactly.
-    """
+    """Return {quantity: value} of the balances, and the rates of gyration (n + 1, 3)."""
     fall, gyration, _ = scales(step)
-    t = step.touching
     dv, domega, spin = unexplained(step)
-    ghosts, dv, domega = explained_by(step, dv, domega, t.returned)
     second_order = step.dt * np.linalg.norm(step.before.omega, axis=1) * np.linalg.norm(spin, axis=1)
     off = np.maximum(0.0, np.linalg.norm(domega, axis=1) - 2.0 * second_order)
-    lost = np.linalg.norm(jumps(step, ghosts)[0], axis=1)
+    lost = np.linalg.norm(jumps(step, step.touching.ghosts)[0], axis=1)
     return {"momentum": float(np.max(np.linalg.norm(dv, axis=1))) / fall,
-            "angular momentum": float(np.max(gyration * off)) / fall,
-            "unapplied": float(np.max(lost)) / fall}, t.J + ghosts, spin
+            "angular momentum": float(np.max(gyration * off)) / fall, "unapplied": float(np.max(lost)) / fall}, spin
 
 
-def energy(step, J, spin):
+def energy(step, spin):
     """Return the change of the kinetic energy that neither gravity nor applied impulses explain, over its terms [-].
 
-    Gyration does no work, but a step of it does some; at most |I ω| times the change of ω is left out.
+    Impulses between two velocities do the work J · (u + u')/2, exactly.  Gyration does no work, but a step of it does
+    some; at most |I ω| times the change of ω is left out.
     """
     m = 1.0 / step.inv_mass[:-1, None]
     inertia = np.linalg.pinv(step.inv_inertia[:-1], hermitian=True)
@@ -201,7 +179,8 @@ def energy(step, J, spin):
     v, v_new, omega, omega_new = (rows[:-1] for one in zip(step.before[1:], step.after[1:]) for rows in one)
     change = 0.5 * (np.sum(m * (v_new**2 - v**2)) + np.sum(turned(omega_new) - turned(omega)))
     by_gravity = 0.5 * step.dt * np.sum(m * step.gravity * (v + v_new))
-    by_contacts = 0.5 * np.sum(J * (motion(step, step.before) + motion(step, step.after)))
+    twice = motion(step, step.before) + motion(step, step.after)
+    by_contacts = 0.5 * np.sum((step.touching.J - step.touching.ghosts) * twice)
     largest = max(abs(change), abs(by_gravity), abs(by_contacts),
                   float(np.sum(m[:, 0] * np.linalg.norm(step.dt * step.gravity) * np.linalg.norm(v + v_new, axis=1))),
                   float(np.sum(m)) * float(np.linalg.norm(step.dt * step.gravity)) ** 2)
@@ -237,14 +216,14 @@ def shift(step):
 
 # ---------------------------------------------------------------------------------------------- laws of each contact
 
-def laws_of_contacts(step, slop):
+def laws_of_contacts(step, allowed):
     """Return {quantity: value} of the laws of Signorini and Coulomb for the reported impulses.
 
-    A contact may open by what removes its overlap in this step, and close by what is left of the slop.
+    A contact may open by what recovers its overlap in this step, and close by what is left of the slop.
     """
     t, fall = step.touching, scales(step)[0]
-    u, gap = motion(step, step.after), t.gap + slop
-    opening = np.clip(np.sum(t.n * u, axis=1), 0.0, np.maximum(-gap, 0.0) / step.dt)
+    u, gap = motion(step, step.after), t.gap + allowed.slop
+    opening = np.clip(np.sum(t.n * u, axis=1), 0.0, allowed.recovers * np.maximum(-gap, 0.0) / step.dt)
     u = u - opening[:, None] * t.n
     normal, slip = natural_parts((step.inv_mass, step.inv_inertia), step.centres, u, (t.a, t.b, t.n, t.p_a, t.p_b), gap,
                                  t.J, t.mu, step.dt, t.axes)
@@ -271,30 +250,34 @@ QUANTITIES = {               # as a page shows them, in the order in which they 
     "gain": "power from contacts at the end of a step, over impulses and g dt [-]",
     "normal": "residual of Signorini's law, over g dt [-]",
     "slip": "residual of Coulomb's law, over g dt [-]",
+    "rest": "residual of both at the end, where bodies rest, over g dt [-]",
 }
-ITERATED = "gain", "normal", "slip"      # what unfinished iterations leave
+ITERATED = "normal", "slip"              # what iterations that end early leave while bodies move
 
 
 def values(step, allowed):
     """Return {quantity: value} of one step, the rounding of its balances, and the residual of carrying nothing."""
     step = step.in_space()
-    found, applied, spin = balances(step)
-    found |= laws_of_contacts(step, allowed.slop)
-    found |= {"energy": energy(step, applied, spin), "shift": shift(step)}
+    found, spin = balances(step)
+    found |= laws_of_contacts(step, allowed)
+    found |= {"energy": energy(step, spin), "shift": shift(step)}
     return found, rounding(step, allowed.iterations), carrying_nothing(step)
 
 
 def judged(steps, allowed):
-    """Return the Laws of some steps: the largest value of each quantity, and what the laws allow.
+    """Return the Laws of some steps, the last of which is at rest: the largest value of each quantity, and its limit.
 
     A rule that iterations end early is bounded by a step in which contacts carry nothing; friction without a normal
-    impulse is at most the largest impulse.  Remembered impulses have no bound, but must explain a balance to round-off.
+    impulse is at most the largest impulse.  Impulses that are not applied have no bound, but the balances
+    must hold to round-off without them.
     """
     found, roundings, nothing = zip(*(values(step, allowed) for step in steps))
-    rules, known = dict(allowed.rules), {"loose": 1.0, **dict.fromkeys(ITERATED, max(nothing))}
+    rules, known = dict(allowed.rules), {"loose": 1.0, **dict.fromkeys((*ITERATED, "rest"), max(nothing))}
     within = {**dict.fromkeys(QUANTITIES, max(roundings)), "pull": CLAMPED, "cone": CLAMPED, "loose": CLAMPED,
-              "shift": 1.0, **dict.fromkeys(ITERATED, FINISHED)}
-    return [Law(quantity, max(one[name] for one in found), within[name], known.get(name) if name in rules else None,
+              "shift": 1.0, **dict.fromkeys(("gain", *ITERATED, "rest"), FINISHED)}
+    largest = {name: max(one[name] for one in found) for name in QUANTITIES if name != "rest"}
+    largest["rest"] = max(found[-1][name] for name in ITERATED)
+    return [Law(quantity, largest[name], within[name], known.get(name) if name in rules else None,
                 rules.get(name, "")) for name, quantity in QUANTITIES.items()]
 
 

@@ -356,7 +356,8 @@ RUNNERS = (
     engine(PYBULLET, "default",
            partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
            "maximal coordinates; 50 iterations; 1 s of 1/240 s",
-           order=EXACT, limit=unknown, predicted=COARSE, supports=low_boards, laws=watched.bullet_rules(50)),
+           order=EXACT, limit=unknown, predicted=COARSE, supports=low_boards,
+           laws=watched.bullet_rules(50, creeps=True)),
 )
 
 
