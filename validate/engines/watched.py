@@ -89,8 +89,8 @@ def touching(rows, d):
     """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes)."""
     a, b, n, p_a, p_b, gap, J, mu, ghosts, axes = zip(*rows) if rows else ((),) * 10
     n, p_a, p_b, J, ghosts = (np.reshape(np.array(each, float), (-1, d)) for each in (n, p_a, p_b, J, ghosts))
-    return Touching(np.array(a, int), np.array(b, int), n, p_a, p_b, np.array(gap, float), J, np.array(mu, float), ghosts,
-                    np.reshape(np.array(axes, float), (-1, 2, 3)) if d == 3 else None)
+    return Touching(np.array(a, int), np.array(b, int), n, p_a, p_b, np.array(gap, float), J, np.array(mu, float),
+                    ghosts, np.reshape(np.array(axes, float), (-1, 2, 3)) if d == 3 else None)
 
 
 class Pymunk:

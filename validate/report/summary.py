@@ -83,8 +83,8 @@ def by_lesson(report):
     """
     run, level = report["run"], percent(HEADLINE)
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
-             "✓ agrees with the truth · ≈ as predicted, by a law of its own · § keeps the laws of contact · ✗ departs · "
-             "○ undecided.", "",
+             "✓ agrees with the truth · ≈ as predicted, by a law of its own · § keeps the laws of contact · "
+             "✗ departs · ○ undecided.", "",
              f"| lesson | scenes | our methods | engines | stability | engine's time over ours, to {level} error | "
              "losses, ties, undecided |",
              "|---|---|---|---|---|---|---|"]

@@ -19,7 +19,7 @@ KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict
          Verdict.KEEPS_LAWS: "laws", Verdict.BREAKS_AS_KNOWN: "predicted", Verdict.UNDECIDED: "open",
          Verdict.NOT_ATTEMPTED: "open", Verdict.UNFINISHED: "open",
          Verdict.REFERENCE: "reference"}                                       # classes of the style sheet
-SIGNS = {"agrees": "✓", "predicted": "≈", "laws": "§", "departs": "✗", "open": "○"}        # as the style sheet draws them
+SIGNS = {"agrees": "✓", "predicted": "≈", "laws": "§", "departs": "✗", "open": "○"}  # as the style sheet draws them
 LEGEND = {                   # every verdict has one name and one sign
     Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured, "
                     "except where the page calls it measured. Where theory predicts the error itself, a second code "
@@ -28,7 +28,8 @@ LEGEND = {                   # every verdict has one name and one sign
                              "law beforehand, and the run agrees with it.",
     Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. What the engine reports of its own steps keeps the "
                         "laws that hold for every solver: balances of momentum, angular momentum and energy, "
-                        "no impulse that pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of g dt.",
+                        "no impulse that pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of "
+                        "g dt.",
     Verdict.BREAKS_AS_KNOWN: "The same laws judge it, and it breaks one of them by a rule of its own, which the scene "
                              "names beforehand, and by no more than that rule can.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
