@@ -44,6 +44,14 @@ class Verdict(StrEnum):
     REFERENCE = "reference"                  # the truth is a run of this engine: nothing is judged
 
 
+class Allowed(NamedTuple):
+    """What an engine's own rules say beyond the laws of contact: see `validate/reference/contact_laws.py`."""
+    iterations: int          # per step
+    slop: float = 0.0        # overlap up to which its solver lets bodies approach: a named tolerance [m]
+    recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
+    rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
+
+
 class Whose(StrEnum):
     """Whose choice a departure from the truth is."""
     LAW = "its law"                          # of the method, or of the engine with the option that names the runner

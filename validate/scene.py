@@ -12,9 +12,8 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .check import Whose
+from .check import Allowed, Whose
 from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
-from .reference.contact_laws import Allowed
 
 EXACT = "exact"              # an order: no error but round-off
 LATE_LEAPFROG = "1 to 2"     # an order: leapfrog whose first velocity belongs to half a step before or after

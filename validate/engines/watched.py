@@ -5,7 +5,8 @@ A run is watched in its first steps, in which nothing is remembered yet, and in 
 
 import numpy as np
 
-from ..reference.contact_laws import ITERATED, Allowed, Motion, Step, Touching
+from ..check import Allowed
+from ..reference.contact_laws import ITERATED, Motion, Step, Touching
 from ..reference.orientation import quaternion_matrix
 from .bullet import CONTACT_ERP, WARM
 

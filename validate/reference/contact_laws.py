@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..check import Verdict
+from ..check import Allowed, Verdict
 from .contact import in_space, natural_parts, relative_motion, turning
 
 EPS = 2.3e-16                # spacing of floats around 1, rounded up [-]
@@ -62,14 +62,6 @@ class Step(NamedTuple):
         vectors = {name: in_space(getattr(t, name)) for name in ("n", "p_a", "p_b", "J", "ghosts")}
         return Step(self.dt, in_space([self.gravity])[0], np.append(self.inv_mass, 0.0), still_below(inverse), *moments,
                     still_below(in_space(self.centres)), self.overlap, t._replace(**vectors))
-
-
-class Allowed(NamedTuple):
-    """What an engine's own rules say beyond the laws of contact."""
-    iterations: int          # per step
-    slop: float = 0.0        # overlap up to which its solver lets bodies approach: a named tolerance [m]
-    recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
-    rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
 
 
 class Law(NamedTuple):
@@ -264,7 +256,7 @@ def values(step, allowed):
     return found, rounding(step, allowed.iterations), carrying_nothing(step)
 
 
-def judged(steps, allowed):
+def judged(steps, allowed: Allowed):
     """Return the Laws of some steps, the last of which is at rest: the largest value of each quantity, and its limit.
 
     A rule that iterations end early is bounded by a step in which contacts carry nothing; friction without a normal
