@@ -55,7 +55,7 @@ WRONG = {
     "10 % too large": lambda J_n, J_t: 1.1 * (J_n + J_t), "10 % too small": lambda J_n, J_t: 0.9 * (J_n + J_t),
     "normal ones 10 % too large": lambda J_n, J_t: 1.1 * J_n + J_t,
     "friction 10 % too large": lambda J_n, J_t: J_n + 1.1 * J_t, "friction reversed": lambda J_n, J_t: J_n - J_t,
-    "nothing reported": lambda J_n, J_t: 0.0 * J_n,
+    "nothing reported": lambda J_n, J_t: 0.0 * J_n, "not a number": lambda J_n, J_t: np.nan * J_n,
 }
 
 
@@ -76,7 +76,7 @@ def test_impulses_that_are_reported_wrongly_break_a_balance(engine, wrong):
 
 
 @ENGINES
-@pytest.mark.parametrize("wrong", WRONG)
+@pytest.mark.parametrize("wrong", [name for name in WRONG if name != "not a number"])
 def test_an_engine_that_applies_wrong_impulses_departs_though_its_balances_hold(engine, wrong):
     steps, allowed = ladder(engine)
     laws = judged([really(step, WRONG[wrong]) for step in steps], allowed)

@@ -187,10 +187,11 @@ RUNNERS = (
            "polygons; 10 iterations, collision_slop 0.1; 1 s of 1/240 s", laws=watched.pymunk_rules(10), **NUDGED),
     engine(PYBULLET, "", partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=200, residual=0)),
            "hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations; 1 s of 1/240 s",
-           laws=watched.bullet_rules(200), **NUDGED),
+           laws=watched.bullet_rules(200, creeps=True), **NUDGED),
     engine(PYBULLET, "default",
            partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
-           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s", laws=watched.bullet_rules(50), **NUDGED),
+           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s",
+           laws=watched.bullet_rules(50, creeps=True), **NUDGED),
 )
 
 
