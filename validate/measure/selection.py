@@ -17,7 +17,7 @@ from ..products import PYBULLET, PYMUNK
 from ..scene import Scene
 from ..subject import modules
 
-REPEATS = 9                  # of a timed run; fewer only of long ones in plain Python
+REPEATS = 9                  # of a timed run; fewer of long ones
 NOTEBOOK = 0.02              # longest time of a timed run in a notebook [s]
 
 
@@ -36,8 +36,10 @@ class Plan(NamedTuple):
 
         A quick run leaves longer ones to --full, and a full run leaves them out.
         """
-        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.1, 0.4)
-        return {"plain": ours, "compiled": ours, "engine": engine}
+        if self.most_steps:
+            return dict.fromkeys(("plain", "compiled", "engine"), NOTEBOOK)
+        plain, compiled, engine = (0.003, 0.003, 0.01) if self.quick else (0.03, 0.1, 0.4)
+        return {"plain": plain, "compiled": compiled, "engine": engine}
 
     def repeats(self):
         """Return the number of timed repeats; fewer in a notebook, where the reader is waiting."""
