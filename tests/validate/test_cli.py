@@ -67,7 +67,7 @@ def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_pa
     (lambda path: path.write_text(path.read_text() + "\n1 / 0\n"), "ZeroDivisionError"),
     (lambda path: path.write_text(path.read_text() + "raise SystemExit\n"), "SystemExit"),
     (lambda path: path.write_bytes(path.read_bytes() + b"\xff"), "utf-8"),
-    (lambda path: [p.unlink() for p in path.parent.iterdir()], "without inertia_tensors.py"),
+    (lambda path: [p.unlink() for p in path.parent.glob("*.py")], "without inertia_tensors.py"),
 ], ids=["missing", "syntax", "import", "error", "exit", "encoding", "empty folder"])
 def test_answers_that_are_not_there_or_do_not_load_are_named_in_one_sentence(capsys, tmp_path, here, change, says):
     shutil.copytree(modules.ROOT / "lessons", tmp_path / "answers")
