@@ -488,3 +488,22 @@ def test_a_method_without_error_ends_up_on_the_page_and_in_the_table(capsys, tmp
     page = (tmp_path / "throw.html").read_text()
     assert "no error that can be told" in (tmp_path / "throw-times.svg").read_text() and "What theory allows" in page
     assert "exact" in (tmp_path / "index.html").read_text()
+
+
+def programs():
+    """The modules that a person can start: all with a start of their own, but those that a worker starts and feeds."""
+    for file in sorted((modules.ROOT / "validate").rglob("*.py")):
+        text = file.read_text()
+        if '\nif __name__ == "__main__":' in text and "sys.stdin.buffer" not in text:
+            yield ".".join(file.relative_to(modules.ROOT).with_suffix("").parts).removesuffix(".__main__")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("module", list(programs()))
+def test_every_program_has_a_help_text_and_refuses_an_unknown_option_in_one_sentence(module):
+    def run_with(option):
+        return subprocess.run([sys.executable, "-m", module, option], cwd=modules.ROOT, capture_output=True, text=True)
+    asked, refused = run_with("--help"), run_with("--bogus")
+    assert asked.returncode == 0 and len(asked.stdout.split()) > 5 and not asked.stderr
+    assert refused.returncode == 2 and not refused.stdout and "--bogus" in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1
