@@ -85,8 +85,8 @@ def angular_momentum(m, x, v, about):
 def point_mass_inertia(m, r):
     """Return I [kg m²] (3, 3) of n points with masses m (n,) at offsets r (n, 3) [m] from the reference point of I.
 
-    *Find* its entries.  If the points turn rigidly with ω, each has the velocity ω × r, and their angular momentum about
-    the reference point is  L = Σ m r × (ω × r).  The tensor is the matrix for which L = I ω for every ω.
+    *Find* its entries.  If the points turn rigidly with ω, each has the velocity ω × r, and their angular momentum
+    about the reference point is  L = Σ m r × (ω × r).  The tensor is the matrix for which L = I ω for every ω.
 
     *Source:* first lecture deck, “Inertia Tensor”.
     """
@@ -97,8 +97,8 @@ def point_mass_inertia(m, r):
 def box_inertia(m, size):
     """Return I_body [kg m²] (3, 3) of a uniform box about its centre; size (3,) [m] is its full edges along x, y, z.
 
-    *Find* it from the volume integral  Ixx = ∫∫∫ ρ (y² + z²) dx dy dz  with ρ = m/(a b c) and a, b, c = size.  The other
-    two moments follow by exchanging axes, and every product of inertia is zero by symmetry.
+    *Find* it from the volume integral  Ixx = ∫∫∫ ρ (y² + z²) dx dy dz  with ρ = m/(a b c) and a, b, c = size.  The
+    other two moments follow by exchanging axes, and every product of inertia is zero by symmetry.
 
     m < 0 is allowed for this solid and the following ones: a hole is a body of negative mass.  An edge of zero is
     allowed: a plate or a rod.
@@ -152,8 +152,8 @@ def capsule_inertia(m, radius, length):
 def world_inertia(I_body, R):
     """Return I [kg m²] (3, 3) in world axes of a body with orientation R.
 
-    *Find* it.  In the body's own axes L = I_body ω.  R converts the components of a vector from body axes to world axes,
-    and Rᵀ converts them back.  In world axes L = I ω must hold for the same vectors.
+    *Find* it.  In the body's own axes L = I_body ω.  R converts the components of a vector from body axes to world
+    axes, and Rᵀ converts them back.  In world axes L = I ω must hold for the same vectors.
 
     I_body is constant; I changes whenever the body rotates.
     *Source:* first lecture deck, I(t) = R(t) I_body R(t)ᵀ.
