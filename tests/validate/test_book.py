@@ -368,7 +368,7 @@ def test_a_folder_that_is_no_book_and_an_unknown_notebook_are_refused(arguments,
     with pytest.raises(SystemExit) as end:
         book.main([argument.format(folder=tmp_path) for argument in arguments])
     assert end.value.code == 2 and (tmp_path / "thesis.tex").exists()
-    assert re.match(r"book: .*(no book|not there)", capsys.readouterr().err)
+    assert re.match(r"python -m validate.book: .*(no book|not there)", capsys.readouterr().err)
 
 
 # ---------------------------------------------------------------------------------------------- whole books
