@@ -33,6 +33,18 @@ def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
     assert not LEFT_OUT.search(printed(*files, "--collect-only", *options))
 
 
+@pytest.mark.long
+def test_the_parts_of_the_long_tests_make_up_the_whole():
+    """Each long test belongs to one part, and the others to all of them."""
+    def collected(*options):
+        lines = printed("tests/lessons/test_messages.py", "tests/validate/test_cli.py", "--collect-only", *options)
+        return {line for line in lines.splitlines() if "::" in line}
+    whole, short = collected("--long"), collected()
+    parts = [collected("--long", f"--part={k}/3") - short for k in (0, 1, 5)]
+    assert len(short) < len(whole) and set().union(*parts) == whole - short
+    assert sum(map(len, parts)) == len(whole - short)
+
+
 # ---------------------------------------------------------------------------------------------- a loop without end
 
 def endless(*arguments):
