@@ -20,7 +20,7 @@ def run(capsys, program, *arguments):
 
 
 @pytest.fixture
-def handed_in(tmp_path, monkeypatch):
+def handed_in(tmp_path, monkeypatch, one_reader):
     """A class of one who handed nothing in, and one whose zip is broken; graded in this process, without a sandbox."""
     def results(jobs, todo, settings):
         return ((s.student, *local.marked(s, settings)) for s in todo)
