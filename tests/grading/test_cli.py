@@ -10,6 +10,8 @@ from validate.grading import __main__ as grade
 from validate.grading import autograder, local, release, sandbox
 from validate.run.processes import alone_in
 
+pytestmark = pytest.mark.xdist_group("what is handed in")
+
 
 def run(capsys, program, *arguments):
     """Exit code and what was written to standard output and error."""

@@ -15,7 +15,7 @@ from validate.subject import modules
 
 from .test_cli import grade, run
 
-pytestmark = pytest.mark.usefixtures("one_reader")
+pytestmark = [pytest.mark.usefixtures("one_reader"), pytest.mark.xdist_group("what is handed in")]
 LESSONS = ("integrators", "springs")
 TEXT = b"x = 1\n"
 NFC, NFD = (unicodedata.normalize(form, "Zoë Müller") for form in ("NFC", "NFD"))
