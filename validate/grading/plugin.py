@@ -165,9 +165,12 @@ def limit_of(item, limit):
     return min(AGAIN, limit) if any((subject, number) in stopped for number in below) else limit
 
 
+@pytest.hookimpl(tryfirst=True)                         # before pytest's own -m, which must see what is long
 def pytest_collection_modifyitems(config, items):
     wanted = [item for item in items if is_wanted(item, config)]
-    keep = once_compiled([item for item in wanted if not is_left_out(item, config)], config)
+    if not (config.getoption("--compiled") or hasattr(config, "given")):
+        mark_compiled_as_long(wanted)
+    keep = [item for item in wanted if not is_left_out(item, config)]
     count_left_out(config, len(wanted) - len(keep))
     if len(keep) < len(items):
         kept = {*keep}
@@ -196,18 +199,14 @@ def is_left_out(item, config):
     return bool(item.get_closest_marker("long")) and not asked
 
 
-def once_compiled(items, config):
-    """Run one test of each lesson with compiled answers by default, because each test compiles something else."""
-    if config.getoption("--long") or config.getoption("--compiled") or hasattr(config, "given"):
-        return items
-    seen, keep = set(), []
+def mark_compiled_as_long(items):
+    """Let the tests of a lesson with compiled answers be long, but for the first: each compiles something else."""
+    seen = set()
     for item in items:
-        compiled = hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled"
-        if not compiled or item.path not in seen:
-            keep.append(item)
-        if compiled:
+        if hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled":
+            if item.path in seen:
+                item.add_marker(pytest.mark.long)
             seen.add(item.path)
-    return keep
 
 
 def count_left_out(config, count):
