@@ -17,6 +17,7 @@ from validate.report.audit import audit
 from validate.stability.examine import all_cases
 
 from .small_report import small_report
+from .test_cli import here  # noqa: F401    a fixture
 
 KEPT = required.kept
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
@@ -256,6 +257,7 @@ def test_pages_and_pictures_that_were_changed_are_noticed(made, tmp_path):
     assert {f"{name} is missing" for name in names} <= set(audit(changed, data)[0])
 
 
+@pytest.mark.usefixtures("here")
 def test_the_command_ends_with_1_when_something_differs(made, tmp_path, capsys):
     folder, data = made
     changed = copy.deepcopy(data)
