@@ -226,16 +226,19 @@ def test_an_endless_loop_is_stopped_and_told(loop, limit, learner, monkeypatch):
     async def test(opened):
         page = opened(learner.folder)
         await page.runs()
-        page.tell(do="pause")
-        learner("simulator", with_line(loop))
+        follow = page.scene.simulation.follow
         with monkeypatch.context() as patch:
-            patch.setattr(widget, limit, 0.5)
-            page.tell(do="step")
-        assert page.scene.broken
+            def limited():
+                changed = follow()
+                if changed:
+                    patch.setattr(widget, limit, 0.5)
+                return changed
+            patch.setattr(page.scene.simulation, "follow", limited)
+            learner("simulator", with_line(loop))
+            await page.until(lambda: page.scene.broken)
         place = r"\(simulator.py, line \d+, in new_velocities_2d\)\."
         assert re.match(rf"✗ a step is still running after 0.5 s {place}", page.said[-1]), page.said
         learner("simulator")
-        page.tell(do="play")
         await page.runs()
     in_a_loop(test)
 
