@@ -17,9 +17,9 @@ LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them
 FILES = "tests/grading/test_scale.py", "tests/lessons/test_integrators.py"
 
 
-def collected(*options):
-    """What pytest prints when it collects FILES."""
-    said = quiet(*(str(modules.ROOT / file) for file in FILES), f"--rootdir={modules.ROOT}", "--collect-only", *options)
+def collected(*options, files=FILES):
+    """What pytest prints when it collects these files."""
+    said = quiet(*(str(modules.ROOT / file) for file in files), f"--rootdir={modules.ROOT}", "--collect-only", *options)
     assert re.search(r"^\d+(/\d+)? tests collected", said, re.M), said
     return said
 
@@ -48,14 +48,13 @@ def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
     assert not LEFT_OUT.search(collected(*options))
 
 
-@pytest.mark.long
 def test_the_parts_of_the_long_tests_make_up_the_whole():
     """Each long test belongs to one part, and the others to all of them."""
-    def collected(*options):
-        lines = printed("tests/lessons/test_messages.py", "tests/validate/test_cli.py", "--collect-only", *options)
-        return {line for line in lines.splitlines() if "::" in line}
-    whole, short = collected("--long"), collected()
-    parts = [collected("--long", f"--part={k}/3") - short for k in (0, 1, 5)]
+    def tests(*options):
+        said = collected(*options, files=("tests/lessons/test_messages.py", "tests/validate/test_cli.py"))
+        return {line for line in said.splitlines() if "::" in line}
+    whole, short = tests("--long"), tests()
+    parts = [tests("--long", f"--part={k}/3") - short for k in (0, 1, 5)]
     assert len(short) < len(whole) and set().union(*parts) == whole - short
     assert sum(map(len, parts)) == len(whole - short)
 
