@@ -37,7 +37,16 @@ from pathlib import Path
 from solutions.checks import BadInput
 
 from ..scene import Scene, field_names
-from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
+from .loading import (
+    LOAD_WITHIN,
+    Folders,
+    Unloadable,
+    alarm,
+    answer_for_what_is_missing,
+    part,
+    stand_in,
+    unloadable,
+)
 from .numba_twins import CACHE, CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -390,7 +399,7 @@ class ModuleSet(Binding):
         paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": [], ".subject.given": []}
         for package, path in paths.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
-            module.__path__ = [str(p) for p in path]
+            module.__path__ = Folders(map(str, path))
         for given in given_modules():                    # ours, even where the subject's folder has copies of them
             sys.modules[f"{self.name}.subject.{given}"] = original(given)
 
