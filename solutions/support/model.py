@@ -1,7 +1,7 @@
 """Given.  A scene as data: bodies, joints, springs, gravity and loads, in the plane or in space.
 
 A Model says what is there and nothing of how it is solved: it has no step, no sweeps, no margin and no engine.  The
-worlds of `validate/worlds/` are built from it: our own loop, pymunk, pybullet, MuJoCo and Box2D.
+worlds of `validate/worlds/` are built from it: our own loop, pymunk, pybullet, MuJoCo, Box2D and Rapier.
 
 d = 2: vectors are (x, y), an orientation is an angle [rad], and an angular velocity is a number.
 d = 3: vectors are (x, y, z), an orientation is a unit quaternion (w, x, y, z), an angular velocity is a vector (world).
