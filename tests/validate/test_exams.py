@@ -40,6 +40,14 @@ def test_a_tossed_box_errs_by_what_it_does_not_conserve():
     assert reference.box_error([spun], start, np.ones(3), 1.0, np.zeros(3)) == pytest.approx(0.21)       # of energy
 
 
+def test_a_rolling_box_errs_by_both_velocities_and_not_by_places():
+    """By hand, over two outputs: 0.3² + 0.4² in the first, nothing in the second, where only a place is wrong."""
+    exact = np.zeros((2, 12))
+    wrong = exact.copy()
+    wrong[0, 3], wrong[0, 11], wrong[1, 0] = 0.3, 0.4, 9.0
+    assert reference.velocity_error(wrong, exact) == pytest.approx(0.125, rel=1e-12)
+
+
 # ---------------------------------------------------------------------------------------------- references
 
 def test_two_formulations_of_the_squeezer_agree_and_so_do_the_published_digits():
@@ -82,7 +90,8 @@ def test_a_governor_without_springs_keeps_its_angular_momentum_and_its_energy():
 # ---------------------------------------------------------------------------------------------- scenes
 
 def test_every_exam_says_what_it_asks_and_what_each_contestant_gives_up():
-    assert {"squeezer", "four_bars", "bricard", "long_pendulum", "governor", "tossed_box"} <= set(EXAMS)
+    assert {"squeezer", "four_bars", "bricard", "long_pendulum", "governor", "tossed_box",
+            "rolling_box"} <= set(EXAMS)
     for name in EXAMS:
         scene = modules.bind_scene(name)
         exam = scene.exam
@@ -95,7 +104,7 @@ def test_every_exam_says_what_it_asks_and_what_each_contestant_gives_up():
 # a parameter of each scene, wrong by a tenth; springs and dampers of the governor are so stiff that none shows
 WRONG = {
     "squeezer": "inertia", "four_bars": "g", "bricard": "g", "long_pendulum": "g", "governor": "ball",
-    "tossed_box": "w1"}
+    "tossed_box": "w1", "rolling_box": "m"}
 
 
 @pytest.mark.parametrize("name", WRONG)
