@@ -159,8 +159,8 @@ RUNNERS = (
     engine(PYBULLET, "", built(PYBULLET, model, read), "maximal coordinates, no damping, 100 iterations",
            order=1, limit=no_limit, predicted="its solver leaves a rest that is not derived here", most_in_quick=16),
     engine(MUJOCO, "", built(MUJOCO, model, read), "the exact cone of friction; Euler",
-           order=1, limit=no_limit, predicted="its contacts are soft: where friction holds they creep", most_in_quick=16,
-           most_steps=400),
+           order=1, limit=no_limit, predicted="its contacts are soft: where friction holds they creep",
+           most_in_quick=16, most_steps=400),
 )
 
 EXAM = Exam(
@@ -188,6 +188,8 @@ def sanity_checks():
     spin = (a - b) / RADIUS
     power = PUSH * a - p.mu * weight * a         # over t [W/s], at t = 1 s
     return (states("published accelerations of box and balls [m/s²]", (a, b), (0.7385, 0.2110), 1e-4),
+            states("published error of an engine in which nothing moves, over all times [m²/s²]",
+                   (a * a + b * b) * T * T / 3.0, 3.14, 0.01),
             states("momentum gained per second, less push and friction [N]",
                    p.M * a + ROW**2 * p.m * b - (PUSH - p.mu * weight), 0.0, 1e-12),
             states("power of push and friction, less that of motion, after 1 s [W]",
