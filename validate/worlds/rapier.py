@@ -25,7 +25,7 @@ from solutions.support.model import (
     start_of,
     world_place,
 )
-from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron
 
 from ..engines import quiet_import
 from ..reference.orientation import quaternion
@@ -57,7 +57,7 @@ def module():
 
 def refuses(model):
     """Return why it cannot run a model, or ""."""
-    return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, BallJoint, Weld, Distance)
+    return unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
 
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
@@ -137,6 +137,8 @@ def shape_of(parts, k):
         return make.capsule_x(shape.half_length, shape.radius)
     if isinstance(shape, Polygon):
         return make.convex_hull(space.deep(shape.corners).astype(np.float32))
+    if isinstance(shape, Polyhedron):
+        return make.convex_hull(np.array(shape.corners, np.float32))
     R, n = space.frame(parts.start.q[k]), space.point(shape.normal)
     place = R.T @ (-shape.offset * n - space.point(parts.start.x[k]))
     return make.halfspace(tuple((R.T @ n).tolist())).translation(tuple(place.tolist()))
