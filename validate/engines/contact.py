@@ -29,7 +29,7 @@ KINDS = {
     "discs": Kind(2, "round", 30, 0.25, 3, 240.0),
     "boxes": Kind(2, "box", 30, 0.35, 3, 240.0),
     "spheres": Kind(3, "round", 10, 0.25, 2, 150.0),
-    "bricks": Kind(3, "box", 10, 0.42, 3, 120.0),
+    "bricks": Kind(3, "box", 10, 0.42, 4, 120.0),
 }
 
 
