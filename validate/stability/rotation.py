@@ -84,7 +84,7 @@ def substeps(method):
 # ---------------------------------------------------------------------------------------------- drift of energy
 
 CYLINDER, SPUN, MS = (0.04, 0.04, 0.02), (2.0, 4.0, 6.0), 1e-3     # moments [kg m²], ω [rad/s], step [s]
-SPUN_STEPS = 2_000           # of 1 ms
+SPUN_STEPS = 1_000           # of 1 ms
 SPUN_FOR = SPUN_STEPS * MS   # [s]
 GAINED = f"energy gained in {SPUN_FOR:g} s [-]"
 
@@ -245,7 +245,7 @@ def spin_picture(lesson, I, angle):
 # ---------------------------------------------------------------------------------------------- a needle
 
 NEEDLE, PRICKED = (1.0, 1.0, 1e-6), (1.0, 0.5, 1000.0)
-PRICKED_STEPS = 2000         # of 1 ms
+PRICKED_STEPS = 1000         # of 1 ms
 
 
 @case("slender-body", "A needle", compiled=False)
@@ -667,7 +667,7 @@ def one_step_of_the_loop(lesson, check):
 # ---------------------------------------------------------------------------------------------- a million steps
 
 LONG_RUN, SHORT_RUN = 10**6, 10**3   # steps: compiled, and in plain Python
-THROWN = 3                   # tops, thrown at random
+THROWN = 2                   # tops, thrown at random
 
 
 def along_axis(q, L):
