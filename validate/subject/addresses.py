@@ -18,6 +18,7 @@ from llvmlite import ir
 from numba import typeof
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed
+from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AttributeTemplate, Signature, infer_getattr
 from numba.extending import (
     NativeValue,
@@ -118,7 +119,7 @@ class FunctionAddress(types.Callable):
         if kws or len(args) != len(self.signature.args):
             return None
         scores = [context.can_convert(types.unliteral(a), b) for a, b in zip(args, self.signature.args)]
-        if any(score is None for score in scores):
+        if any(score is None or score > Conversion.safe for score in scores):
             return None
         return Signature(self.signature.return_type, self.signature.args, recvr=self)
 
@@ -220,8 +221,9 @@ def function(result, *arguments):
 # ---------------------------------------------------------------------------------------------- loops
 
 def names_used(part):
-    """Return the names of the variables that a function reads."""
-    return {line.argval for line in dis.get_instructions(part) if line.opname.startswith("LOAD_FAST")}
+    """Return the names of the variables that a function reads or writes; one instruction may do so with two."""
+    found = [line.argval for line in dis.get_instructions(part) if "FAST" in line.opname]
+    return {name for one in found for name in (one if isinstance(one, tuple) else (one,))}
 
 
 def functions_of_loop(lesson, loop, parts):

@@ -575,7 +575,8 @@ class CompiledModules(ModuleSet):
     seconds for every kind of record, and in plain Python microseconds.
     """
 
-    speed, from_python = "compiled", None           # names of functions that Python can call, or None: all
+    speed = "compiled"
+    from_python: set[str] | None = None             # names of the functions that Python can call; None: all
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, self.speed)
@@ -671,7 +672,8 @@ class CompiledModules(ModuleSet):
 class InsideModules(CompiledModules):
     """The same for a loop that is made of parts: Python must call none of these functions but the loop itself."""
 
-    speed, from_python = "inside", {"advance_parts"}
+    speed = "inside"
+    from_python = {"advance_parts"}
 
     def __init__(self, folder, digest):
         from .addresses import pass_by_address
