@@ -576,7 +576,7 @@ class CompiledModules(ModuleSet):
     """
 
     speed = "compiled"
-    from_python: set[str] | None = None             # names of the functions that Python can call; None: all
+    from_python: tuple[str, ...] | None = None      # names of the functions that Python can call; None: all
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, self.speed)
@@ -673,7 +673,7 @@ class InsideModules(CompiledModules):
     """The same for a loop that is made of parts: Python must call none of these functions but the loop itself."""
 
     speed = "inside"
-    from_python = {"advance_parts"}
+    from_python = ("advance_parts",)
 
     def __init__(self, folder, digest):
         from .addresses import pass_by_address
