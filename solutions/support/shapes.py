@@ -1,6 +1,5 @@
 """Given.  Shapes of bodies, their moments of inertia and their outlines."""
 
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -109,7 +108,8 @@ def hull_triangles(corners):
     """
     corners = np.asarray(corners, float)
     near, faces, triangles = FLAT * np.max(np.abs(corners)), set(), []
-    for i, j, k in combinations(range(len(corners)), 3):
+    number = range(len(corners))
+    for i, j, k in [(a, b, c) for a in number for b in number[:a] for c in number[:b]]:
         n = np.cross(corners[j] - corners[i], corners[k] - corners[i])
         if np.linalg.norm(n) <= near * near:
             continue

@@ -14,7 +14,6 @@ import dis
 import hashlib
 from contextlib import contextmanager
 
-from llvmlite import ir
 from numba import typeof
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed
@@ -135,7 +134,7 @@ class FunctionModel(models.PrimitiveModel):
     """An address."""
 
     def __init__(self, manager, kind):
-        super().__init__(manager, kind, ir.IntType(8).as_pointer())
+        super().__init__(manager, kind, cgutils.voidptr_t)
 
 
 @unbox(FunctionAddress)
