@@ -48,6 +48,7 @@ def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
     assert not LEFT_OUT.search(collected(*options))
 
 
+@pytest.mark.long
 def test_the_parts_of_the_long_tests_make_up_the_whole():
     """Each long test belongs to one part, and the others to all of them."""
     def tests(*options):
