@@ -303,10 +303,12 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
         n, r_a, r_b = row(contacts.n, k), row(arms.r_a, k), row(arms.r_b, k)
         u = minus(point_velocity_of(v, omega, a, r_a), point_velocity_of(v, omega, b, r_b))
         J_n = dot(n, old)
-        J_n = np.maximum(0.0, J_n + (aim[k] - dot(n, u) - give[k] * k_n * J_n) / (k_n * (1.0 + give[k])))
+        J_n += (aim[k] - dot(n, u) - give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))
+        J_n = 0.0 if J_n <= 0.0 else J_n                                 # a NaN stays one
         stick = plus(old, -1.0 / arms.k_t[k], u)
         J_t = friction_disc(plus(stick, -dot(n, stick), n), mu * J_n if J_n > 0.0 else 0.0)
         put(J, k, plus(J_t, J_n, n))
-        apply_impulse(v, omega, a, r_a, minus(row(J, k), old), inv_mass, inv_inertia)
-        apply_impulse(v, omega, b, r_b, minus(old, row(J, k)), inv_mass, inv_inertia)
+        change = minus(row(J, k), old)
+        apply_impulse(v, omega, a, r_a, change, inv_mass, inv_inertia)
+        apply_impulse(v, omega, b, r_b, scaled(-1.0, change), inv_mass, inv_inertia)
     return v, omega, J

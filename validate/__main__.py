@@ -79,8 +79,9 @@ def validate(
     plan = plan_of(of, names, plain, quick, engine or [], overrides(set_ or [], names))
     try:
         with workers(jobs) as pool, on_cluster(executor, of) as measuring:
-            for _ in pool.each({name: (measure.load, name, of) for name in names}):
-                pass
+            if modules.subject_folder(of) != modules.SOLUTIONS:          # those were loaded here
+                for _ in pool.each({name: (measure.load, name, of) for name in names}):
+                    pass
             with alone_in(writable(out)):
                 code = run(names, plan, pool, out, console, measuring)
         if of != asked:
@@ -261,12 +262,13 @@ def piles(
     bodies: Annotated[int, typer.Option(min=1)] = 1000,
     rounds: ROUNDS = 15,
     growth: Annotated[bool, typer.Option("--growth", help="How the cost of a step grows.")] = False,
+    most: Annotated[int, typer.Option(min=316, help="Bodies of the largest pile of --growth, up to 100,000.")] = 10_000,
     memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
-    figure: Annotated[Path | None, typer.Option(help="File for a picture of time against overlap.")] = None,
+    figure: Annotated[Path | None, typer.Option(help="File for a picture of the result.")] = None,
 ):
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""
     from .speed.piles import measure
-    measure(kinds or [], bodies, rounds, growth, memory, figure)
+    measure(kinds or [], bodies, rounds, growth, memory, figure, most)
 
 
 @app.command("targets")

@@ -68,9 +68,9 @@ def endless(*arguments):
 
 @pytest.fixture
 def short(monkeypatch):
-    """Limits of a second and of a quarter of it, in place of those of the grader."""
-    monkeypatch.setattr(plugin, "LIMIT", 1.0)
-    monkeypatch.setattr(plugin, "AGAIN", 0.25)
+    """Limits of 0.4 s and of a quarter of it, in place of those of the grader."""
+    monkeypatch.setattr(plugin, "LIMIT", 0.4)
+    monkeypatch.setattr(plugin, "AGAIN", 0.1)
 
 
 def limits_of(exercises, **changes):
@@ -85,7 +85,7 @@ def limits_of(exercises, **changes):
 
 def test_a_loop_without_end_is_waited_for_once(short):
     found = limits_of(["1.1", "1.2"], euler_step=endless)
-    assert found == {"1.1": ["1 s", "0.25 s"], "1.2": ["passed", "passed"]}
+    assert found == {"1.1": ["0.4 s", "0.1 s"], "1.2": ["passed", "passed"]}
 
 
 def test_after_a_loop_without_end_a_test_that_ends_passes(short):
@@ -94,13 +94,13 @@ def test_after_a_loop_without_end_a_test_that_ends_passes(short):
     def first_call_never_ends(*arguments):
         calls.append(arguments)
         return endless() if len(calls) == 1 else euler_step(*arguments)
-    assert limits_of(["1.1"], euler_step=first_call_never_ends) == {"1.1": ["1 s", "passed"]}
+    assert limits_of(["1.1"], euler_step=first_call_never_ends) == {"1.1": ["0.4 s", "passed"]}
 
 
 def test_what_calls_a_loop_without_end_has_less_time_from_its_first_test_on(short):
     found = limits_of(["1.7", "1.8"], implicit_euler_step=endless, implicit_midpoint_step=endless)
-    assert sorted(found["1.7"]) == ["0.25 s"] * 4 + ["1 s"]
-    assert set(found["1.8"]) == {"0.25 s"}
+    assert sorted(found["1.7"]) == ["0.1 s"] * 4 + ["0.4 s"]
+    assert set(found["1.8"]) == {"0.1 s"}
 
 
 # ---------------------------------------------------------------------------------------------- what no answer can know

@@ -261,6 +261,7 @@ edit("3.7", "multiplies the load by dt twice", "dt * a_n, p.mu_k", "dt * dt * a_
 edit("3.7", "exchanges holding and sliding", "<= cone_radius", "> cone_radius")
 edit("3.7", "computes the friction of the velocity before the forces act", "friction_impulse(v, 1.0",
      "friction_impulse(v - dt * a_t, 1.0")
+edit("3.7", "tests whether static friction holds a moving block, too", "not np.any(v) and ", "")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -298,6 +299,7 @@ edit("3.8", "exchanges holding and slipping", "pull > cone", "pull < cone")
 edit("3.8", "returns the velocity itself", "return v / speed", "return v")
 edit("3.8", "returns zeros for a moving block", "return v / speed", "return 0.0 * v")
 GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
+edit("3.8", "lets the block slip exactly on the edge of the cone", "pull > cone", "pull >= cone")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------

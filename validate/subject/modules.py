@@ -260,7 +260,7 @@ def module_set(of="solutions", compiled=False):
 def digest_of(folder):
     """Return a fingerprint of every file of which a module set of this subject consists, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
-    ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
+    ours = Path(__file__), *map(Path(__file__).with_name, ("numba_twins.py", "addresses.py"))
     return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.rglob("*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
@@ -304,9 +304,11 @@ def compiled_twice(of="solutions"):
     try:
         for _ in range(2):
             forget_modules(f"_compiled_{digest}")
+            forget_modules(f"_inside_{digest}")
             yield CompiledModules(subject_folder(of), digest)
     finally:
         forget_modules(f"_compiled_{digest}")
+        forget_modules(f"_inside_{digest}")
         shutil.rmtree(CACHE / digest, ignore_errors=True)
 
 
@@ -587,9 +589,17 @@ class CompiledModules(ModuleSet):
     seconds for every kind of record, and in plain Python microseconds.
     """
 
+    speed = "compiled"
+    from_python: tuple[str, ...] | None = None      # names of the functions that Python can call; None: all
+
     def __init__(self, folder, digest):
-        super().__init__(folder, digest, "compiled")
+        super().__init__(folder, digest, self.speed)
         self.cache, self.digest, self.outside = use_cache(digest), digest, {}
+
+    @cached_property
+    def inside(self):
+        """Return the set whose functions are called by their addresses, from compiled code only."""
+        return InsideModules(self.folder, self.digest)
 
     def lesson(self, name):
         """Return a lesson with plain make_* and with loops that check their record first."""
@@ -630,7 +640,8 @@ class CompiledModules(ModuleSet):
         own = {name for name, f in vars(module).items()
                if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
         space = {**vars(module), CHECK: passed_over} if module.__name__.endswith(f".{RECORDS}") else vars(module)
-        vars(module).update(compiled_twins(module, own, space, os.path.join(self.cache, package)))
+        cache = os.path.join(self.cache, package if self.from_python is None else f"{self.speed}-{package}")
+        vars(module).update(compiled_twins(module, own, space, cache, self.from_python))
 
     def _stays(self, origin):
         return False
@@ -657,7 +668,7 @@ class CompiledModules(ModuleSet):
 
         One of its own is compiled here.
         """
-        law = scene.acceleration and scene.acceleration(Lessons(self._inside))
+        law = scene.acceleration and scene.acceleration(Lessons(self.lesson_inside))
         if law is None or hasattr(law, "py_func"):
             return law
         source, origin = self._home(law)
@@ -665,11 +676,31 @@ class CompiledModules(ModuleSet):
             return getattr(self.given(origin), law.__name__)
         return compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes"))
 
-    def _inside(self, name):
+    def lesson_inside(self, name):
         """Return a lesson as compiled functions call it."""
         if (self.folder / f"{name}.py").is_file():
             return self.inner_lesson(name)
         return self._with_companion(name, self.solution(name))
+
+
+class InsideModules(CompiledModules):
+    """The same for a loop that is made of parts: Python must call none of these functions but the loop itself."""
+
+    speed = "inside"
+    from_python = ("advance_parts",)
+
+    def __init__(self, folder, digest):
+        from .addresses import pass_by_address
+        pass_by_address(original("given.rows").Composed)
+        super().__init__(folder, digest)
+
+    def advance(self, loop, names):
+        """Return the function (t, state, dt, steps) → PileState of a Loop whose parts have these names."""
+        from .addresses import functions_of_loop
+        lesson = self.lesson_inside("simulator")
+        functions = functions_of_loop(lesson, loop, [getattr(lesson, name) for name in names])
+        advance_parts = self.lesson_of_scenes("simulator").advance_parts
+        return lambda t, state, dt, steps: advance_parts(*functions, t, state, dt, steps, loop.p)
 
 
 @cache
