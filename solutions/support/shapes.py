@@ -108,8 +108,7 @@ def hull_triangles(corners):
     """
     corners = np.asarray(corners, float)
     near, faces, triangles = FLAT * np.max(np.abs(corners)), set(), []
-    number = range(len(corners))
-    for i, j, k in [(a, b, c) for a in number for b in number[:a] for c in number[:b]]:
+    for i, j, k in triples(len(corners)):
         n = np.cross(corners[j] - corners[i], corners[k] - corners[i])
         if np.linalg.norm(n) <= near * near:
             continue
@@ -122,6 +121,11 @@ def hull_triangles(corners):
             faces.add(on)
             triangles += fan(corners, on, n)
     return np.array(triangles, int).reshape(-1, 3)
+
+
+def triples(n):
+    """Return all sets of three numbers below n."""
+    return [(i, j, k) for k in range(n) for j in range(k) for i in range(j)]
 
 
 def fan(corners, on, n):

@@ -654,12 +654,15 @@ def moments_of_shapes(lesson, rng):
     centre = np.mean(triangle, axis=0)
     sides = np.sum((np.roll(triangle, -1, axis=0) - triangle) ** 2)
     of = lambda shape, d: shapes.moments_of_shape(shape, 1.0, d)
+    corners = np.array([(x, y, z) for x in (-a, a) for y in (-b, b) for z in (-c, c)])
+    solid, middle, _ = shapes.polyhedron_of(corners @ matrix_of(random_quaternions(rng, 1)[0]) + triangle[0, 0])
     return ((of(shapes.Capsule(h, r), 2), of(shapes.Capsule(h, r), 3), of(shapes.Box((a, b)), 2),
              of(shapes.Box((a, b, c)), 3), of(shapes.Ball(r), 2), of(shapes.Ball(r), 3),
-             of(shapes.Polygon(triangle - centre), 2), shapes.polygon_centre(triangle)),
+             of(shapes.Polygon(triangle - centre), 2), shapes.polygon_centre(triangle), np.sort(of(solid, 3)), middle),
             (plane, np.array((along, across, across)), (a * a + b * b) / 3.0,
              np.array((b * b + c * c, a * a + c * c, a * a + b * b)) / 3.0, 0.5 * r * r, np.full(3, 0.4 * r * r),
-             sides / 36.0, centre))
+             sides / 36.0, centre, np.sort((b * b + c * c, a * a + c * c, a * a + b * b)) / 3.0,
+             np.full(3, triangle[0, 0])))
 
 
 # ---------------------------------------------------------------------------------------------- parts of that loop
