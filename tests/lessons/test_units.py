@@ -457,13 +457,16 @@ def specs_of(lesson, name):
     return next((unit for unit, names in RESULTS[lesson].items() if name in names.split()), None)
 
 
-@pytest.mark.parametrize("home", modules.lesson_names())
+@pytest.mark.parametrize(("home", "each"), [
+    *((name, 3) for name in modules.lesson_names()),
+    *(pytest.param(name, 1, marks=pytest.mark.long) for name in modules.lesson_names())])
 @pytest.mark.xdist_group("ordinary calls")
-def test_the_same_scene_in_other_units_gives_the_same_digits(home):
+def test_the_same_scene_in_other_units_gives_the_same_digits(home, each):
+    """By default a third of the calls, which are drawn alike; the long tests make all of them."""
     faults = []
     for (lesson, name), (function, calls) in calls_of_all().items():
         if lesson == home and name not in NOT_SCALED:
-            faults += [f"{name}, call {k}: {fault}" for k, call in enumerate(calls)
+            faults += [f"{name}, call {k * each}: {fault}" for k, call in enumerate(calls[::each])
                        if not IN_METRES_AND_RADIANS & {getattr(value, "__name__", "") for value in call}
                        for fault in faults_of(lesson, name, function, call)]
     assert not faults, f"{len(faults)}:\n" + "\n".join(faults)

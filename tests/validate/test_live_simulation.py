@@ -9,7 +9,7 @@ import pytest
 
 from solutions.checks import BadInput
 from solutions.support.model import WORLD, Ball, Body, Box, Distance, HalfSpace, Hinge, make_model, model_energy
-from validate.notebook.live import simulation as live
+from validate.notebook.live import running
 from validate.notebook.live.files import sentence
 from validate.notebook.live.hand import HERTZ, Grip, offset, pulled
 from validate.notebook.live.simulation import Simulation, Tuning
@@ -147,14 +147,14 @@ def test_a_step_from_the_past_forgets_the_future():
 
 
 def test_the_past_has_thirty_seconds_at_most(monkeypatch):
-    monkeypatch.setattr(live, "SECONDS_KEPT", 0.5)
+    monkeypatch.setattr(running, "SECONDS_KEPT", 0.5)
     scene = ran(Simulation(boxes(1), SOLUTIONS, beside=False), 180)
     assert 0.45 < scene.past[-1].t - scene.past[0].t <= 0.5 + 1e-9
-    assert scene.bytes == sum(map(live.size_of_moment, scene.past))
+    assert scene.bytes == sum(map(running.size_of_moment, scene.past))
 
 
 def test_the_past_of_many_bodies_has_a_limit_in_bytes(monkeypatch):
-    monkeypatch.setattr(live, "MOST_KEPT", 20_000)
+    monkeypatch.setattr(running, "MOST_KEPT", 20_000)
     scene = ran(Simulation(boxes(4), SOLUTIONS), 120)
     assert scene.bytes <= 20_000 and len(scene.past) < 25
 

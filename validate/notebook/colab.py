@@ -17,7 +17,7 @@ import sys
 
 if not os.path.isdir("/content/workbook"):
     !git clone -q --depth 1 {address} /content/workbook
-    !pip install -q "/content/workbook[validate]" "pytest>=8.4,<9.2"
+    !pip install -q "/content/workbook[validate]" "pytest>=8.4,<9.2" "anywidget>=0.9.18"
 from google.colab import drive
 
 drive.mount("/content/drive")

@@ -37,7 +37,16 @@ from pathlib import Path
 from solutions.checks import BadInput
 
 from ..scene import Scene, field_names
-from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
+from .loading import (
+    LOAD_WITHIN,
+    Folders,
+    Unloadable,
+    alarm,
+    answer_for_what_is_missing,
+    part,
+    stand_in,
+    unloadable,
+)
 from .numba_twins import CACHE, CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -145,9 +154,13 @@ def written_scene(name):
     return record_of(importlib.import_module(f"validate.scenes.{scene_files()[name].parent.name}.{name}"), name)
 
 
+@cache
 def called_by_scene(name):
     """Return {(lesson, function)} that a scene calls of lessons, in its file and in its `run`, if that is elsewhere."""
-    texts = scene_files()[name].read_text(encoding="utf-8"), inspect.getsource(written_scene(name).run)
+    file, run = scene_files()[name], written_scene(name).run
+    texts = [file.read_text(encoding="utf-8")]
+    if inspect.getfile(run) != str(file):
+        texts.append(inspect.getsource(run))
     return {call for text in texts for call in called_of_lessons(ast.parse(text))}
 
 
@@ -170,18 +183,19 @@ def called_of_lessons(tree):
     """
     found = set()
     for function in tree.body:
-        meant = _names_of_lessons(function)
-        for node in ast.walk(function):
+        nodes = [node for node in ast.walk(function) if isinstance(node, ast.Attribute | ast.Assign)]
+        meant = _names_of_lessons(nodes)
+        for node in nodes:
             if isinstance(node, ast.Attribute):
                 lesson = meant.get(node.value.id) if isinstance(node.value, ast.Name) else _lesson_named(node.value)
                 found |= {(lesson, node.attr)} if lesson else set()
     return found
 
 
-def _names_of_lessons(function):
-    """Return {name: lesson} of the names that a function gives to lessons."""
+def _names_of_lessons(nodes):
+    """Return {name: lesson} of the names that the statements of a function give to lessons."""
     found = {}
-    for node in ast.walk(function):
+    for node in nodes:
         if isinstance(node, ast.Assign):
             names, values = (side.elts if isinstance(side, ast.Tuple) else [side]
                              for side in (node.targets[0], node.value))
@@ -387,7 +401,7 @@ class ModuleSet(Binding):
         paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": [], ".subject.given": []}
         for package, path in paths.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
-            module.__path__ = [str(p) for p in path]
+            module.__path__ = Folders(map(str, path))
         for given in given_modules():                    # ours, even where the subject's folder has copies of them
             sys.modules[f"{self.name}.subject.{given}"] = original(given)
 

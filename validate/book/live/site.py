@@ -12,9 +12,10 @@ from ...grading import release
 from ...subject import modules
 from . import pyodide
 
-TESTED_BY = "pytest", "iniconfig", "pluggy", "jinja2", "markupsafe", "ipywidgets", "jupyterlab_widgets"
+LOADED = ("pytest", "iniconfig", "pluggy", "jinja2", "markupsafe",   # by the tests
+          "ipywidgets", "jupyterlab_widgets", "anywidget", "psygnal", "typing_extensions")     # by live scenes
 ELSEWHERE = re.compile(r"docs/|uv\.lock|constraints\.txt|notebooks/.*\.ipynb")      # on the drive or in the book
-APPS = "lab",
+APPS = "lab", "notebooks", "edit", "tree"                            # the last three are for narrow screens
 KERNEL = "@jupyterlite/pyodide-kernel-extension:kernel"
 SAVED_WITHIN = 5                                                     # seconds after an edit: a reload loses no more
 SETTINGS = {
@@ -25,8 +26,10 @@ SETTINGS = {
 ABOUT = """This notebook runs in your browser. Nothing is installed, and nothing is sent anywhere.
 
 1. Run the next cell. The first time it loads about 40 MB, which takes up to a minute.
-2. Open [lessons/{lesson}.py](../lessons/{lesson}.py), write a function, save the file (Ctrl-S), and run its check here.
-3. To hand in, or to keep a copy, run `workbook_live.download()` in a new cell."""
+2. Open [lessons/{lesson}.py](../lessons/{lesson}.py), write a function, save the file (Ctrl-S, or wait for 5 s),
+   and run its check here.
+3. To hand in, or to keep a copy, run `workbook_live.download()` in a new cell. `workbook_live.bring_back()` puts such
+   a copy in place of your files."""
 FIRST_CELL = "import workbook_live\n\nawait workbook_live.start()"
 
 
@@ -38,7 +41,7 @@ def build(place, out):
         pyodide.take(place, scratch / "lite" / "static" / "pyodide")
         drive(files, scratch / "content")
         jupyterlite(scratch, out)
-    packages = {f"packages/{path}": data for name in TESTED_BY for path, data in pyodide.installed(name).items()}
+    packages = {f"packages/{path}": data for name in LOADED for path, data in pyodide.installed(name).items()}
     tree = {f"{release.TOP}/{path}": data for path, data in files.items() if not ELSEWHERE.match(path)}
     pyodide.pack(out / "static" / "workbook.zip", tree | packages)
     configure(out / "jupyter-lite.json")

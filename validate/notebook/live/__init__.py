@@ -1,22 +1,25 @@
-"""A live scene below a cell: the learner's own simulator runs in the kernel, and pymunk runs the same Model beside it.
+"""A live scene below a cell: the learner's own code runs in the kernel, and the pointer is a hand.
 
     from validate.notebook.live import live
-    live(model)
+    live(model)                       # bodies, by the learner's simulator; pymunk runs the same Model beside it
+    live(network, start=x)            # a net of springs, or links that are projected
+    live(arm)                         # an arm that follows the pointer
 
-Bodies can be grabbed and thrown.  A save of lessons/simulator.py, or of a lesson that it calls, is followed at once.
-*Left out:* space.
+A save of the lesson, or of one that it calls, is followed at once.  *Left out:* space.
 """
 
 import os
 
-from IPython.display import HTML
+from IPython.display import HTML, display
 
 from solutions.checks import BadInput, check_not_negative
 from solutions.support.model import Model
 
+from ...products import PYMUNK
 from .. import attempt, folder, saving
 from .canvas import drawn, film_of
 from .loops import LOOPS
+from .points import NETWORKS, Arm, Network
 from .simulation import Simulation, Tuning
 
 FILM_ONLY = "WORKBOOK_LIVE"  # environment variable; "film": show a film, where no kernel will stay, as in the book
@@ -26,33 +29,62 @@ WITHOUT = ("<p>A live scene needs anywidget: <code>pip install anywidget</code>,
            "Here is a film of it.</p>")
 
 
-def live(model, beside="pymunk", dt=1.0 / 120.0, sweeps=20, lesson="simulator", view=None, height=380, name="",
-         play=True):
+def live(scene, beside="pymunk", dt=1.0 / 120.0, sweeps=20, lesson="simulator", view=None, height=380, name="",
+         play=True, start=None, method=""):
     """Return a live scene, which a cell shows if it is its last line; a film where nothing can be live.
 
+    scene     a Model; a SpringNetwork or a ConstraintNetwork; an Arm2D
     beside    "pymunk" or None;   dt [s];   sweeps over all contacts in a step, at most
-    lesson    whose exercises the loop calls: "simulator"; "contact" and "impulses" get the rest as given
+    lesson    of a Model: whose exercises the loop calls: "simulator"; "contact" and "impulses" get the rest as given
     view      (left, right, low, high) [m]; None: all bodies at the start
     height    of the canvas, at most [px];   play: begin at once
-    Raises BadInput for a Model that our loop cannot run, and for settings that cannot be.
+    start     positions (n, 2) of the points of a network [m]; angles (n,) of an arm [rad], or None
+    method    the name of the learner's step, for a network or an arm
+    Raises BadInput for a scene that the learner's code cannot run, and for settings that cannot be.
     """
-    if not isinstance(model, Model):
-        raise BadInput("the model of a live scene", type(model).__name__, "give what make_model returns")
-    if beside not in BESIDE:
-        raise BadInput("the engine beside a live scene", repr(beside), 'give "pymunk" or None')
-    if lesson not in LOOPS:
-        raise BadInput("the lesson of a live scene", repr(lesson), f"choose from: {', '.join(LOOPS)}")
     check_not_negative("the height of the canvas [px]", height)
-    simulation = Simulation(model, folder(), Tuning(dt=dt, sweeps=sweeps), BESIDE[beside], lesson)
+    if isinstance(scene, Model):
+        simulation = of_model(scene, beside, dt, sweeps, lesson)
+    else:
+        simulation = of_points(scene, start, method, dt)
     if os.environ.get(FILM_ONLY) == "film":
         return film(simulation)
     try:
         from . import widget
     except ImportError:
         return film(simulation, WITHOUT)
-    scene = widget.LiveScene(simulation, {**drawn(simulation, name, height, view), "play": bool(play)})
-    widget.take_the_place(scene)
-    return scene
+    shown = widget.LiveScene(simulation, {**drawn(simulation, name, height, view), "play": bool(play)})
+    widget.take_the_place(shown)
+    return shown
+
+
+def of_model(model, beside, dt, sweeps, lesson):
+    """Return the Simulation of a Model.  Raises BadInput for settings that cannot be."""
+    if beside not in BESIDE:
+        raise BadInput("the engine beside a live scene", repr(beside), 'give "pymunk" or None')
+    if lesson not in LOOPS:
+        raise BadInput("the lesson of a live scene", repr(lesson), f"choose from: {', '.join(LOOPS)}")
+    return Simulation(model, folder(), Tuning(dt=dt, sweeps=sweeps), BESIDE[beside] and there(), lesson)
+
+
+def there():
+    """Return whether pymunk is installed; where it is not, a browser above all, say so."""
+    if PYMUNK.installed():
+        return True
+    display(HTML("<p>pymunk is not installed here, so this scene runs without it.</p>"))
+    return False
+
+
+def of_points(scene, start, method, dt):
+    """Return the Network or the Arm.  Raises BadInput for anything else."""
+    kind = type(scene).__name__                    # a notebook may have the record from its own copy of a lesson
+    if kind == "Arm2D":
+        return Arm(scene, start, folder(), method)
+    if kind in NETWORKS:
+        if start is None:
+            raise BadInput("the start of a live network", start, "give the positions of its points")
+        return Network(scene, start, folder(), method, dt)
+    raise BadInput("the scene to show live", kind, "give what make_model returns, a network, or an Arm2D")
 
 
 def film(simulation, first=""):

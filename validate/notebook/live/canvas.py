@@ -20,27 +20,81 @@ DARK = dict(re.findall(r"--c-(\w{6}): (#\w{6})", (REPORT / "dark.css").read_text
 
 def drawn(simulation, name, height, view):
     """Return all that the canvas has to know and that does not change."""
-    model, tuning = simulation.model, simulation.tuning
+    found = simulation.drawn()
+    return {"name": name, "height": height, "keep": KEEP_KEYS, "colours": COLOURS,
+            "dark": {f"#{colour}": dark for colour, dark in DARK.items()}, **NOTHING, **found,
+            "view": list(map(float, view or found["view"]))}
+
+
+NOTHING = {"planes": [], "pins": [], "springs": [], "links": [], "weight": 1.0, "beside": "", "engine": False,
+           "contacts": False, "anywhere": -1}
+ENERGY = {"energy": "energy", "unit": "J", "overlap": "overlap",
+          "expected": "at the start, plus work of hand and belts:"}
+
+
+def model_drawn(model, tuning, beside):
+    """Return what the canvas has to know of a Model."""
     moving = [body for body in model.bodies if can_move(body)]
     same = lambda values: values.pop() if len(values) == 1 else None
-    return {"name": name, "height": height, "view": list(map(float, view or view_of(model))), "keep": KEEP_KEYS,
-            "bodies": [body_drawn(model, k) for k in range(len(model.bodies))],
+    return {"view": view_of(model), "bodies": [body_drawn(model, k) for k in range(len(model.bodies))],
             "planes": [plane_drawn(body) for body in model.bodies if isinstance(body.shape, HalfSpace)],
             "pins": [(joint.a, *own_place(model, joint.a, joint.place).tolist()) for joint in model.joints
                      if isinstance(joint, Hinge)],
             "springs": [(spring.a, *spring.place_a, spring.b, *spring.place_b) for spring in model.springs],
             "weight": float(np.mean([body.m for body in moving]) * 9.81) if moving else 1.0,
-            "beside": "pymunk" if simulation.beside else "", "colours": COLOURS,
-            "dark": {f"#{colour}": dark for colour, dark in DARK.items()},
-            "knobs": {"g": float(np.hypot(*model.gravity)), "mu": same({body.mu for body in moving}),
-                      "e": same({body.e for body in moving}), "dt": tuning.dt, "sweeps": tuning.sweeps}}
+            "beside": "pymunk" if beside else "", "engine": bool(PYMUNK.installed()), "contacts": True, "says": ENERGY,
+            "knobs": [knob("g", "g", 0, 30, 0.1, float(np.hypot(*model.gravity)), "m/s²"),
+                      knob("friction μ", "mu", 0, 1.5, 0.01, same({body.mu for body in moving})),
+                      knob("restitution e", "e", 0, 1, 0.01, same({body.e for body in moving})),
+                      of_dt(tuning.dt), knob("sweeps", "sweeps", 1, 50, 1, tuning.sweeps)]}
+
+
+def knob(name, key, low, high, step, value, unit=""):
+    """Return a slider; value None: the bodies have several."""
+    return {"name": name, "key": key, "low": low, "high": high, "step": step, "value": value, "unit": unit}
+
+
+def of_dt(dt, high=480):
+    """Return the slider of the time step, which shows 1/dt."""
+    return {**knob("dt", "dt", 30, high, 10, round(1.0 / dt)), "inverse": True}
+
+
+def point(fixed, moves):
+    """Return a point as the canvas draws it."""
+    return {"points": [[0.0, 0.0]], "closed": False, "fixed": bool(fixed), "round": 0.0, "moves": bool(moves)}
+
+
+def network_drawn(x, network, free, tuning, lesson):
+    """Return what the canvas has to know of a net or a rope, whose points can all be taken."""
+    low, high = x.min(axis=0), x.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.75 * max(*(high - low), 1e-3)
+    own = (knob("stiffness ×", "k", 0.1, 10, 0.1, tuning.k) if lesson == "springs" else
+           knob("sweeps", "sweeps", 1, 50, 1, tuning.sweeps))
+    return {"view": [middle[0] - 1.4 * half, middle[0] + 1.4 * half, low[1] - half, high[1] + 0.3 * half],
+            "bodies": [point(not one, True) for one in free],
+            "anywhere": int(np.argmin(free)) if np.sum(~free) == 1 else -1,     # it hangs from the pointer
+            "links": list(zip(network.i.tolist(), network.j.tolist(), strict=True)),
+            "says": ENERGY | {"overlap": "longest error of a link", "expected": "at the start, plus work of the hand:"},
+            "knobs": [knob("g", "g", 0, 30, 0.1, tuning.g, "m/s²"), of_dt(tuning.dt, 960), own]}
+
+
+def arm_drawn(n, reach, tuning):
+    """Return what the canvas has to know of an arm with n links; its last point is the target."""
+    return {"view": [-1.6 * reach, 1.6 * reach, -1.15 * reach, 1.15 * reach], "anywhere": n + 1,
+            "bodies": [point(k == 0, False) for k in range(n + 1)] + [point(False, True)],
+            "links": [(k, k + 1) for k in range(n)],
+            "says": {"energy": "distance to the target", "unit": "m", "overlap": "",
+                     "expected": "the smallest that an arm of this length allows:"},
+            "knobs": [knob("damping λ", "damping", 0.01, 3, 0.01, tuning.damping, "m"),
+                      knob("gain α", "gain", 0.01, 1, 0.01, tuning.gain, "1/m²"),
+                      knob("iterations", "iterations", 1, 20, 1, tuning.iterations)]}
 
 
 def body_drawn(model, k):
     """Return the outline of a body in its own coordinates."""
     body = model.bodies[k]
     if isinstance(body.shape, HalfSpace):
-        return {"points": [], "closed": False, "fixed": True, "round": 0.0}
+        return {"points": [], "closed": False, "fixed": True, "round": 0.0, "moves": False}
     if body.shape is None:
         places = [own_place(model, k, joint.place).tolist() for joint in model.joints
                   if k in (joint.a, joint.b) and hasattr(joint, "place")] or [[0.0, 0.0]]
@@ -48,7 +102,7 @@ def body_drawn(model, k):
     else:
         places, closed = np.round(outline_of(body.shape, 32)[:-1], 6).tolist(), True
     radius = body.shape.radius if isinstance(body.shape, Ball) else 0.0
-    return {"points": places, "closed": closed, "fixed": not can_move(body), "round": radius}
+    return {"points": places, "closed": closed, "fixed": not can_move(body), "round": radius, "moves": can_move(body)}
 
 
 def plane_drawn(body):

@@ -63,6 +63,6 @@ def place_of(error, folder):
     """
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != ALARM]
     own = [frame for frame in frames if Path(frame.filename).parent == folder.resolve()] or frames[-1:]
-    if not own or Path(own[-1].filename) == HERE / "simulation.py":
+    if not own or Path(own[-1].filename).parent == HERE:
         return ""
     return f" ({Path(own[-1].filename).name}, line {own[-1].lineno}, in {own[-1].name})"

@@ -54,3 +54,18 @@ def pulled(grip, dt, x, q, v, omega, inv_mass, inv_inertia):
     v_new, omega_new = v + dt * inv_mass * F, omega + dt * inv_inertia * tau
     work = dt * (0.5 * F @ (v + v_new) + 0.5 * tau * (omega + omega_new))
     return v_new, omega_new, float(work)
+
+
+def pulled_point(target, dt, x, v, m, felt):
+    """Return (v, W) of a point of mass m after the hand alone has acted for dt; W [J] is its work, exactly.
+
+    felt is the mass of all that hangs on the point, so that the hand can lift it [kg].
+    """
+    rate = 2.0 * np.pi * HERTZ
+    k, c = felt * rate * rate, 2.0 * ZETA * felt * rate
+    F = -(k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)
+    size, most = np.hypot(*F), STRONGEST * WEIGHT * m
+    if size > most:
+        F = F * (most / size)
+    v_new = v + dt / m * F
+    return v_new, float(dt * 0.5 * F @ (v + v_new))

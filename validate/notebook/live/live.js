@@ -80,23 +80,19 @@ function parts(el, scene, tell) {
   look.forces = box("contact forces", true, () => root.dispatchEvent(new Event("look")));
   look.beside = box("pymunk", !!scene.beside, on => tell({ do: "beside", on }));
   add(look.beside.parentNode, "i");
+  look.forces.parentNode.hidden = !scene.contacts; look.beside.parentNode.hidden = !scene.engine;
   button("film", "Save the last thirty seconds as a page that any browser plays", () => tell({ do: "film" }));
   const knobs = add(root, "div", { className: "knobs" });
-  const knob = (name, key, low, high, step, value, shown = short, sent = x => x) => {
-    const label = add(knobs, "label");
+  for (const { name, key, low, high, step, value, unit, inverse } of scene.knobs) {
+    const label = add(knobs, "label"), shown = x => inverse ? `1/${Math.round(x)} s` : `${short(x)} ${unit}`.trim();
     add(label, "span", { textContent: name });
     const input = add(label, "input", { type: "range", min: low, max: high, step, value: value ?? low, ariaLabel: name });
     const output = add(label, "output", { textContent: value === null ? "mixed" : shown(value) });
-    input.oninput = () => { output.textContent = shown(+input.value); tell({ do: "set", to: { [key]: sent(+input.value) } }); };
-  };
-  knob("g", "g", 0, 30, 0.1, scene.knobs.g, x => `${short(x)} m/s²`);
-  knob("friction μ", "mu", 0, 1.5, 0.01, scene.knobs.mu);
-  knob("restitution e", "e", 0, 1, 0.01, scene.knobs.e);
-  knob("dt", "dt", 30, 480, 10, Math.round(1 / scene.knobs.dt), x => `1/${Math.round(x)} s`, x => 1 / x);
-  knob("sweeps", "sweeps", 1, 50, 1, scene.knobs.sweeps);
+    input.oninput = () => { output.textContent = shown(+input.value); tell({ do: "set", to: { [key]: inverse ? 1 / input.value : +input.value } }); };
+  }
   const keys = add(root, "div", { className: "keys" }), trace = add(root, "canvas", { className: "trace" });
   trace.setAttribute("role", "img");
-  trace.setAttribute("aria-label", "Energy, and distance from pymunk, against time");
+  trace.setAttribute("aria-label", `${scene.says.energy}${scene.engine ? ", and distance from pymunk," : ""} against time`);
   const numbers = {};
   for (const name of ["energy", "expected", "apart", "overlap", "pace"]) numbers[name] = add(keys, "span", { className: name });
   const printed = add(root, "pre", { hidden: true });
@@ -104,7 +100,7 @@ function parts(el, scene, tell) {
 }
 
 function render({ model, el }) {
-  const scene = model.get("scene"), { bodies } = scene, n = bodies.length, free = bodies.map(body => !body.fixed);
+  const scene = model.get("scene"), { bodies } = scene, n = bodies.length, free = bodies.map(body => !body.fixed), takes = bodies.map(body => body.moves);
   const tell = message => model.send(message), ui = parts(el, scene, tell), { root, stage, say, trace } = ui;
   const size = bodies.reduce((sum, { points, round }) => sum + (round || Math.max(0, ...points.map(p => Math.hypot(...p)))), 0) / Math.max(1, free.filter(Boolean).length);
   let frame = null, head = {}, playing = false, wanted = false, history = [], told = 0, frames = 0, since = performance.now(), fps = 0;
@@ -173,7 +169,7 @@ function render({ model, el }) {
   };
   const pick = (at, reach) => {
     let best = -1, nearest = reach / scale;
-    for (let k = 0; k < n; k++) if (free[k]) {
+    for (let k = 0; k < n; k++) if (takes[k]) {
       const far = outside(bodies[k], local(k, at));
       if (far < nearest) { nearest = far; best = k; }
     }
@@ -183,11 +179,14 @@ function render({ model, el }) {
   // ---- hand
   const stamp = () => { sentAt.set(++number, performance.now()); if (sentAt.size > 200) sentAt.delete(sentAt.keys().next().value); return number; };
   const grab = (k, at) => {
-    tell({ do: "grab", body: k, place: local(k, at), target: at, n: stamp() });
+    tell({ do: "grab", body: k, place: local(k, k === scene.anywhere ? pose(0, k) : at), target: at, n: stamp() });
     if (!playing) tell({ do: "play" });
   };
   const release = () => { if (held !== null || byKey >= 0) tell({ do: "release" }); held = null; byKey = -1; stage.classList.remove("holds"); };
-  const touched = event => frame && pick(world(event), REACH[event.pointerType] ?? 10);
+  const touched = event => {
+    const k = frame ? pick(world(event), REACH[event.pointerType] ?? 10) : -1;
+    return k < 0 && frame && event.pointerType !== "touch" ? scene.anywhere : k;             // a finger beside a body scrolls the page
+  };
   stage.onpointerdown = event => {
     stage.focus({ preventScroll: true });
     const k = touched(event);
@@ -204,8 +203,8 @@ function render({ model, el }) {
   stage.onpointerup = stage.onpointercancel = stage.onlostpointercapture = event => { if (event.pointerId === held) release(); };
   stage.onblur = () => { if (byKey >= 0) release(); };
   const next = back => {
-    if (!frame || !free.includes(true)) return;
-    do byKey = (byKey + (back ? n - 1 : 1) + n) % n; while (!free[byKey]);
+    if (!frame || !takes.includes(true)) return;
+    do byKey = (byKey + (back ? n - 1 : 1) + n) % n; while (!takes[byKey]);
     target = pose(0, byKey).slice(0, 2);
     grab(byKey, target);
   };
@@ -265,7 +264,7 @@ function render({ model, el }) {
     }
     points.forEach((point, i) => { const [x, y] = there(which, k, point); pen[i ? "lineTo" : "moveTo"](sx(x), sy(y)); });
     if (closed) pen.closePath();
-    if (points.length === 1) { const [x, y] = there(which, k, points[0]); pen.arc(sx(x), sy(y), 3, 0, 7); }
+    if (points.length === 1) { const [x, y] = there(which, k, points[0]); pen.moveTo(sx(x) + 3, sy(y)); pen.arc(sx(x), sy(y), 3, 0, 7); }
   };
   const shapes = (which, wanted, colour, alpha) => {
     pen.beginPath();
@@ -283,6 +282,9 @@ function render({ model, el }) {
   const links = () => {
     pen.strokeStyle = pen.fillStyle = colours.ink; pen.lineWidth = 1; pen.beginPath();
     for (const [a, ax, ay, b, bx, by] of scene.springs) spring(...[[a, [ax, ay]], [b, [bx, by]]].map(([k, at]) => { const [x, y] = there(0, k, at); return [sx(x), sy(y)]; }));
+    pen.stroke();
+    pen.strokeStyle = colours.ours; pen.lineWidth = n > CROWD ? 1 : 2; pen.beginPath();
+    for (const [a, b] of scene.links) { const [ax, ay] = pose(0, a), [bx, by] = pose(0, b); pen.moveTo(sx(ax), sy(ay)); pen.lineTo(sx(bx), sy(by)); }
     pen.stroke();
     for (const [k, u, w] of scene.pins) { const [x, y] = there(0, k, [u, w]); pen.beginPath(); pen.arc(sx(x), sy(y), 3, 0, 7); pen.fill(); }
     pen.lineWidth = 1.5;
@@ -357,10 +359,10 @@ function render({ model, el }) {
     if (playing && now - told < 250) return;             // numbers that change sixty times a second cannot be read
     told = now;
     const { energy, expected, apart, overlap, pace } = ui.numbers;
-    energy.textContent = `energy ${short(head.energy)} J`;
-    expected.textContent = `at the start, plus work of hand and belts: ${short(head.expected)} J`;
+    energy.textContent = `${scene.says.energy} ${short(head.energy)} ${scene.says.unit}`;
+    expected.textContent = `${scene.says.expected} ${short(head.expected)} ${scene.says.unit}`;
     apart.textContent = head.beside ? `farthest from pymunk: ${length(head.apart)}` : "";
-    overlap.textContent = `overlap ${length(head.overlap)}`;
+    overlap.textContent = scene.says.overlap && `${scene.says.overlap} ${length(head.overlap)}`;
     pace.textContent = `${short(head.ms)} ms per step${playing && head.pace < 0.9 ? `; slow motion, ${short(head.pace * +ui.speed.value)} of real time` : ""}`;
   };
   const ask = () => { if (!wanted) { wanted = true; requestAnimationFrame(shown); } };

@@ -3,7 +3,6 @@
 Nothing here knows of a widget or of the time of day.  Both worlds are built from one Model.
 """
 
-from collections import deque
 from typing import NamedTuple
 
 import numpy as np
@@ -20,17 +19,14 @@ from solutions.support.model import (
     start_of,
     world_place,
 )
-from solutions.support.scenes import PileState
 from solutions.support.shapes import HalfSpace
 
 from ...worlds import chipmunk
-from .files import Followed
-from .hand import Grip, hand_force, pulled
+from .canvas import model_drawn
+from .hand import hand_force, pulled
 from .loops import LOOPS
+from .running import Running, check_found
 
-SECONDS_KEPT = 30.0          # of the past
-KEPT_PER_SECOND = 30.0       # states of the past
-MOST_KEPT = 48_000_000       # bytes of the past, for any number of bodies
 AHEAD = 1.0                  # steps by which pymunk's first velocities run ahead: it moves first and pushes then
 
 
@@ -43,43 +39,26 @@ class Tuning(NamedTuple):
     sweeps: int = 20             # of our loop, at most
 
 
-class Moment(NamedTuple):
-    """What is kept of a moment, so that the scene can go on from there."""
-    t: float                 # [s]
-    state: PileState         # of our loop
-    beside: State | None     # of pymunk
-    given: float             # energy that came from outside since the start [J]
-
-
-class Simulation:
+class Simulation(Running):
     """The two worlds, now."""
 
     def __init__(self, model, folder, tuning=None, beside=True, lesson="simulator"):
         if model.d == 3:
             raise BadInput("a model for a live scene", "one in space", "take one in the plane")
-        self.model, self.code, self.beside, self.lesson = model, Followed(folder), beside, lesson
-        self.tuning, (_, self.first, self.row) = checked(tuning or Tuning()), rows_of(model, Settings())
-        self.loop, self.trouble, self.grip = None, None, None
+        super().__init__(folder, checked(tuning or Tuning()))
+        self.model, self.beside, self.lesson = model, beside, lesson
+        self.moves = [can_move(body) for body in model.bodies]
+        _, self.first, self.row = rows_of(model, Settings())
         self.now_model = self.tuned()
         self.driven = any(not can_move(body) and (np.any(body.v) or np.any(body.omega)) for body in model.bodies)
         self.reset()
 
     # ------------------------------------------------------------------------------------------ code and settings
 
-    def follow(self):
-        """Take the learner's code as saved last; return whether it is another one than before.
-
-        The state stays.  What loading the code raises is raised by the next step.
-        """
-        if not self.code.changed():
-            return False
-        self.loop = self.trouble = None
-        try:
-            self.simulator, self.exercises = self.code.load("simulator"), self.code.load(self.lesson)
-            self._compose()
-        except (SystemExit, Exception) as e:
-            self.trouble = e
-        return True
+    def load_code(self):
+        """Take the loop of lesson 10, and the lesson whose exercises it calls."""
+        self.simulator, self.exercises = self.code.load("simulator"), self.code.load(self.lesson)
+        self._compose()
 
     def _compose(self):
         composed = self.simulator.compose(self.now_model, self.simulator.Settings(sweeps=self.tuning.sweeps))
@@ -92,7 +71,7 @@ class Simulation:
         self.tuning, self.engine = tuning, None
         self.now_model = self.tuned()
         self.given += self.energy() - before               # a change of g changes the energy of every height
-        if self.loop is not None:
+        if self.loaded:
             self._compose()
 
     def tuned(self):
@@ -108,19 +87,11 @@ class Simulation:
 
     def reset(self):
         """Return to the start of the Model."""
-        self.t, self.state, self.given, self.grip = 0.0, self.first, 0.0, None
         self.engine, self.engine_state, self.ahead = None, start_of(self.model) if self.beside else None, AHEAD
-        self.past, self.bytes = deque(), 0
-        self.origin = self.energy()
-        self.remember()
+        super().reset()
 
-    def step(self):
-        """Advance both worlds by dt.  Raises what the learner's code raises; then nothing has changed."""
-        if self.loop is None:
-            self.follow()
-        if self.trouble is not None:
-            raise self.trouble
-        self._forget_the_future()
+    def advance(self):
+        """Advance both worlds by dt; return (state of our loop, work of the hand and of driven bodies [J])."""
         state, work = self._with_hand(self.state)
         after = self.simulator.run_parts(self.loop, self.t, state, self.tuning.dt, 1)
         self._check(after)
@@ -128,7 +99,7 @@ class Simulation:
             work += self.simulator.work_of_driven_rows(after, self.tuning.dt, self.loop.p)
         if self.beside:
             self.step_engine()
-        self.state, self.t, self.given = after, self.t + self.tuning.dt, self.given + work
+        return after, work
 
     def _with_hand(self, state):
         """Return (state after the hand has acted for dt, its work)."""
@@ -146,12 +117,7 @@ class Simulation:
             found, before = getattr(after, name, None), getattr(self.state, name)
             if found is None:
                 raise TypeError(f"a part of the loop returned {type(after).__name__} in place of a PileState")
-            if np.shape(found) != before.shape:
-                raise TypeError(f"{name} has the shape {np.shape(found)} after the step and had {before.shape}")
-            bad = ~np.isfinite(np.asarray(found, float).reshape(len(found), -1)).all(axis=1)[self.row]
-            if bad.any():
-                body = int(np.flatnonzero(bad)[0])
-                raise ArithmeticError(f"{name} of body {body} is not finite at t = {self.t:.4g} s")
+            check_found(f"{name} of body", found, before, self.t, self.row)
 
     def step_engine(self):
         """Advance pymunk, which begins anew from its last state where a setting or the time was changed."""
@@ -178,12 +144,6 @@ class Simulation:
         self.beside, self.engine, self.ahead = on, None, AHEAD
         self.engine_state = self.now() if on else None
 
-    def grab(self, body, place, target):
-        """Let the hand hold a place of a body.  Raises BadInput for a body that nothing moves."""
-        if not (0 <= body < len(self.model.bodies) and can_move(self.model.bodies[body])):
-            raise BadInput("the body to grab", body, "choose one that can move")
-        self.grip = Grip(int(body), tuple(map(float, place)), tuple(map(float, target)))
-
     def held_place(self):
         """Return the place (2,) of the body that the hand holds [m]."""
         state, k = self.now(), self.grip.body
@@ -198,10 +158,6 @@ class Simulation:
     def energy(self):
         """Return the energy of our loop [J]."""
         return model_energy(self.now_model, self.now())
-
-    def expected(self):
-        """Return the energy at the start, with what the hand and driven bodies gave since [J]: ours lies below it."""
-        return self.origin + self.given
 
     def apart(self):
         """Return the largest distance of a body that can move from the same body in pymunk [m]."""
@@ -222,28 +178,16 @@ class Simulation:
 
     # ------------------------------------------------------------------------------------------ the past
 
-    def remember(self):
-        """Keep this moment for the slider and the film."""
-        self._forget_the_future()
-        if self.past and self.t - self.past[-1].t < 1.0 / KEPT_PER_SECOND - 1e-9:
-            return
-        self.past.append(Moment(self.t, self.state, self.engine_state, self.given))
-        self.bytes += size_of_moment(self.past[-1])
-        while len(self.past) > 1 and (self.bytes > MOST_KEPT or self.past[0].t < self.t - SECONDS_KEPT):
-            self.bytes -= size_of_moment(self.past.popleft())
-
-    def _forget_the_future(self):
-        """Drop the moments after now, of a scene that was set back and goes on."""
-        while self.past and self.past[-1].t > self.t + 1e-9:
-            self.bytes -= size_of_moment(self.past.pop())
-
     def seek(self, t):
         """Return to the kept moment that is nearest to t; later ones stay until the next step."""
-        found = min(self.past, key=lambda one: abs(one.t - t))
-        self.t, self.state, self.engine_state, self.given = found
-        self.engine, self.grip = None, None
+        super().seek(t)
+        self.engine = None
         if self.beside and self.engine_state is None:
             self.show_beside(True)
+
+    def drawn(self):
+        """Return what the canvas has to know of the bodies and of the settings."""
+        return model_drawn(self.model, self.tuning, self.beside)
 
     def pictures(self, width=3.0):
         """Return (seconds, links, {"mine": [(k, 2), …], "pymunk": …}) of what is kept, for a film."""
@@ -279,9 +223,3 @@ def moved(model, state):
         return joint._replace(place=tuple(world_place(state, joint.a, own_place(model, joint.a, joint.place)).tolist()))
     return model._replace(bodies=tuple(map(body_there, model.bodies, *state)),
                           joints=tuple(map(joint_there, model.joints)))
-
-
-def size_of_moment(moment):
-    """Return the bytes of a moment's arrays."""
-    arrays = [*moment.state[:4], moment.state.J, *moment.state.contacts, *(moment.beside or ())]
-    return sum(np.asarray(one).nbytes for one in arrays)

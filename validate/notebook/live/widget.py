@@ -310,7 +310,8 @@ class LiveScene(anywidget.AnyWidget):
 def take_the_place(scene):
     """Close the scene that this cell has shown before it ran again."""
     shell = get_ipython()
-    parent = shell.get_parent() if shell is not None and hasattr(shell, "get_parent") else {}
+    known = shell if hasattr(shell, "get_parent") else getattr(shell, "kernel", None)          # in a browser the latter
+    parent = known.get_parent() if known is not None else {}
     cell, request = parent.get("metadata", {}).get("cellId"), parent.get("header", {}).get("msg_id")
     if cell is None:
         return
