@@ -61,7 +61,7 @@ def test_a_record_that_is_passed_by_its_address_keeps_no_array_alive(scaled_twic
     before = sys.getrefcount(p.factors)
     for _ in range(20):
         scaled_twice(np.ones(2), p)
-    after = sys.getrefcount(p.factors)       # an assertion would hold a reference of its own
+    after = sys.getrefcount(p.factors)                       # an assertion would hold a reference of its own
     assert after == before
 
 
