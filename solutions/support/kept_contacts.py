@@ -12,7 +12,7 @@ import numpy as np
 from .broad_phase import Pairs
 from .contact_points import first_of, room_for
 
-KEPT = 1e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
+KEPT = 2e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
 
 

@@ -81,11 +81,14 @@ def check_record(p, state):
     known = content(p), state.shape if isinstance(state, np.ndarray) else content(state)
     if known in CHECKED:
         return
-    check_all(p, state)
+    sizes = check_state(p, state)
+    beside = known[0], *sizes.items()                        # the same record beside another state of these sizes
+    if beside not in CHECKED:
+        check_one(p, RULES.get(getattr(p, "_fields", None)), sizes)
     if np.size(getattr(state, "x", state)) <= SMALL:
-        if len(CHECKED) == MOST_KNOWN:
+        if len(CHECKED) >= MOST_KNOWN:
             CHECKED.clear()
-        CHECKED.add(known)
+        CHECKED.update((known, beside))
 
 
 def content(value):
@@ -99,15 +102,14 @@ def content(value):
     return (type(value), value) if type(value).__hash__ else object()      # a list equals nothing here
 
 
-def check_all(p, state):
-    """Raise BadInput unless a record can be and fits the state, as check_record does."""
-    rule = RULES.get(getattr(p, "_fields", None))
+def check_state(p, state):
+    """Return the sizes that a state gives to the fields of its record.  Raises BadInput for a state that cannot be."""
     sizes = {}
     if hasattr(state, "_fields"):
         check_one(state, RULES.get(state._fields), sizes)
-    elif rule is not None:
+    elif RULES.get(getattr(p, "_fields", None)) is not None:
         sizes = sizes_of(state)
-    check_one(p, rule, sizes)
+    return sizes
 
 
 def sizes_of(x):

@@ -79,7 +79,7 @@ NO_RULE = {
     "Contact": "a result", "Contacts": "a result", "Pairs": "a result",
     "Tree": "made by build_tree", "Arms": "made anew per step", "JointArms": "made anew per step",
     "StepMatrix": "made anew per step", "Impact": "made anew per impact", "Sliding": "made anew per impact",
-    "Suspects": "made anew per step",
+    "Suspects": "made anew per step", "Ways": "made at the beginning of a run",
     **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "HalfSpace", "Hinge", "Model",
                      "Polygon", "Spring", "Weld"), "make_model checks it"),
     **dict.fromkeys(("Composed", "Cores", "Kit", "Loop", "Part", "Rods", "Rough", "RoundedBoxes", "Smooth"),
