@@ -90,7 +90,7 @@ def small_wheel(name):
     with zipfile.ZipFile(packed, "w") as archive:
         for path, text in (*zip(paths, paths, strict=True),
                            ("x.dist-info/RECORD", "".join(f"{path},,\n" for path in paths))):
-            archive.writestr(zipfile.ZipInfo(path, pyodide.DATE), text)          # the time of day would change the bytes
+            archive.writestr(zipfile.ZipInfo(path, pyodide.DATE), text)     # the time of day would change the bytes
     return packed.getvalue() if name.endswith(".whl") or name.startswith("openblas") else name.encode()
 
 
