@@ -81,9 +81,10 @@ class BouncingBall(NamedTuple):
 def kinematic_response(v, n, e):
     """Return the velocity (d,) of a point after it hits a fixed surface; unchanged where it leaves, v · n ≥ 0.
 
-    v⁺ = v − (1 + e)(v · n) n
+    *Find* it.  The part of the velocity along the unit normal n is reversed and multiplied by e, and the part along the
+    surface stays as it is.
 
-    The normal velocity is reversed and scaled by e; e = 0.8 looks like a ball.  The tangential velocity is unchanged.
+    With e = 0.8 it looks like a ball.
     This is the result of impulse_size against an immovable body without friction, for every mass of the point.
     *Source:* first lecture deck, “Kinematic response”, which calls it not physically based.
     """
@@ -125,9 +126,9 @@ def relative_velocity_2d(a, b, r_a, r_b):
 def impulse_size(u_n, k_n, e):
     """Return the impulse j ≥ 0 [N s] between two bodies that meet with u_n [m/s] and separate with −e u_n.
 
-    j = −(1 + e) u_n/k_n,      and 0 where they are already separating, u_n ≥ 0
+    *Find* it from k_n [1/kg], the change of u_n per unit of impulse j; without rotation k_n = 1/m_a + 1/m_b.  Where the
+    bodies are already separating, u_n ≥ 0, the impulse is 0.
 
-    k_n [1/kg] is the change of u_n per unit of impulse j; without rotation k_n = 1/m_a + 1/m_b.
     Raises what check_restitution and check_inverse_mass raise; call them first.
     *Source:* first lecture deck, “Computing impulse”, 1st: objects cannot rotate; second lecture deck, “Coefficient of
     restitution”.  The slides leave out the condition u_n < 0.
@@ -137,10 +138,12 @@ def impulse_size(u_n, k_n, e):
 
 
 def effective_inverse_mass_2d(a, b, r_a, r_b, n):
-    """Return k_n [1/kg] of two BodyState2D that can rotate.
+    """Return k_n [1/kg] of two BodyState2D that can rotate: by how much an impulse of 1 N s changes u_n.
 
-    k_n = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: cross_2d
+    *Find* it.  The impulse n on a at the offset r_a, and −n on b at r_b, change the velocities and the angular
+    velocities of both.  u_n = n · u is the velocity of a's contact point relative to b's, along n.
 
+    r × n in the plane is cross_2d(r, n).  An inv_mass or inv_inertia of 0 is that of a body that cannot move or turn.
     *Source:* first lecture deck, “Computing impulse”, in the plane.
     """
     # YOUR CODE HERE
@@ -169,9 +172,9 @@ def relative_velocity(a, b, r_a, r_b):
 
 
 def effective_inverse_mass(a, b, r_a, r_b, n):
-    """Return k_n [1/kg] of two BodyState3D.
+    """Return k_n [1/kg] of two BodyState3D: by how much an impulse of 1 N s along n changes u_n.
 
-    k_n = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
+    *Find* it as in the plane, with  Δω = I⁻¹ (r × n)  and the velocity  v + ω × r  of the contact point.
 
     times(A, b) multiplies a matrix and a vector.
     *Source:* first lecture deck, “Computing impulse”.
@@ -257,7 +260,8 @@ def energy_change(u, K, J):
 def gap_multiplier(phi, u_n, k_n, dt):
     """Return λ ≥ 0 [N s] of a contact in a step of dt after which the gap is not below zero; the impulse is J = λ ∇φ.
 
-    φ⁺ = φ + dt (u_n + k_n λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or λ closes it exactly
+    *Find* it.  After the step the gap is  φ⁺ = φ + dt (u_n + k_n λ).  Either it stays open, φ⁺ > 0, and then λ = 0; or
+    λ closes it exactly, φ⁺ = 0:     0 ≤ φ⁺  ⊥  λ ≥ 0.
 
     φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k_n [1/kg].
     Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).

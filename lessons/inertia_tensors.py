@@ -7,12 +7,12 @@ Symbols: m [kg] · x [m] position · v [m/s] · X [m] centre of mass · r [m] of
 L [kg m²/s] angular momentum · omega [rad/s] · I (3, 3) [kg m²] inertia tensor, I_body in body axes ·
 R (3, 3) rotation from body to world: its columns are the body's axes.  Vectors are (3,), float.
 
-    I = ⎡ Ixx  Ixy  Ixz ⎤      Ixx =  ∫ (y² + z²) dm    resistance about x: the distance from the axis counts
-        ⎢ Ixy  Iyy  Iyz ⎥      Ixy = −∫ x y dm          coupling: rotation about x gives L a component along y
+    I = ⎡ Ixx  Ixy  Ixz ⎤      Ixx    resistance about x
+        ⎢ Ixy  Iyy  Iyz ⎥      Ixy    coupling: rotation about x gives L a component along y
         ⎣ Ixz  Iyz  Izz ⎦
 
-The minus sign is part of the entry.  Some texts write Ixy = Σ m x y, call that number the product of inertia,
-and put −Ixy into the matrix.  Without the minus sign, L = I ω would be wrong.
+The sign of a coupling is part of the entry, so that L = I ω holds as it stands.  Some texts call the number with the
+other sign the product of inertia Ixy, and put −Ixy into the matrix.
 *Left out:* bodies that deform; the rotation of a body with this tensor, which is lesson 5.
 """
 
@@ -85,9 +85,10 @@ def angular_momentum(m, x, v, about):
 def point_mass_inertia(m, r):
     """Return I [kg m²] (3, 3) of n points with masses m (n,) at offsets r (n, 3) [m] from the reference point of I.
 
-    Ixx = Σ m (y² + z²),   Ixy = Iyx = −Σ m x y,   and so on cyclically;   in one line  I = Σ m (|r|² 1 − r rᵀ)
+    *Find* its entries.  If the points turn rigidly with ω, each has the velocity ω × r, and their angular momentum
+    about the reference point is  L = Σ m r × (ω × r).  The tensor is the matrix for which L = I ω for every ω.
 
-    *Source:* first lecture deck, “Inertia Tensor”; the signs of Ixy as at the top of this file.
+    *Source:* first lecture deck, “Inertia Tensor”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.4: point_mass_inertia")
@@ -96,7 +97,8 @@ def point_mass_inertia(m, r):
 def box_inertia(m, size):
     """Return I_body [kg m²] (3, 3) of a uniform box about its centre; size (3,) [m] is its full edges along x, y, z.
 
-    Ixx = ∫∫∫ ρ (y² + z²) dx dy dz = m (b² + c²)/12,   a, b, c = size
+    *Find* it from the volume integral  Ixx = ∫∫∫ ρ (y² + z²) dx dy dz  with ρ = m/(a b c) and a, b, c = size.  The
+    other two moments follow by exchanging axes, and every product of inertia is zero by symmetry.
 
     m < 0 is allowed for this solid and the following ones: a hole is a body of negative mass.  An edge of zero is
     allowed: a plate or a rod.
@@ -107,9 +109,10 @@ def box_inertia(m, size):
 
 
 def sphere_inertia(m, radius):
-    """Return I_body [kg m²] (3, 3) of a uniform ball about its centre: ⅖ m radius² about every axis.
+    """Return I_body [kg m²] (3, 3) of a uniform ball of this radius [m] about its centre.
 
-    Its three moments are equal, and their sum is  ∫ 2 r² dm = 2 m/(4/3 π R³) ∫ r² 4π r² dr = 6/5 m R².
+    *Find* its moment.  The three moments are equal.  Their sum is  ∫ 2 r² dm,  and this integral over shells of radius
+    r is easy.
     *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     # YOUR CODE HERE
@@ -149,7 +152,8 @@ def capsule_inertia(m, radius, length):
 def world_inertia(I_body, R):
     """Return I [kg m²] (3, 3) in world axes of a body with orientation R.
 
-    I = R I_body Rᵀ        from right to left: convert ω to body axes, multiply by I_body, convert L back to world axes
+    *Find* it.  In the body's own axes L = I_body ω.  R converts the components of a vector from body axes to world
+    axes, and Rᵀ converts them back.  In world axes L = I ω must hold for the same vectors.
 
     I_body is constant; I changes whenever the body rotates.
     *Source:* first lecture deck, I(t) = R(t) I_body R(t)ᵀ.
@@ -161,7 +165,7 @@ def world_inertia(I_body, R):
 def world_inverse_inertia(I_body, R):
     """Return I⁻¹ [1/(kg m²)] (3, 3) in world axes: it converts a torque to a change of ω.
 
-    I⁻¹ = R I_body⁻¹ Rᵀ        because R⁻¹ = Rᵀ: invert in body axes, then rotate
+    *Find* it from the tensor in world axes, and from R⁻¹ = Rᵀ: only I_body, which is constant, needs to be inverted.
 
     inverse, given in vectors.py, inverts a symmetric matrix.
     *Source:* first lecture deck.
@@ -175,10 +179,11 @@ def world_inverse_inertia(I_body, R):
 def parallel_axes(I, m, d):
     """Return the tensor [kg m²] (3, 3) about a point at the offset d (3,) [m] from the centre, from I about the centre.
 
-    I + m (|d|² 1 − d dᵀ)        the body, plus its mass as a single point at the distance d
+    *Find* it.  About that point, the offset of a part of the body is d plus its offset from the centre of mass.  Insert
+    this into  Σ m r × (ω × r),  and use that the offsets from the centre of mass, times the masses, add up to zero.
 
-    The moments are smallest about the centre of mass.  The same formula with −m leads back from the point to
-    the centre.
+    The sign of d does not matter.  The moments are smallest about the centre of mass.  The same formula with −m leads
+    back from the point to the centre.
     *Source:* Huygens 1673; Steiner 1840.
     """
     # YOUR CODE HERE

@@ -190,7 +190,7 @@ def contact_step(load, bounds, narrow, t, state, dt, p):
 def support_velocity(place, ball):
     """Return the velocity [m/s] (3,) of the floor of a CarriedBall at a place (3,) [m].
 
-    v_s = floor_v + floor_omega × (place − centre)
+    *Find* it.  The floor is a rigid body that moves with floor_v and turns with floor_omega about its `centre`.
 
     *Source:* lesson 5, the velocity of a point of a body; the floor is a body whose motion is given.
     """
@@ -232,10 +232,11 @@ def slip_time(v, omega, ball):
 
 
 def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
-    """Return (x, q, v, ω) of a RollingBall after dt: average_rolling_step until slip ends, and again for the rest.
+    """Return (x, q, v, ω) of a RollingBall after dt, exact for every dt.
 
-    The first part lasts min(dt, slip_time(v, omega, ball)), and the second begins when and where the first has ended.
-    Each part has constant accelerations, so average_rolling_step is exact for both.
+    *Find* how.  average_rolling_step is exact while the accelerations are constant.  They change once, when the slip
+    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.
+
     *Source:* event-driven integration; stick and slip of lesson 3.
     """
     # YOUR CODE HERE
@@ -279,9 +280,10 @@ def rocking_step(step, t, x, v, dt, block):
 # ---------------------------------------------------------------------------------------------- is it right?
 
 def mechanical_energy(x, q, v, omega, p):
-    """Return the energy [J] of all bodies in space that can move:  Σ ½ m v² + ½ ω · I ω − m g · x.
+    """Return the energy [J] of all bodies in space that can move: of motion, of rotation, and in the field of gravity.
 
-    ½ ω · I ω = ½ Σ Iₖ ωₖ², with the components of ω in body coordinates (unrotate) and Iₖ = 1/p.inv_inertia[i, k].
+    *Find* it.  p.gravity g (3,) [m/s²] is the same everywhere, and its potential energy is 0 at x = 0.  The energy of
+    rotation ½ ω · I ω is simple in body coordinates (unrotate), with the moments Iₖ = 1/p.inv_inertia[i, k].
     Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no energy of rotation.  No field of p is NaN:
     the loops refuse such a record.
     """
@@ -292,7 +294,8 @@ def mechanical_energy(x, q, v, omega, p):
 def momenta(x, q, v, omega, p):
     """Return momentum P [kg m/s] (3,) and angular momentum L [kg m²/s] (3,) about the origin, of all movable bodies.
 
-    P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
+    *Find* both.  The angular momentum of a body about the origin has two parts: that of its mass as a point, and that
+    about its own centre, which is body_angular_momentum(q, ω, I_body) of lesson 5.
 
     Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.  No field of p is NaN.
     Without loads and supports both are constant, also through impacts between the bodies.
@@ -304,11 +307,12 @@ def momenta(x, q, v, omega, p):
 def gain_without_source(energies, work):
     """Return the largest gain of energy [J] that no work explains, between any two times of a run.
 
-    largest over j ≤ k of  (E_k − W_k) − (E_j − W_j)          energies E (k,), work W (k,) done until then, both [J]
+    *Find* it from the energies E (k,) [J] and the work W (k,) [J] that was done until each time.  Work explains a gain
+    of energy from any time j to any later time k, if it grew by as much.
 
-    It is 0 or more.  Friction and impacts only take energy, so a growth above the error of the steps reveals a fault.
-    E and W may be lists.  Call checked_histories(energies, work) first: it returns both as arrays.
-    Raises what checked_histories raises.
+    The gain is 0 or more, since k may be j.  Friction and impacts only take energy, so a growth above the error of the
+    steps reveals a fault.  E and W may be lists.  Call checked_histories(energies, work) first: it returns both as
+    arrays.  Raises what checked_histories raises.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.15: gain_without_source")

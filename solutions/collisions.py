@@ -77,10 +77,11 @@ def plane_distance(p, plane):
 def plane_impact_time(t, dt, x_0, x_1, r, plane):
     """Return the time [s] at which a ball of radius r touches a plane: the continuous test.
 
-    The ball moves straight from x_0 at t to x_1 at t + dt.  r = 0: a point.
-    t* = t + dt d₁/(d₁ + d₂)         d₁ = E(x_0) − r above the plane before,   d₂ = r − E(x_1) below it after
+    The ball moves straight from x_0 at t to x_1 at t + dt, at a constant speed.  r = 0: a point.
+    *Find* the time from its distances from the plane before the step and after it.
 
-    Return t where the ball already touches (d₁ ≤ 0), and NEVER where it does not reach the plane (d₂ < 0).
+    Return t where the ball already touches at x_0, and NEVER where it does not reach the plane in this step.  A ball
+    that just reaches it at x_1 touches at the end of the step.
     *Source:* first lecture deck, “Time of impact”.
     """
     ### BEGIN SOLUTION 6.2
@@ -108,8 +109,8 @@ def ball_contact(x_a, r_a, x_b, r_b):
 def cylinder_contact(x, r, R):
     """Return the Contact of a ball (a) at x (3,) and the infinite cylinder (b) about the x axis: the discrete test.
 
-    r is the radius of the ball, R that of the cylinder.  The nearest point of the axis is q = (x₀, 0, 0), so
-    this is the ball_contact of a ball of radius r at x and a ball of radius R at q.
+    r is the radius of the ball, R that of the cylinder.  *Find* the ball of radius R that touches as the cylinder does:
+    where on the axis is its centre?  ball_contact does the rest.
     *Source:* second lecture deck, the worked question, part 1.
     """
     ### BEGIN SOLUTION 6.3
@@ -120,17 +121,15 @@ def cylinder_contact(x, r, R):
 def cylinder_impact_time(t, dt, x_0, x_1, r, R):
     """Return the time [s] at which a ball first touches the cylinder of cylinder_contact: the continuous test.
 
-    The ball moves straight from x_0 (3,) at t to x_1 at t + dt.
-    With y the coordinates (1, 2) of x_0, w those of x_1 − x_0 and ρ = R + r:  |y + s w|² = ρ² is  A s² + 2 B s + C = 0,
-    A = w · w,   B = y · w,   C = y · y − ρ²,   D = B² − A C = A ρ² − (y₀ w₁ − y₁ w₀)²
-    first root  s = C/(−B + √D),   t* = t + s dt
+    The ball moves straight from x_0 (3,) at t to x_1 at t + dt, at a constant speed.
+    *Find* the share s of the step after which it touches.  Let y be the coordinates (1, 2) of x_0, w those of x_1 −
+    x_0, and ρ = R + r.  Then  |y + s w|² = ρ²,  and of the two roots the first one counts.
 
-    Use the last form of D, because B² − A C cancels if a fast ball barely grazes the cylinder or comes from far away.
-    For s, (−B − √D)/A is equally accurate.  If the ball is already close, both forms cancel; then the relative error of
-    s is the round-off of |y| over the gap.
+    B² − A C, a quarter of the discriminant of  A s² + 2 B s + C = 0,  loses its digits if a fast ball barely grazes the
+    cylinder or comes from far away.  A ρ² − (y₀ w₁ − y₁ w₀)² is the same number, and keeps them.
 
-    Return t where the ball already touches (C ≤ 0).  Return NEVER where it does not approach (B ≥ 0), misses (D < 0)
-    or touches only after this step (s > 1).
+    Return t where the ball already touches at x_0.  Return NEVER where it does not approach, misses, or touches only
+    after this step (s > 1).
     *Source:* second lecture deck, the worked question, part 2.
     """
     ### BEGIN SOLUTION 6.4
@@ -248,8 +247,10 @@ def ball_box(x, r, box):
 def swept_box(low, high, move):
     """Return (low, high), each (d,): the box around the path of a box low, high (d,) that moves by move (d,) [m].
 
-    Each of its faces is at the outer one of the first and last positions of that face.  A body at rest that does not
-    touch this box is not hit.  If both bodies move, neither hits the other unless their swept boxes touch.
+    *Find* its corners, whichever way the box moves: it is the least box that holds the moving one at every moment.
+
+    A body at rest that does not touch this box is not hit.  If both bodies move, neither hits the other unless their
+    swept boxes touch.
     *Source:* first lecture deck, “Swept volumes”.
     *Left out:* the swept volume itself, which is smaller than the box around it.
     """

@@ -1,6 +1,6 @@
 """Lesson 9.  Contact: many contacts at once.
 
-    0 ≤ λ  ⊥  A λ + b ≥ 0,      A = G M⁻¹ Gᵀ,      |J_t| ≤ μ J_n
+    0 ≤ λ  ⊥  A λ + b ≥ 0,      |J_t| ≤ μ J_n
 
 Symbols: a ContactSet (solutions/support/contact_points.py) holds for each contact k its bodies a[k] and b[k], the unit
 normal n[k], which points from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity
@@ -78,7 +78,8 @@ def contact_rows(x, contacts):
 def delassus_matrix(G, w):
     """Return A (rows, rows) [1/kg]: entry (r, s) is the relative velocity along row r due to a unit impulse in row s.
 
-    A = G M⁻¹ Gᵀ          w = M⁻¹, the diagonal (3n,)
+    *Find* it.  G turns the velocities of all bodies into relative velocities u = G v.  An impulse in row s acts on the
+    bodies along row s of G, and changes their velocities by that row times w, the inverse masses and moments (3n,).
 
     A is symmetric.  Impulses J lead to u = A J + b, with b = G v.  Contacts that share no movable body have entry 0.
     *Source:* Delassus 1917; Moreau 1988.
@@ -104,10 +105,11 @@ def complementarity_residual(A, b, lam):
 def gauss_seidel_sweep(A, b, lam, omega):
     """Return the impulses (m,) after a sweep of projected Gauss–Seidel over all contacts in order, with relaxation ω.
 
-    λ_k ← max(0, λ_k − ω u_k/A_kk),      u_k = Σ_l A_kl λ_l + b_k  with the newest λ_l
+    *Find* what a visit does to λ_k.  The relative velocity of contact k is  u_k = Σ_l A_kl λ_l + b_k  with the newest
+    λ_l.  With ω = 1 the visit treats its contact as if it were alone: afterwards u_k = 0, unless the contact would have
+    to pull for that; then λ_k = 0.  With another ω, the change of λ_k is ω times as large before a pull is cut off.
 
-    With ω = 1 each visit stops the approach of its contact, as if it were alone.  The diagonal of A is above zero.
-    Returns a new array.
+    The diagonal of A is above zero.  Returns a new array.
     *Source:* Cryer 1971.  Sequential impulses (Catto 2006) are the same with ω = 1.
     """
     ### BEGIN SOLUTION 9.4
@@ -119,10 +121,11 @@ def gauss_seidel_sweep(A, b, lam, omega):
 
 
 def stack_contraction(n):
-    """Return ρ of Gauss–Seidel on a frictionless stack of n equal bodies on the ground:  cos²(π/2n).
+    """Return the factor ρ of a sweep of Gauss–Seidel, for its error on a frictionless stack of n equal bodies.
 
-    Jacobi's iteration on the A of this stack has the eigenvalues cos((2j − 1) π/2n), and Gauss–Seidel has their
-    squares.
+    *Find* it.  In Jacobi's iteration each visit sees the old impulses of the others.  On the A of this stack it has the
+    eigenvalues  cos((2j − 1) π/2n),  j = 1 … n.  A is tridiagonal, and then Gauss–Seidel does in one sweep what Jacobi
+    does in two.
     *Source:* Young 1971; the matrix is tridiagonal.
     """
     ### BEGIN SOLUTION 9.5
@@ -147,7 +150,9 @@ def mass_ratio_contraction(r):
 def best_relaxation(rho):
     """Return (ω, ρ_ω): the relaxation that converges fastest where Gauss–Seidel contracts by ρ, and its own factor.
 
-    ω = 2/(1 + √(1 − ρ)),      ρ_ω = ω − 1          for chains: each contact shares bodies with two others at most
+    *Find* both.  For chains, in which each contact shares bodies with two others at most, a factor λ of the relaxed
+    sweep belongs to every ω:  (λ + ω − 1)² = λ ω² ρ  (Young).  Its larger root shrinks as ω grows from 1, until both
+    roots are equal.  Where one sweep is enough, ρ = 0, ω is 1.
 
     For the stack √(1 − ρ) = sin(π/2n).  The number of sweeps then grows as n, and no longer as n².
     *Source:* Young 1971.
@@ -305,9 +310,9 @@ def soft_contact(gap, hertz, zeta, dt):
 
 
 def friction_disc(J, limit):
-    """Return the point of the disc |J| ≤ limit that is nearest to J: J itself, or limit J/|J|.
+    """Return the point of the disc |J| ≤ limit that is nearest to J.
 
-    J and the answer are tuples of three numbers; limit is a number.
+    *Find* it.  J and the answer are tuples of three numbers; limit is a number.
 
     Two separate limits along two tangents would allow √2 times the friction along the diagonal.
     """
@@ -404,10 +409,12 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
         n, r_a, r_b = row(contacts.n, k), row(arms.r_a, k), row(arms.r_b, k)
         u = minus(point_velocity_of(v, omega, a, r_a), point_velocity_of(v, omega, b, r_b))
         J_n = dot(n, old)
-        J_n = np.maximum(0.0, J_n + (aim[k] - dot(n, u) - give[k] * k_n * J_n) / (k_n * (1.0 + give[k])))
+        J_n += (aim[k] - dot(n, u) - give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))
+        J_n = 0.0 if J_n <= 0.0 else J_n                                 # a NaN stays one
         stick = plus(old, -1.0 / arms.k_t[k], u)
         J_t = friction_disc(plus(stick, -dot(n, stick), n), mu * J_n if J_n > 0.0 else 0.0)
         put(J, k, plus(J_t, J_n, n))
-        apply_impulse(v, omega, a, r_a, minus(row(J, k), old), inv_mass, inv_inertia)
-        apply_impulse(v, omega, b, r_b, minus(old, row(J, k)), inv_mass, inv_inertia)
+        change = minus(row(J, k), old)
+        apply_impulse(v, omega, a, r_a, change, inv_mass, inv_inertia)
+        apply_impulse(v, omega, b, r_b, scaled(-1.0, change), inv_mass, inv_inertia)
     return v, omega, J

@@ -76,7 +76,8 @@ def cone_radius(mu, F_N):
 def normal_force(F, n):
     """Return F_N [N], the size of the normal force of a support on a body on which all other forces are F (d,).
 
-    F_N = max(0, −F · n)          along n; it balances a force into the support, and is 0 for a force away from it
+    *Find* it.  The normal force points along the unit normal n, away from the support.  It is as large as it must be so
+    that the body does not move into the support, and it never pulls.
 
     *Source:* first lecture deck, “Resting contact”, “Normal force”.
     """
@@ -141,12 +142,12 @@ def incline_acceleration(theta, mu_s, mu_k, g):
 def friction_impulse(v_t, m, j_n, mu):
     """Return the impulse (d,) [N s] in the cone that leaves a body of mass m the least kinetic energy along a surface.
 
-    J_t = −min(μ j_n, m |v_t|) v_t/|v_t|          of all |J_t| ≤ μ j_n;   0 where v_t = 0
+    *Find* it.  Of all impulses J_t along the surface with |J_t| ≤ μ j_n, take the one after which ½ m |v_t + J_t/m|² is
+    least.  Such an impulse stops the body, if the cone allows it.
 
-    If the body continues to slide, friction is on the rim of the cone, against the motion: −μ j_n v_t/|v_t|.
-    If it stops, friction is inside the cone.  Then return −m v_t itself, because −m |v_t| v_t/|v_t| would leave a
-    velocity of the size of round-off, and any velocity counts as motion.  Both cases together are Coulomb's law, which
-    follows from the principle of maximum dissipation alone.
+    If it does, return exactly the impulse that leaves v_t + J_t/m = 0: a velocity of the size of round-off would count
+    as motion.  Where v_t = 0 the impulse is 0.
+    This principle of maximum dissipation has both cases of Coulomb's law in it.
     j_n ≥ 0 [N s] is the normal impulse; take μ j_n from cone_radius.
     *Source:* second lecture deck, “Maximum dissipation principle”, where v̂_t = v_t/|v_t| is meant by v_t; Moreau 1973
     for the principle.
@@ -322,8 +323,9 @@ def particle_plane_gap(x, p):
 def particle_bowl_gap(x, p):
     """Return (φ, n) of a round hollow: distance [m] of x (d,) from its wall, positive inside, and unit normal.
 
-    r = x − centre, without its part along the axis:  r ← r − (r · axis) axis          (axis = 0: a bowl)
-    φ = radius − |r|,     n = −r/|r| = ∇φ of the nearest wall;          inwards; n = 0 at the exact centre
+    *Find* both.  The wall is a sphere around the centre, if axis = 0, and otherwise a cylinder around the line through
+    the centre along the unit vector `axis`.  φ is the distance from the nearest point of the wall, and n = ∇φ points
+    away from it, inwards.  At the exact centre, where no point of the wall is the nearest one, n = 0.
 
     *Source:* second lecture deck, the implicit function φ(x) of an obstacle.
     """
@@ -337,9 +339,9 @@ def particle_bowl_gap(x, p):
 def particle_contact_impulse(v, n, m, e, mu):
     """Return the impulse J (d,) [N s] of a fixed surface on a particle of mass m that touches it with v (d,) [m/s].
 
-    v_n = v · n;  where v_n ≥ 0 the particle is already leaving: J = 0.          Otherwise
-    j_n = −(1 + e) m v_n          then  n · v⁺ = −e n · v
-    J = j_n n + J_t,              J_t = friction_impulse(v_t, m, j_n, μ) = −min(μ j_n, m |v_t|) v_t/|v_t|
+    *Find* it.  J = j_n n + J_t changes the velocity to v⁺ = v + J/m.  The normal part is such that the particle leaves
+    with e times the speed with which it came:  n · v⁺ = −e n · v.  The tangential part is the friction_impulse that
+    belongs to this j_n.  A particle with n · v ≥ 0 is already leaving, and gets no impulse.
 
     *Source:* second lecture deck, “A simple strategy for particle/implicit collisions”.
     """
@@ -379,10 +381,10 @@ def contact_step(acceleration, surface, t, x, v, dt, p):
 def friction_position_correction(moved, n, depth, mu):
     """Return the correction (d,) [m] along the surface after a step that moved a particle by `moved` (d,).
 
-    Δx_t = −min(μ depth, |s|) s/|s|,     s = tangential(moved, n);          0 where s = 0
+    *Find* it.  This is friction for positions: the correction along the normal is the depth, in the place of an impulse
+    j_n.  What the step moved along the surface is in the place of v_t.  Friction takes back as much of it as it may.
     depth ≥ 0 [m]: depth of the particle inside the obstacle after the step.
 
-    This is friction for positions: the normal correction is the depth, and the tangential one is at most μ times that.
     On a slope depth = dt² g cos θ, so a particle at rest returns to its old position if tan θ ≤ μ.
     *Source:* second lecture deck, “tangential position correction to counteract artificial sliding”;
     Macklin et al. 2014, eq. 24.

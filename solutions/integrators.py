@@ -69,12 +69,12 @@ def euler_step(acceleration, t, x, v, dt, p):
 
 
 def midpoint_step(acceleration, t, x, v, dt, p):
-    """Advance one step along the slope at its middle, which half a step of Euler estimates; second order.
+    """Advance one step along the slope at its middle; second order.
 
-    x½ = xₙ + ½dt vₙ                      v½ = vₙ + ½dt a(tₙ, xₙ, vₙ)
-    xₙ₊₁ = xₙ + dt v½                     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
+    *Find* the step from two sentences.  Half a step of Euler estimates the state at the middle of the step.  The slopes
+    that are found there, that of x and that of v, carry the whole step from its beginning.
 
-    Evaluates the acceleration twice.
+    Evaluates the acceleration twice: at tₙ, and at tₙ + ½dt.
     *Source:* first lecture deck, “Midpoint method”.
     """
     ### BEGIN SOLUTION 1.2
@@ -116,12 +116,12 @@ def rk4_step(acceleration, t, x, v, dt, p):
 
 
 def average_velocity_step(acceleration, t, x, v, dt, p):
-    """Advance one step: velocity by Euler, position with the mean of the old and the new velocity; first order.
+    """Advance one step with the acceleration at its beginning, as if that stayed constant; first order.
 
-    vₙ₊₁ = vₙ + dt a(tₙ, xₙ, vₙ)
-    xₙ₊₁ = xₙ + ½dt (vₙ + vₙ₊₁)
+    *Find* both lines.  While the acceleration is constant, the velocity is a straight line over the time, from vₙ to
+    vₙ₊₁.  The position moves by the area below this line.
 
-    Exact when the acceleration is constant.
+    Evaluates the acceleration once, at tₙ.  Exact when the acceleration is constant.
     *Source:* first lecture deck, the last lines of “Mass-Spring-Damper System”.
     """
     ### BEGIN SOLUTION 1.4
@@ -149,12 +149,12 @@ def symplectic_euler_step(acceleration, t, x, v, dt, p):
 def verlet_step(acceleration, t, x, v, dt, p):
     """Advance one step of velocity Verlet; second order, and bounded energy error while ω dt < 2.
 
-    aₙ = a(tₙ, xₙ, vₙ)
-    xₙ₊₁ = xₙ + dt vₙ + ½dt² aₙ
-    vₙ₊₁ = vₙ + ½dt (aₙ + aₙ₊₁),           aₙ₊₁ = a(tₙ + dt, xₙ₊₁, vₙ + dt aₙ)
+    *Find* both lines.  The position moves as if the acceleration at the beginning, aₙ, stayed constant.  The velocity
+    changes by the mean of the accelerations at both ends.  The one at the end, aₙ₊₁, is taken at the new position, and
+    with a velocity that a step of Euler predicts.
 
-    The velocity inside aₙ₊₁ is an Euler prediction.  It matters only for accelerations that depend on velocity.  With
-    it, the method has second order for those as well.
+    The prediction matters only for accelerations that depend on velocity.  With it, the method has second order for
+    those as well.
     *Source:* Swope et al. 1982; the prediction: Groot and Warren 1997 with λ = 1.
     """
     ### BEGIN SOLUTION 1.6
@@ -379,8 +379,9 @@ def oscillator_acceleration(t, x, v, p):
 def amplification_matrix(step, omega, zeta, dt):
     """Return the (2, 2) matrix A of one step on an oscillator: (xₙ₊₁, vₙ₊₁)ᵀ = A (xₙ, vₙ)ᵀ.
 
-    Column 1 is the result of the step from (x, v) = (1, 0), and column 2 is the result from (0, 1).  States are arrays
-    of shape (1,).  The acceleration is oscillator_acceleration, and its parameters are an Oscillator.
+    *Find* the columns of A: from which two states must you take a step to see them?
+
+    States are arrays of shape (1,).  The acceleration is oscillator_acceleration, and its parameters are an Oscillator.
     The method is stable if no eigenvalue of A has an absolute value above 1.
     *Source:* Hairer and Wanner 1996, IV.2.
     """

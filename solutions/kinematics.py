@@ -56,8 +56,9 @@ def joint_positions(theta, lengths):
 def jacobian_2d(x):
     """Return J (2, n) [m/rad]: column k is the velocity of the end when only joint k turns, at 1 rad/s.
 
-    column k = (−r_y, r_x),      r = x_n − x_k          x (n + 1, 2): the joints and the end, anywhere in the plane
+    *Find* it.  All that comes after joint k turns about x_k like a rigid body.
 
+    x (n + 1, 2) are the joints and the end, anywhere in the plane.
     *Source:* Lynch and Park 2017, chapter 5.
     """
     ### BEGIN SOLUTION 11.2
@@ -114,7 +115,8 @@ def solve_2r(target, lengths, elbow):
 def solve_3r(target, lengths, elbow):
     """Return θ (3,), all from −π to π, with which three links end at (x, y) with the direction φ: target = (x, y, φ).
 
-    The last joint must be at (x, y) − l₃ (cos φ, sin φ).  solve_2r brings it there; then θ₃ = φ − θ₁ − θ₂, wrapped.
+    *Find* them with solve_2r: where must the last joint be, and by how much must it turn?
+
     φ may be any number of turns away from θ₁ + θ₂ + θ₃.  Raises what solve_2r raises.
     *Source:* Lynch and Park 2017, chapter 6.
     """
@@ -154,8 +156,9 @@ def joint_frames(theta, axes, offsets):
 def jacobian_3d(x, a):
     """Return J (6, n): column k is (velocity of the end, angular velocity of the last link) when only joint k turns.
 
-    column k = (a_k × (x_n − x_k), a_k)   for 1 rad/s       x (n + 1, 3) and a (n, 3) as joint_frames gives them
+    *Find* it.  All that comes after joint k turns like a rigid body about the axis a_k through x_k, at 1 rad/s.
 
+    x (n + 1, 3) and a (n, 3) are as joint_frames gives them; each axis is a unit vector.
     *Source:* Lynch and Park 2017, chapter 5; they write the angular velocity first, and the velocity at the origin.
     """
     ### BEGIN SOLUTION 11.7
@@ -231,9 +234,11 @@ def end_pose(theta, arm):
 # ---------------------------------------------------------------------------------------------- methods with a Jacobian
 
 def transpose_step(task, theta, target, arm):
-    """Return θ + α Jᵀ e:  one step of steepest descent on ½|e|², α = arm.gain.  Limits are not kept.
+    """Return θ after one step of steepest descent on ½|e|²: against its gradient, times α = arm.gain.
 
-    e (m,) and J (m, n) have all rows of the task, which may be 2, 3, 6 or more.
+    *Find* the gradient with respect to θ.  The error e is the target less the task, and the task changes by J Δθ.
+
+    Limits are not kept.  e (m,) and J (m, n) have all rows of the task, which may be 2, 3, 6 or more.
     Near a target within reach it converges only for α < 2/σ₁².
     *Source:* Wolovich and Elliott 1984.
     """
@@ -309,9 +314,9 @@ def contraction_factors(sigma, gain, damping):
 def ccd_step(task, theta, target, arm):
     """Return θ after one sweep of cyclic coordinate descent in the plane, from the last joint to the first.
 
-    Each joint turns so that the end points at the target (2,), as seen from that joint.
+    Each joint turns so that the end points at the target (2,), as seen from that joint.  *Find* the angle Δ_k of this
+    turn, from −π to π, with r = end − x_k and s = target − x_k.
 
-    Δ_k = atan2(r × s, r · s),      r = end − x_k,      s = target − x_k,      r × s = r_x s_y − r_y s_x
     θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by the change of θ_k.
 
     All x_k are those before the sweep, because joints nearer to the base have not turned yet.

@@ -64,7 +64,8 @@ class Obstacle(NamedTuple):
 def distance_constraint(x_i, x_j, rest):
     """Return (C, n): the distance of two points (d,) minus `rest` [m], and the gradient of C with respect to point i.
 
-    C = |x_i − x_j| − rest,      n = ∇ᵢC = (x_i − x_j)/|x_i − x_j|,      ∇ⱼC = −n
+    *Find* the gradient n = ∇ᵢC (d,).  In which direction must point i move for C to grow fastest, and by how much does
+    C grow for each metre of it?
 
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide.
     *Source:* second lecture deck, “Inextensible spring between particles i and j”.
@@ -81,10 +82,11 @@ def distance_constraint(x_i, x_j, rest):
 def constraint_correction(C, gradients, inv_mass):
     """Return the corrections (k, d) [m] of the k points of one constraint that satisfy it to first order.
 
-    Δxₖ = wₖ Λ ∇ₖC,      Λ = −C / Σ wₖ |∇ₖC|²          Λ = Δλ dt²: dt cancels, so it is not an argument
+    *Find* the number Λ.  Each point moves along its gradient, in proportion to its inverse mass:  Δxₖ = wₖ Λ ∇ₖC.  To
+    first order these moves bring the constraint to zero:  C + Σ ∇ₖC · Δxₖ = 0.
 
-    C is the value of the constraint and gradients (k, d) are its ∇ₖC.  Each point moves along its gradient, in
-    proportion to its inverse mass: heavy points move little, and Σ mₖ Δxₖ = Λ Σ ∇ₖC.
+    C is the value of the constraint and gradients (k, d) are its ∇ₖC.  Heavy points move little.  Λ is Δλ dt², and dt
+    cancels, so it is not an argument.
     Raises BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") where
     no point can move, even where C = 0.
     *Source:* second lecture deck, “Applying a constraint force”; Müller et al. 2006, section 3.3.
@@ -303,7 +305,7 @@ def fold_constraint(x, fold):
 def ball_gap(x, obstacle):
     """Return (φ, n) of a solid ball: distance [m] of x (d,) from its surface, negative inside, and the outward normal.
 
-    φ = |x − centre| − radius,      n = ∇φ = (x − centre)/|x − centre|,  a unit vector;      n = 0 at the centre
+    *Find* both.  n is the gradient ∇φ, a unit vector.  At the centre, where no direction leads out fastest, n = 0.
 
     *Source:* Müller et al. 2006, section 3.4; the hollow ball is in lesson 3.
     """
@@ -408,8 +410,10 @@ def xpbd_step(acceleration, t, x, v, dt, network):
 def effective_inverse_mass_at(q, r, n, m, I_body):
     """Return w [1/kg] of a point of a rigid body: how easily it moves along n (3,), at the offset r (3,) [m].
 
-    w = 1/m + (r × n)ᵀ I⁻¹ (r × n)          I⁻¹ = R I_body⁻¹ Rᵀ: unrotate(q, ·) converts a vector to body coordinates
+    *Find* it.  An impulse p n at that point changes the velocity of the point along n by w p.  It changes the velocity
+    of the body, and its angular velocity, and both move the point.
 
+    unrotate(q, ·) of lesson 5 converts a vector to body coordinates, where the tensor is the three moments I_body.
     r starts at the centre of mass.  w increases with the distance of the centre of mass from the line of n through the
     point.  r and n are in world coordinates.
     *Source:* Müller et al. 2020, “Detailed rigid body simulation with extended position based dynamics”, eqs. 2, 3.
@@ -437,9 +441,10 @@ def apply_positional_impulse(x, q, r, p, m, I_body):
 def turning_rate(q_old, q_new, dt):
     """Return the ω [rad/s] (3,) with which quaternion_update turns q_old into q_new in dt: v = Δx/dt for rotations.
 
-    Δq = q_new q̄_old = (Δ₀, 𝚫),      ω = 2 𝚫/(Δ₀ dt)          q̄ = (w, −x, −y, −z);   the same for q and −q
+    *Find* it as the inverse of quaternion_update, which makes  q_new ∝ q_old + ½ dt (0, ω) q_old.  The length of the
+    sum is unknown, because quaternion_update normalises it.  q and −q are the same orientation and give the same ω.
 
-    quaternion_product(a, b) multiplies quaternions (lesson 5).
+    quaternion_product(a, b) multiplies quaternions (lesson 5); the conjugate of q = (w, x, y, z) is (w, −x, −y, −z).
     *Left out:* half a turn in one step, Δ₀ = 0.
     *Source:* Müller et al. 2020, algorithm 2; the division by Δ₀ makes it the exact inverse of quaternion_update.
     """

@@ -82,9 +82,7 @@ class RollingBall(NamedTuple):
 def skew(a):
     """Return the matrix a* (3, 3) with  a* b = a × b  for every b.
 
-         ⎛  0   −a_z   a_y ⎞
-    a* = ⎜  a_z   0   −a_x ⎟
-         ⎝ −a_y  a_x    0  ⎠
+    *Find* its nine entries.
 
     *Source:* first lecture deck, “Rotational Movement”.
     """
@@ -121,9 +119,10 @@ def total_load(x, points, forces):
 
 
 def angular_velocity(R, L, I_body):
-    """Return ω [rad/s] (3,) of a body with the angular momentum L:  ω = I⁻¹ L,  I⁻¹ = R I_body⁻¹ Rᵀ.
+    """Return ω [rad/s] (3,) of a body with the angular momentum L = I ω; both are in world coordinates.
 
-    In body coordinates the inertia tensor is diagonal, (I₁, I₂, I₃) = I_body: convert L with Rᵀ, divide, convert back.
+    *Find* it without inverting a matrix.  In body coordinates the inertia tensor is diagonal, with the moments I_body
+    (3,).  R converts a vector from body to world coordinates.
     *Source:* first lecture deck, “Angular Momentum”, “Inertia Tensor”.
     """
     ### BEGIN SOLUTION 5.4
@@ -201,11 +200,9 @@ def quaternion_product(a, b):
 
 
 def rotation_matrix(q):
-    """Return the matrix R (3, 3) of a unit quaternion:  R r = q (0, r) q̄.
+    """Return the matrix R (3, 3) of a unit quaternion:  R r = q (0, r) q̄  for every vector r.
 
-        ⎛ 1 − 2(y² + z²)   2(xy − wz)       2(xz + wy)     ⎞
-    R = ⎜ 2(xy + wz)       1 − 2(x² + z²)   2(yz − wx)     ⎟
-        ⎝ 2(xz − wy)       2(yz + wx)       1 − 2(x² + y²) ⎠
+    *Find* its columns from the products of quaternions, or its entries by writing the products out.
 
     q and −q are the same orientation.
     *Source:* second lecture deck, “rotation (matrix R or quaternion q)”.
@@ -239,8 +236,12 @@ def body_angular_momentum(q, omega, I_body):
 # ---------------------------------------------------------------------------------------------- the lecture's loop
 
 def angular_acceleration(q, omega, tau, I_body):
-    """Return ω̇ = I⁻¹ (τ − ω × Iω) [rad/s²] (3,); the gyroscopic term ω × Iω makes a body tumble without any torque.
+    """Return the angular acceleration ω̇ [rad/s²] (3,) of a body under the torque τ, all in world coordinates.
 
+    *Find* it from  L̇ = τ  and  L = I ω.  The tensor I turns with the body, so İ is not zero: what is fixed in the body
+    and has the components y in the world changes at the rate ω × y.
+
+    Without a torque, ω̇ is not zero either: the body tumbles.
     rotate and unrotate, given above, convert vectors from body to world coordinates and back.  The moments I_body are
     above zero.
     *Source:* second lecture deck, “Rigid bodies”; Euler 1758.
@@ -309,7 +310,10 @@ def average_rolling_step(load, t, x, q, v, omega, dt, ball):
 
 
 def kinetic_energy(q, L, I_body):
-    """Return the energy of rotation [J]:  ½ ω·L = Σ Lₖ²/2Iₖ  over the body coordinates Lₖ of L.
+    """Return the energy of rotation [J] of a body with the orientation q and the angular momentum L [kg m²/s].
+
+    *Find* it as a function of L.  The energy is the sum of ½ m |ω × r|² over all points, which is ½ ω · L.  In body
+    coordinates ω follows from L by three divisions.
 
     *Source:* Landau and Lifshitz, Mechanics, § 32.
     """

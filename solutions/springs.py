@@ -63,7 +63,7 @@ class SpringNetwork(NamedTuple):
 def universal_gravity(x_a, x_b, m_a, m_b, G):
     """Return the force [N] (d,) on body a: Newton's attraction towards body b.
 
-    F = G m_a m_b / r²  along the line from a to b,   r = |x_b − x_a|
+    *Find* the vector.  Its length is G m_a m_b / r² with the distance r of the bodies, and it points from a to b.
 
     Near the ground, with the Earth as b, this force is m_a g.
     Raises BadInput for two bodies at the same place: check_positive("distance of two bodies [m]", r).
@@ -94,7 +94,9 @@ def air_force(v, wind, k_v):
 def spring_tension(length, rate, rest, k, k_d):
     """Return the tension [N] of a spring with a parallel damper; a negative tension pushes.
 
-    T = k (l − rest) + k_d l̇          l̇ [m/s], here `rate`: the rate of lengthening
+    *Find* it from three facts.  The spring pulls if it is longer than `rest`, by k [N/m] for each metre.  The damper
+    pulls if the spring is growing longer, by k_d [N s/m] for each metre per second of the `rate` of lengthening.  Both
+    carry their part of the tension.
 
     *Source:* first lecture deck, “Damping”, corrected.  Its (x − x_rest) k − v k_d mixes two forces: the first sign is
     that of the tension, the second one that of the force on the moving end, −(x − x_rest) k − v k_d.
@@ -107,7 +109,8 @@ def spring_tension(length, rate, rest, k, k_d):
 def soft_constraint_force(C, C_rate, gradient, k, k_d):
     """Return the force [N] (d,) that pulls a point softly onto the constraint C(x) = 0: a surface, a path or a point.
 
-    F = −(k C + k_d Ċ) ∇C
+    *Find* it.  The spring's part is minus the gradient of the energy ½ k C², with respect to the position x.  The
+    damper's part has k_d Ċ in the place of k C.
 
     C [m] and Ċ = ∇C · v [m/s] are floats, gradient ∇C (d,) [-].
     *Source:* first lecture deck, “Soft constraints”, “Fix to surface”; Witkin and Baraff 1997.
@@ -118,9 +121,10 @@ def soft_constraint_force(C, C_rate, gradient, k, k_d):
 
 
 def soft_contact_force(C, C_rate, gradient, k, k_d):
-    """Return the force [N] (d,) that keeps a point softly on the side C(x) ≥ 0: the same spring, but it never pulls.
+    """Return the force [N] (d,) that keeps a point softly on the side C(x) ≥ 0.
 
-    F = max(0, −(k C + k_d Ċ)) ∇C   where C < 0;   0 elsewhere
+    *Find* it.  On that side there is no force.  On the other side, C < 0, it is the force of soft_constraint_force, as
+    long as this pushes the point back along ∇C.  A point that leaves fast is not held: the force never pulls.
 
     *Source:* first lecture deck, “Non-penetration”.
     """

@@ -6,7 +6,6 @@ changed, `validate audit` whether a report follows from its raw rows, `validate 
 
 import json
 import os
-import sys
 from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
@@ -22,7 +21,8 @@ from rich.table import Table
 from solutions.checks import BadInput
 
 from .products import BUILDERS, PRODUCTS, PYBULLET, product_named
-from .run.processes import Ended, alone_in, ending_once, one_sentence, workers
+from .run.command import start
+from .run.processes import Ended, alone_in, workers
 from .run.store import FULL_RUN, SUBSET, lessons_of, report_of_this_version, stored_report, writable, write_text
 from .subject import copies, modules, needs
 
@@ -36,7 +36,6 @@ console = Console()
 
 
 RESULTS = "<!-- results -->"    # begins and ends the table of results in the README
-UsageError = typer.BadParameter.__base__     # of every wrong option or command; typer may bring a click of its own
 UNBROKEN = 1000              # width of a table that a program reads, not a person [characters]
 ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
 ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
@@ -80,8 +79,9 @@ def validate(
     plan = plan_of(of, names, plain, quick, engine or [], overrides(set_ or [], names))
     try:
         with workers(jobs) as pool, on_cluster(executor, of) as measuring:
-            for _ in pool.each({name: (measure.load, name, of) for name in names}):
-                pass
+            if modules.subject_folder(of) != modules.SOLUTIONS:          # those were loaded here
+                for _ in pool.each({name: (measure.load, name, of) for name in names}):
+                    pass
             with alone_in(writable(out)):
                 code = run(names, plan, pool, out, console, measuring)
         if of != asked:
@@ -262,12 +262,13 @@ def piles(
     bodies: Annotated[int, typer.Option(min=1)] = 1000,
     rounds: ROUNDS = 15,
     growth: Annotated[bool, typer.Option("--growth", help="How the cost of a step grows.")] = False,
+    most: Annotated[int, typer.Option(min=316, help="Bodies of the largest pile of --growth, up to 100,000.")] = 10_000,
     memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
-    figure: Annotated[Path | None, typer.Option(help="File for a picture of time against overlap.")] = None,
+    figure: Annotated[Path | None, typer.Option(help="File for a picture of the result.")] = None,
 ):
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""
     from .speed.piles import measure
-    measure(kinds or [], bodies, rounds, growth, memory, figure)
+    measure(kinds or [], bodies, rounds, growth, memory, figure, most)
 
 
 @app.command("targets")
@@ -398,14 +399,7 @@ def value_of(name, text, known):
 
 def main(arguments=None):
     """Run the command line."""
-    arguments = sys.argv[1:] if arguments is None else arguments
-    with one_sentence("validate"), ending_once():
-        try:
-            code = app(arguments, prog_name="validate", standalone_mode=False)
-        except UsageError as e:
-            print(f"validate: {e.format_message().rstrip('.')}{suggestion(arguments)}.", file=sys.stderr)
-            code = 2
-        sys.exit(code)
+    start("validate", app, arguments, suggestion)
 
 
 def suggestion(arguments):

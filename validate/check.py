@@ -35,11 +35,21 @@ class Verdict(StrEnum):
     """The verdict on a method or an engine in one case."""
     AGREES = "agrees"                        # within the error that theory allows
     FOLLOWS_OWN_LAW = "as predicted"         # departs from the truth exactly as its own law says
+    KEEPS_LAWS = "keeps the laws"            # no theory gives its error; what it reports keeps the laws of contact
+    BREAKS_AS_KNOWN = "breaks a law as known"  # the same, but for a rule of its own, which is named beforehand
     DEPARTS = "departs"                      # no theory predicted this
     UNDECIDED = "undecided"                  # too coarse to judge, or not recorded
     NOT_ATTEMPTED = "not attempted"          # the exercise has no answer yet
     UNFINISHED = "does not arrive"           # it does not come to its end, as the scene says
     REFERENCE = "reference"                  # the truth is a run of this engine: nothing is judged
+
+
+class Allowed(NamedTuple):
+    """What an engine's own rules say beyond the laws of contact: see `validate/reference/contact_laws.py`."""
+    iterations: int          # per step
+    slop: float = 0.0        # overlap up to which its solver lets bodies approach: a named tolerance [m]
+    recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
+    rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
 
 
 class Whose(StrEnum):
@@ -56,9 +66,12 @@ class Role(StrEnum):
     ENGINE = "engine"
 
 
+JUDGED_RIGHT = Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN
+
+
 def is_right(curve):
     """Return True, False, or None if undecided, for the stored record of a curve."""
-    return {Verdict.AGREES: True, Verdict.FOLLOWS_OWN_LAW: True, Verdict.DEPARTS: False}.get(Verdict(curve["verdict"]))
+    return {**dict.fromkeys(JUDGED_RIGHT, True), Verdict.DEPARTS: False}.get(Verdict(curve["verdict"]))
 
 
 def jsonable(value):

@@ -47,11 +47,10 @@ PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
 MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core",
                  "pip install mujoco-core, where it has a wheel", optional=True)
 BOX2D = Product("pyb2d3", 2, "box2d", "#7A5C00", "2", "pyb2d3", "pip install -e '.[opponents]' adds it", optional=True)
-# in `validate piles` only
 RAPIER = Product("rapier3d", 3, "rapier", "#B5651D", "3", "rapier3d", "pip install -e '.[opponents]' adds it",
                  optional=True)
 PRODUCTS = PYMUNK, PYBULLET, MUJOCO         # of the scenes and of the report
-BUILDERS = *PRODUCTS, BOX2D                 # of worlds from a Model
+BUILDERS = *PRODUCTS, BOX2D, RAPIER         # of worlds from a Model
 
 
 def product_named(name, known=PRODUCTS):

@@ -12,7 +12,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .check import Whose
+from .check import Allowed, Whose
 from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
 
 EXACT = "exact"              # an order: no error but round-off
@@ -53,6 +53,7 @@ class EngineRun(NamedTuple):
     step: Callable           # () → None: advance by dt
     read: Callable           # () → what a scene observes
     close: Callable          # () → None: free its resources
+    watched: Callable | None = None      # () → [Step, …] of validate/reference/contact_laws.py that it kept
 
 
 class Departure(NamedTuple):
@@ -79,6 +80,7 @@ class Runner:
     measured: str = ""                   # what its limit was measured on; empty where theory gives it
     unfinished: Callable | None = None   # (p) → why it does not come to its end in this case, or ""; it is not run then
     supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
+    laws: Allowed | None = None          # where no theory gives its error: the laws of contact judge its watched steps
     is_truth: Callable | None = None     # (p) → bool: whether a run of its engine is the truth of this case
     in_quick: bool = True                # False: only --full runs it
     slow_cases: tuple = ()               # names of cases in which only --full runs it

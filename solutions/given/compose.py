@@ -35,7 +35,7 @@ from ..support.model import (
     touching_pairs,
 )
 from ..support.scenes import PileState
-from ..support.shapes import Ball, Box, HalfSpace
+from ..support.shapes import Ball, Box, HalfSpace, Polyhedron
 from .dividing import advance_parts, divided_step, whole_step
 from .parts import (
     accelerate,
@@ -131,6 +131,8 @@ def refuses(model):
     """Return why our loop cannot run a model, for people; an empty text where it can."""
     if any(length == 0.0 for length in lengths_of(model)):
         return "a Distance between two points at one place"
+    if any(isinstance(body.shape, Polyhedron) for body in model.bodies):
+        return "a Polyhedron: it has no contacts of these"
     return ""
 
 

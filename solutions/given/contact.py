@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..checks import check_end
+from ..checks import check_end, float_copy
 from ..contact import *  # noqa: F403    one import has a lesson and its given functions
 from ..contact import has_left_margin, kept_impulses, soft_contact, velocity_sweep, velocity_sweep_2d
 from ..support.arms import (
@@ -10,14 +10,19 @@ from ..support.arms import (
     apply_impulses_2d,
     arms_2d,
     arms_3d,
+    fallen_on,
+    largest_change,
+    loads,
+    move,
+    move_2d,
     normal_velocities,
     normal_velocities_2d,
     turn_freely,
-    turn_quaternions,
     world_inertia,
 )
 from ..support.broad_phase import Pairs, near_pairs
-from ..support.contact_points import put_back, reordered, spread_order
+from ..support.contact_points import put_back, reordered, sorted_rows, spread_order, with_gaps
+from ..support.kept_contacts import begin_ways, have_moved, moved_pairs, unknown_ways, with_kept
 from ..support.records import check_record
 from ..support.scenes import PileState, check_overlap, checked_pile, smaller_half
 
@@ -44,75 +49,109 @@ def contact_targets(gap, load, fastest, dt, pile):
     return aim, give
 
 
+def _next_contacts(find_contacts, x, turn, pairs, moved, old, J_old, pile):
+    """Given.  (contacts, J) of a step, J (m, d) [N s]: of pairs of which a body has moved they are found anew."""
+    new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
+    return with_kept(old, J_old, new, kept_impulses(new, old, J_old, pile.margin), moved)
+
+
+def _substep_2d(x, q, v, omega, J, gap, contacts, arms, fastest, ways, h, pile):
+    """Given.  (x, q, v, omega, J, gap) after h in the plane, and the largest velocity that the sweep at rest changed.
+
+    Gravity and the last impulses; a sweep of soft contacts; motion; a sweep at rest, which takes back the velocity that
+    only served to push bodies apart.
+    """
+    aim, give = contact_targets(gap, loads(J, contacts, arms), fastest, h, pile)
+    v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), float_copy(omega)
+    apply_impulses_2d(v, omega, J, contacts, arms, pile.inv_mass, pile.inv_inertia)
+    v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
+    (x, q), before = move_2d(x, q, v, omega, ways, h), v
+    gap = gap + h * normal_velocities_2d(v, omega, contacts, arms)
+    aim, give = np.minimum(aim, 0.0), np.zeros(aim.size)
+    v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
+    return x, q, v, omega, J, gap, largest_change(v, before)
+
+
 def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     """Given.  PileState after so many steps in the plane, with disc_bounds and round_contacts, or those of boxes.
 
-    Contacts are found once per step, and visited in spread_order.  A substep: gravity and the last impulses; a sweep of
-    soft contacts; motion; a sweep at rest, which takes back the velocity that only served to push bodies apart.  Bodies
-    that begin inside each other part with at most separation_speeds.
+    Contacts are found at most once per step, and visited in spread_order.  Those of bodies that have hardly moved are
+    kept (support/kept_contacts.py) during a call; the next call finds all of them anew.
+    Bodies that begin inside each other part with at most separation_speeds.
     Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
     """
     check_record(pile, state)
-    state, dt, steps = checked_pile(state, dt, steps, pile)
+    (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
-    (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
-    pairs = Pairs(contacts.first, contacts.b)
+    ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
+    order, gap, found = np.arange(contacts.a.size), contacts.gap, contacts.gap
     for _ in range(steps):
-        low, high, turn = bounds(x, q, pile.half)
-        if has_left_margin(low, high, wide_low, wide_high):
-            wide_low, wide_high = low - pile.margin, high + pile.margin
-            pairs = near_pairs(wide_low, wide_high, pile.planes)
-        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
-        allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-        J, order = kept_impulses(contacts, old, J, pile.margin), spread_order(contacts.a.size)
-        J, spread = J[order], reordered(contacts, order)
-        arms, gap = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread), spread.gap
-        fastest = separation_speeds(spread, pile)
+        moved = have_moved(ways)
+        if np.any(moved):
+            low, high, turn = bounds(x, q, pile.half)
+            if has_left_margin(low, high, wide_low, wide_high):
+                wide_low, wide_high = low - pile.margin, high + pile.margin
+                pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
+            old, J = with_gaps(contacts, gap, order), put_back(J, order)
+            contacts, J = _next_contacts(find_contacts, x, turn, pairs, moved, old, J, pile)
+            allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
+            begin_ways(ways, moved)
+            order = spread_order(contacts.a.size)
+            spread, J = reordered(contacts, order), sorted_rows(J, order)
+            gap, fastest = spread.gap, separation_speeds(spread, pile)
+            arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
+        found = gap
         for _ in range(pile.substeps):
-            aim, give = contact_targets(gap, arms.k_n * np.sum(J * spread.n, axis=1), fastest, h, pile)
-            v, omega = v + h * falls * pile.gravity, omega.copy()
-            apply_impulses_2d(v, omega, J, spread, arms, pile.inv_mass, pile.inv_inertia)
-            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, spread, arms, pile)
-            x, q, before = x + h * v, q + h * omega, v
-            gap = gap + h * normal_velocities_2d(v, omega, spread, arms)
-            aim, give = np.minimum(aim, 0.0), 0.0 * give
-            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, spread, arms, pile)
-        J = put_back(J, order)
-        residual = np.max(np.abs(v - before))
+            x, q, v, omega, J, gap, residual = _substep_2d(x, q, v, omega, J, gap, spread, arms, fastest, ways, h, pile)
     check_end(x, v, dt)
-    return PileState(x, q, v, omega, contacts, J)
+    return PileState(x, q, v, omega, with_gaps(contacts, found, order), put_back(J, order))
+
+
+def _substep(x, q, v, omega, J, gap, contacts, arms, fastest, ways, turn, inv_inertia, h, pile):
+    """Given.  The same as _substep_2d in space, with the axes `turn` of the bodies and inv_inertia in the world."""
+    aim, give = contact_targets(gap, loads(J, contacts, arms), fastest, h, pile)
+    v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), turn_freely(turn, omega, pile.inv_inertia, h)
+    apply_impulses(v, omega, J, contacts, arms, pile.inv_mass, inv_inertia)
+    v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
+    (x, q), before = move(x, q, v, omega, ways, h), v
+    gap = gap + h * normal_velocities(v, omega, contacts, arms)
+    aim, give = np.minimum(aim, 0.0), np.zeros(aim.size)
+    v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
+    return x, q, v, omega, J, gap, largest_change(v, before)
 
 
 def advance_pile(bounds, find_contacts, state, dt, steps, pile):
-    """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts."""
+    """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts.
+
+    Axes and inertia in the world are kept with the contacts.
+    """
     check_record(pile, state)
-    state, dt, steps = checked_pile(state, dt, steps, pile)
+    (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
-    (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
-    pairs = Pairs(contacts.first, contacts.b)
+    ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
+    order, gap, found = np.arange(contacts.a.size), contacts.gap, contacts.gap
     for _ in range(steps):
-        low, high, turn = bounds(x, q, pile.half)
-        if has_left_margin(low, high, wide_low, wide_high):
-            wide_low, wide_high = low - pile.margin, high + pile.margin
-            pairs = near_pairs(wide_low, wide_high, pile.planes)
-        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
-        allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-        inv_inertia = world_inertia(turn, pile.inv_inertia)
-        arms = arms_3d(x, pile.inv_mass, inv_inertia, contacts)
-        J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
-        fastest = separation_speeds(contacts, pile)
+        moved = have_moved(ways)
+        if np.any(moved):
+            low, high, turn = bounds(x, q, pile.half)
+            if has_left_margin(low, high, wide_low, wide_high):
+                wide_low, wide_high = low - pile.margin, high + pile.margin
+                pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
+            old, J = with_gaps(contacts, gap, order), put_back(J, order)
+            contacts, J = _next_contacts(find_contacts, x, turn, pairs, moved, old, J, pile)
+            allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
+            begin_ways(ways, moved)
+            order = spread_order(contacts.a.size)
+            spread, J = reordered(contacts, order), sorted_rows(J, order)
+            gap, fastest = spread.gap, separation_speeds(spread, pile)
+            inv_inertia = world_inertia(turn, pile.inv_inertia)
+            arms = arms_3d(x, pile.inv_mass, inv_inertia, spread)
+        found = gap
         for _ in range(pile.substeps):
-            aim, give = contact_targets(gap, arms.k_n * np.sum(J * contacts.n, axis=1), fastest, h, pile)
-            v, omega = v + h * falls * pile.gravity, turn_freely(turn, omega, pile.inv_inertia, h)
-            apply_impulses(v, omega, J, contacts, arms, pile.inv_mass, inv_inertia)
-            v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
-            x, q, before = x + h * v, turn_quaternions(q, omega, h), v
-            gap = gap + h * normal_velocities(v, omega, contacts, arms)
-            aim, give = np.minimum(aim, 0.0), 0.0 * give
-            v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
-        residual = np.max(np.abs(v - before))
+            x, q, v, omega, J, gap, residual = _substep(x, q, v, omega, J, gap, spread, arms, fastest, ways, turn,
+                                                       inv_inertia, h, pile)
     check_end(x, v, dt)
-    return PileState(x, q, v, omega, contacts, J)
+    return PileState(x, q, v, omega, with_gaps(contacts, found, order), put_back(J, order))
 
 
 def pile_trajectory(advance, bounds, find_contacts, state, dt, steps, pile):

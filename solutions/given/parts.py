@@ -59,21 +59,26 @@ def model_load(t, x, q, v, omega, p):
     return F, tau
 
 
-def accelerate(load, bounds, narrow, t, state, dt, p):
-    """Return the state after the loads have acted for dt."""
+def accelerated(load, t, state, dt, p):
+    """Return the state after the loads at the time t have acted for dt."""
     x, q, v, omega, contacts, J = state
     v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
     return PileState(x, q, v, omega, contacts, J)
 
 
+def accelerate(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads have acted for dt."""
+    return accelerated(load, t, state, dt, p)
+
+
 def accelerate_half(load, bounds, narrow, t, state, dt, p):
     """Return the state after the loads have acted for ½ dt."""
-    return accelerate(load, bounds, narrow, t, state, 0.5 * dt, p)
+    return accelerated(load, t, state, 0.5 * dt, p)
 
 
 def accelerate_rest(load, bounds, narrow, t, state, dt, p):
     """Return the state after the loads at the end of the step have acted for ½ dt."""
-    return accelerate(load, bounds, narrow, t + dt, state, 0.5 * dt, p)
+    return accelerated(load, t + dt, state, 0.5 * dt, p)
 
 
 # ---------------------------------------------------------------------------------------------- detection
@@ -191,8 +196,15 @@ def begun(state, dt, p):
 
 
 def is_settled(J, before, p):
-    """Return whether a sweep has changed no impulse by more than p.settled times the largest one."""
-    return np.max(np.abs(J - before)) <= p.settled * np.max(np.abs(J))
+    """Return whether a sweep has changed no impulse by more than p.settled times the largest one.
+
+    This runs after each sweep and makes no array.
+    """
+    change, largest = 0.0, 0.0
+    for k in range(J.shape[0]):
+        for c in range(J.shape[1]):
+            change, largest = max(change, abs(J[k, c] - before[k, c])), max(largest, abs(J[k, c]))
+    return change <= p.settled * largest
 
 
 def swept(begin, sweep, state, dt, p):

@@ -53,21 +53,26 @@ def model_load_in_space(t, x, q, v, omega, p):
     return F, tau
 
 
-def accelerate_in_space(load, bounds, narrow, t, state, dt, p):
-    """Return the state after the loads have acted for dt."""
+def accelerated_in_space(load, t, state, dt, p):
+    """Return the state after the loads at the time t have acted for dt."""
     x, q, v, omega, contacts, J = state
     v, omega = kick(load, t, x, q, v, omega, dt, p)
     return PileState(x, q, v, omega, contacts, J)
 
 
+def accelerate_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state after the loads have acted for dt."""
+    return accelerated_in_space(load, t, state, dt, p)
+
+
 def accelerate_half_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the state after the loads have acted for ½ dt."""
-    return accelerate_in_space(load, bounds, narrow, t, state, 0.5 * dt, p)
+    return accelerated_in_space(load, t, state, 0.5 * dt, p)
 
 
 def accelerate_rest_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the state after the loads at the end of the step have acted for ½ dt."""
-    return accelerate_in_space(load, bounds, narrow, t + dt, state, 0.5 * dt, p)
+    return accelerated_in_space(load, t + dt, state, 0.5 * dt, p)
 
 
 # ---------------------------------------------------------------------------------------------- contact

@@ -105,6 +105,35 @@ def normal_velocities(v, omega, c, arms):
     return u_n
 
 
+def loads(J, c, arms):
+    """k_n J_n (m,) [m/s] of all contacts: by how much their impulses change the velocity with which they part."""
+    load = np.empty(c.a.size)
+    for k in range(c.a.size):
+        J_n = 0.0
+        for e in range(J.shape[1]):
+            J_n += J[k, e] * c.n[k, e]
+        load[k] = arms.k_n[k] * J_n
+    return load
+
+
+def fallen_on(v, inv_mass, gravity, dt):
+    """v + dt g of all bodies that can move."""
+    v = float_copy(v)
+    for i in range(v.shape[0]):
+        for c in range(v.shape[1]):
+            v[i, c] += dt * gravity[c] if inv_mass[i] > 0.0 else 0.0
+    return v
+
+
+def largest_change(v, before):
+    """The largest difference of two arrays (n, d)."""
+    largest = 0.0
+    for i in range(v.shape[0]):
+        for c in range(v.shape[1]):
+            largest = max(largest, abs(v[i, c] - before[i, c]))
+    return largest
+
+
 def world_inertia(turn, inv_body):
     """I⁻¹ = R I_body⁻¹ Rᵀ (n + p, 3, 3) of all bodies, turn (n, 3, 3),
     from inverse principal moments inv_body (n + p, 3).
@@ -112,16 +141,39 @@ def world_inertia(turn, inv_body):
     I = np.zeros((inv_body.shape[0], 3, 3))
     for i in range(turn.shape[0]):
         for r in range(3):
+            along = turn[i, r, 0] * inv_body[i, 0], turn[i, r, 1] * inv_body[i, 1], turn[i, r, 2] * inv_body[i, 2]
             for c in range(3):
-                for e in range(3):
-                    I[i, r, c] += turn[i, r, e] * inv_body[i, e] * turn[i, c, e]
+                I[i, r, c] = along[0] * turn[i, c, 0] + along[1] * turn[i, c, 1] + along[2] * turn[i, c, 2]
     return I
 
 
+def move_2d(x, q, v, omega, ways, dt):
+    """(x, q) after dt in the plane.  The ways that bodies have made are added up in place."""
+    x, q = float_copy(x), float_copy(q)
+    for i in range(x.shape[0]):
+        x[i, 0] += dt * v[i, 0]
+        x[i, 1] += dt * v[i, 1]
+        q[i] += dt * omega[i]
+        ways.length[i] += dt * (np.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2) + ways.radius[i] * abs(omega[i]))
+    return x, q
+
+
+def move(x, q, v, omega, ways, dt):
+    """The same in space, quaternions q (n, 4)."""
+    x = float_copy(x)
+    for i in range(x.shape[0]):
+        put(x, i, plus(row(x, i), dt, row(v, i)))
+        speed, spin = np.sqrt(dot(row(v, i), row(v, i))), np.sqrt(dot(row(omega, i), row(omega, i)))
+        ways.length[i] += dt * (speed + ways.radius[i] * spin)
+    return x, turn_quaternions(q, omega, dt)
+
+
 def turn_freely(turn, omega, inv_body, dt):
-    """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit."""
+    """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit.  What is round has none."""
     omega = float_copy(omega)
     for i in range(turn.shape[0]):
+        if inv_body[i, 0] == inv_body[i, 1] == inv_body[i, 2]:
+            continue
         w = row(omega, i)
         a, b, c = dot(axis(turn, i, 0), w), dot(axis(turn, i, 1), w), dot(axis(turn, i, 2), w)
         I_a, I_b, I_c = 1.0 / inv_body[i, 0], 1.0 / inv_body[i, 1], 1.0 / inv_body[i, 2]

@@ -61,15 +61,38 @@ def spread_order(m):
 
 def reordered(c, order):
     """The contacts in another order, without `first`.  A whole number without a sign is an index that needs no test."""
-    a, b = c.a[order].astype(np.uint32), c.b[order].astype(np.uint32)
-    return ContactSet(c.first[:0], a, b, c.n[order], c.p[order], c.gap[order])
+    m, d = c.n.shape
+    new = ContactSet(c.first[:0], np.empty(m, np.uint32), np.empty(m, np.uint32), np.empty((m, d)), np.empty((m, d)),
+                     np.empty(m))
+    for i in range(m):
+        k = order[i]
+        new.a[i], new.b[i], new.gap[i] = c.a[k], c.b[k], c.gap[k]
+        for e in range(d):
+            new.n[i, e], new.p[i, e] = c.n[k, e], c.p[k, e]
+    return new
+
+
+def sorted_rows(J, order):
+    """Rows of J (m, d) in another order."""
+    rows = np.empty(J.shape)
+    for i in range(J.shape[0]):
+        for e in range(J.shape[1]):
+            rows[i, e] = J[order[i], e]
+    return rows
 
 
 def put_back(J, order):
     """Rows that are sorted by `order`, as they were before."""
     back = np.empty(J.shape)
-    back[order] = J
+    for i in range(J.shape[0]):
+        for e in range(J.shape[1]):
+            back[order[i], e] = J[i, e]
     return back
+
+
+def with_gaps(c, gap, order):
+    """The contacts with other gaps, which are sorted by `order`."""
+    return ContactSet(c.first, c.a, c.b, c.n, c.p, put_back(gap.reshape(-1, 1), order).ravel())
 
 
 # ------------------------------------------------------------------------------------------ what is round, in 2D and 3D

@@ -1,7 +1,7 @@
 """Given.  A scene as data: bodies, joints, springs, gravity and loads, in the plane or in space.
 
 A Model says what is there and nothing of how it is solved: it has no step, no sweeps, no margin and no engine.  The
-worlds of `validate/worlds/` are built from it: our own loop, pymunk, pybullet, MuJoCo and Box2D.
+worlds of `validate/worlds/` are built from it: our own loop, pymunk, pybullet, MuJoCo, Box2D and Rapier.
 
 d = 2: vectors are (x, y), an orientation is an angle [rad], and an angular velocity is a number.
 d = 3: vectors are (x, y, z), an orientation is a unit quaternion (w, x, y, z), an angular velocity is a vector (world).
@@ -26,7 +26,7 @@ from .model_checks import (
     vector,
 )
 from .quaternions import rotate
-from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, moments_of_shape, outline_of
+from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron, moments_of_shape, outline_of
 
 WORLD = -1                   # in a joint or a spring: the world, which does not move
 
@@ -35,7 +35,7 @@ class Body(NamedTuple):
     """A rigid body.  A field that is None gets its value from make_model."""
     x: tuple                 # (d,) centre of mass [m]
     m: float = np.inf        # [kg]; ∞: no impulse moves it, and it keeps the velocity that it has
-    shape: object = None     # Ball, Box, Capsule, Polygon, HalfSpace; None: it touches nothing
+    shape: object = None     # Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace; None: it touches nothing
     mu: float = 0.0          # friction [-]
     e: float = 0.0           # restitution [-]
     q: object = None         # orientation; None: it is not turned
@@ -113,7 +113,7 @@ class State(NamedTuple):
     omega: np.ndarray        # (n,) or (n, 3) [rad/s]
 
 
-SHAPES = (Ball, Box, Capsule, Polygon, HalfSpace)
+SHAPES = (Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace)
 JOINTS = (Hinge, BallJoint, Weld, Distance)
 
 

@@ -13,7 +13,17 @@ from ..checks import (
     positive_number,
 )
 from .records import check_principal_moments
-from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, polygon_centre
+from .shapes import (
+    Ball,
+    Box,
+    Capsule,
+    HalfSpace,
+    Polygon,
+    Polyhedron,
+    hull_triangles,
+    polygon_centre,
+    solid_integrals,
+)
 
 CENTRED = 1e-9               # allowed distance of a polygon's centre from the origin, over its size [-]
 
@@ -74,9 +84,31 @@ def check_shape_of(thing, shape, d, fixed):
         normal = vector(f"the normal of {thing}", shape.normal, d)
         check_unit(f"the length of the normal of {thing} [-]", np.sqrt(np.dot(normal, normal)))
         return HalfSpace(normal, finite_number(f"the offset of {thing} [m]", shape.offset))
+    if isinstance(shape, Polyhedron):
+        return check_polyhedron(thing, shape, d)
     if d == 3:
         raise BadInput(thing, "a Polygon in space", "polygons are shapes of the plane")
     return check_polygon(thing, shape)
+
+
+def check_polyhedron(thing, shape, d):
+    """Return a Polyhedron with floats.  Raises BadInput unless all its corners are corners of its hull, it is centred,
+    and its axes of inertia are those of the body.
+    """
+    if d == 2:
+        raise BadInput(thing, "a Polyhedron in the plane", "polyhedra are shapes of space")
+    corners = finite_array(f"the corners of {thing} [m]", shape.corners)
+    if corners.ndim != 2 or corners.shape[1] != 3 or len(corners) < 4:
+        raise WrongShape(f"the corners of {thing} [m]", corners.shape, "four rows of three numbers, or more")
+    size, (volume, centre, second) = np.max(np.abs(corners)), solid_integrals(corners)
+    used = len(np.unique(hull_triangles(corners)))
+    if not volume > CENTRED * size**3 or used < len(corners):
+        raise BadInput(f"the number of corners of the hull of {thing} [-]", used,
+                       "give the corners of a convex polyhedron only, as polyhedron_of does, which is not flat")
+    if np.max(np.abs(centre)) > CENTRED * size or np.max(np.abs(np.triu(second, 1))) > CENTRED * size * size:
+        raise BadInput(f"the centre of mass of the corners of {thing} [m]", centre.tolist(),
+                       "give corners from the centre along the principal axes, as polyhedron_of does")
+    return Polyhedron(tuple(map(tuple, corners.tolist())))
 
 
 def check_polygon(thing, shape):

@@ -42,8 +42,7 @@ fault("velocity_sweep_2d", "pile.mu * J_n if", "pile.mu * 0.9 * J_n if", "fricti
 fault("velocity_sweep_2d", "- v[b, 1] - omega[b] * b_x", "- v[b, 1] + omega[b] * b_x",
       "the second body turns the other way")
 fault("velocity_sweep_2d", "- give[k] * k_n * J_n)", ")", "the contact does not give under its load")
-fault("velocity_sweep", "minus(old, row(J, k)), inv_mass, inv_inertia)",
-      "minus(row(J, k), old), inv_mass, inv_inertia)", "action without reaction")
+fault("velocity_sweep", "b, r_b, scaled(-1.0, change),", "b, r_b, change,", "action without reaction")
 fault("contact_rows", "contacts.p[k, 0] - x[body, 0]", "contacts.p[k, 0] - x[contacts.a[k], 0]",
       "both arms begin at the first body")
 fault("delassus_matrix", "(G * w)", "(G * (w > 0.0) * np.max(w))", "all bodies are as light as the lightest")

@@ -1,5 +1,6 @@
 """The students' zip, made from a repository that holds what this work tree holds; results that are made up."""
 
+import contextlib
 import shutil
 import subprocess
 import sys
@@ -26,6 +27,20 @@ def repository(tmp_path_factory):
     git("add", "--all", cwd=folder)
     git("commit", "--quiet", "--message", "all", cwd=folder)
     return folder
+
+
+@pytest.fixture(scope="module")
+def reader():
+    """Start the process that reads archives; a new one would take half a second for each test."""
+    from validate.grading import children  # here, since this file must load where Python cannot start processes
+    with children.reader() as child:
+        yield child
+
+
+@pytest.fixture
+def one_reader(reader, monkeypatch):
+    """Let everything that is read be read by that process."""
+    monkeypatch.setattr("validate.grading.children.reader", lambda: contextlib.nullcontext(reader))
 
 
 @pytest.fixture

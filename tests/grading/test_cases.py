@@ -18,7 +18,8 @@ LESSONS = sorted({needs.table()[number]["lesson"] for number in cases.pictures()
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_a_wrong_answer_is_drawn_and_a_right_one_is_not(name):
+def test_a_wrong_answer_is_drawn_and_a_right_one_is_not(name, monkeypatch):
+    monkeypatch.setattr(cases, "DOTS_PER_INCH", 20)                  # nobody looks at them
     module, functions = modules.bind(name), {n: one["function"] for n, one in needs.table().items()}
     numbers = [n for n in cases.pictures() if needs.table()[n]["lesson"] == name]
     first = {m.exercise: m for m in reversed(mutants_of(name)) if not m.right}

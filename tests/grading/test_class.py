@@ -18,6 +18,8 @@ import pytest
 from validate.grading import example, points, remote, sandbox, shipping, wire
 from validate.subject import modules
 
+from .test_cli import grade, run
+
 PATIENCE = 600.0             # [s]: only a run that hangs takes so long, on the busiest machine, too
 
 
@@ -145,14 +147,14 @@ def test_a_class_below_the_environment_is_not_read_by_its_students(top):
     (["{class}", "--roster", "{list}"], "student_id"),
     (["{class}", "--out", sys.prefix], "every student's program can read"),
 ])
-def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, arguments, names):
+def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, capsys, arguments, names):
     (tmp_path / "empty").mkdir()
     (tmp_path / "list.csv").write_text("name\nAda\n")
     places = {"empty": tmp_path / "empty", "list": tmp_path / "list.csv", "class": top / "class"}
     filled = [a.format(**places) for a in arguments]
     out = [] if "--out" in filled else ["--out", str(tmp_path / "out")]
-    run = subprocess.run([*GRADE, *out, *filled], cwd=modules.ROOT, capture_output=True, text=True)
-    assert run.returncode == 2 and names in run.stderr and len(run.stderr.strip().splitlines()) == 1
+    code, _, error = run(capsys, grade, *out, *filled)
+    assert code == 2 and names in error and len(error.strip().splitlines()) == 1
     assert not (tmp_path / "out" / "grades.csv").exists()
 
 

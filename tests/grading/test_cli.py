@@ -10,6 +10,8 @@ from validate.grading import __main__ as grade
 from validate.grading import autograder, local, release, sandbox
 from validate.run.processes import alone_in
 
+pytestmark = pytest.mark.xdist_group("what is handed in")
+
 
 def run(capsys, program, *arguments):
     """Exit code and what was written to standard output and error."""
@@ -20,7 +22,7 @@ def run(capsys, program, *arguments):
 
 
 @pytest.fixture
-def handed_in(tmp_path, monkeypatch):
+def handed_in(tmp_path, monkeypatch, one_reader):
     """A class of one who handed nothing in, and one whose zip is broken; graded in this process, without a sandbox."""
     def results(jobs, todo, settings):
         return ((s.student, *local.marked(s, settings)) for s in todo)

@@ -31,10 +31,13 @@ def until(true):
 
 @pytest.fixture
 def run(tmp_path):
-    """`grade` at work on three files that never end, with its sandboxes running."""
-    for student in ("ada", "bob", "cem"):
-        (tmp_path / "class" / student).mkdir(parents=True)
-        (tmp_path / "class" / student / "integrators.py").write_text("while True:\n    pass\n")
+    """`grade` at work, with its sandboxes running: forty files sleep until they are given up, after some seconds each.
+
+    Loops without end would take the time of the processor from all other tests.
+    """
+    for student in range(40):
+        (tmp_path / "class" / f"student {student}").mkdir(parents=True)
+        (tmp_path / "class" / f"student {student}" / "integrators.py").write_text("import time\ntime.sleep(1e6)\n")
     (tmp_path / "temporary").mkdir()
     folders = [str(tmp_path / "class"), "--out", str(tmp_path / "out")]
     command = [sys.executable, "-m", "validate.grading", *folders, "--lesson", "integrators", "--jobs", "2"]
@@ -65,7 +68,9 @@ def called(word, process):
     return found
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT], ids=lambda number: number.name)
+@pytest.mark.parametrize("number", [signal.SIGKILL, *(pytest.param(number, marks=pytest.mark.long)
+                                                      for number in (signal.SIGTERM, signal.SIGINT))],
+                         ids=lambda number: number.name)
 def test_a_run_that_is_ended_takes_its_children_and_its_files_along(number, run, tmp_path):
     begun = family(run)
     run.send_signal(number)

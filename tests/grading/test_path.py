@@ -9,6 +9,8 @@ import pytest
 from validate.grading import sandbox
 from validate.subject.modules import ROOT
 
+from .test_cli import grade, run
+
 CANARY = """
 import os
 with open({canary!r}, "a") as file:
@@ -56,13 +58,13 @@ def test_the_canary_sings_where_the_working_directory_is_on_the_path(hostile):
 
 
 @pytest.mark.parametrize("below", ["", "ada"])
-def test_a_class_folder_on_the_path_is_refused(below, tmp_path):
+def test_a_class_folder_on_the_path_is_refused(below, tmp_path, monkeypatch, capsys):
     sandbox.for_tests(pytest.skip, pytest.fail)
     (tmp_path / "ada").mkdir()
-    done = started(["-m", "validate.grading", str(tmp_path), "--out", str(tmp_path.parent / "out")], ROOT,
-                   PYTHONPATH=str(tmp_path / below))
-    assert done.returncode == 2 and "where Python looks for modules" in done.stderr
-    assert len(done.stderr.splitlines()) == 1 and not (tmp_path.parent / "out").exists()
+    monkeypatch.syspath_prepend(tmp_path / below)
+    code, _, error = run(capsys, grade, tmp_path, "--out", tmp_path.parent / "out")
+    assert code == 2 and "where Python looks for modules" in error
+    assert len(error.splitlines()) == 1 and not (tmp_path.parent / "out").exists()
 
 
 @pytest.mark.long

@@ -8,29 +8,55 @@ import types
 import pytest
 
 from validate.grading import plugin, points
+from validate.notebook.pytest_process import quiet
 from validate.subject import modules
 
 LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them, too$", re.MULTILINE)
 
 
-def printed(*arguments):
-    """What pytest prints with these arguments, in a process of its own."""
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *arguments]
+FILES = "tests/grading/test_scale.py", "tests/lessons/test_integrators.py"
+
+
+def collected(*options, files=FILES):
+    """What pytest prints when it collects these files."""
+    said = quiet(*(str(modules.ROOT / file) for file in files), f"--rootdir={modules.ROOT}", "--collect-only", *options)
+    assert re.search(r"^\d+(/\d+)? tests collected", said, re.M), said
+    return said
+
+
+def test_the_summary_counts_the_long_tests_that_were_left_out():
+    assert len(LEFT_OUT.findall(collected())) == 1
+
+
+def test_workers_of_pytest_xdist_send_the_number_and_it_counts_once():
+    worker, whole = types.SimpleNamespace(workeroutput={}), types.SimpleNamespace()
+    plugin.count_left_out(worker, 7)
+    for _ in range(2):
+        plugin.pytest_testnodedown(types.SimpleNamespace(workeroutput=worker.workeroutput, config=whole))
+    assert whole.long_tests_left_out == 7
+
+
+@pytest.mark.long
+def test_the_summary_counts_those_of_pytest_xdist_once():
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-n", "1", FILES[0]]
     run = subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True)
-    assert run.returncode == 0, run.stdout + run.stderr
-    return run.stdout
-
-
-@pytest.mark.parametrize("options", [[], ["-n", "1"]], ids=["one process", "pytest-xdist"])
-def test_the_summary_counts_the_long_tests_that_were_left_out(options):
-    summary = printed("tests/grading/test_scale.py", *options)
-    assert len(LEFT_OUT.findall(summary)) == 1
+    assert run.returncode == 0 and len(LEFT_OUT.findall(run.stdout)) == 1, run.stdout + run.stderr
 
 
 @pytest.mark.parametrize("options", [["--long"], ["--exercise=1.2"]], ids=" ".join)
 def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
-    files = "tests/grading/test_scale.py", "tests/lessons/test_integrators.py"
-    assert not LEFT_OUT.search(printed(*files, "--collect-only", *options))
+    assert not LEFT_OUT.search(collected(*options))
+
+
+def test_the_parts_of_the_long_tests_make_up_the_whole():
+    """Each long test belongs to one part, and the others to all of them."""
+    def tests(*options):
+        said = collected(*options, files=("tests/lessons/test_messages.py", "tests/validate/test_cli.py"))
+        return {line for line in said.splitlines() if "::" in line}
+    whole, short = tests("--long"), tests()
+    parts = [tests("--long", f"--part={k}/3") - short for k in (0, 1, 5)]
+    assert len(short) < len(whole) and set().union(*parts) == whole - short
+    assert sum(map(len, parts)) == len(whole - short)
 
 
 # ---------------------------------------------------------------------------------------------- a loop without end

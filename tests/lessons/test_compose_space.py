@@ -285,7 +285,7 @@ def machine(rng, gravity):
     return make_model(bodies, gravity, joints, [Spring(0, 2, (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1.0, 20.0)])
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2))])
 def test_impacts_friction_and_joints_keep_both_momenta_and_gain_no_energy(seed):
     """Also where three bodies meet at once, and with friction: without outer forces both momenta are constant.
 

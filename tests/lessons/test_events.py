@@ -92,7 +92,7 @@ def test_every_extremum_of_a_polynomial_is_found_once_with_its_value(seed):
         assert abs(value - np.polyval(c, time - middle)) <= 100.0 * round_off
 
 
-@pytest.mark.parametrize("per_period", [4, 4.5, 5, 6, 7, 8, 10, 12, 16, 20, 32, 40, 50])
+@pytest.mark.parametrize("per_period", [4, 4.5, 5, 6, 8, 10, 16, 32, 50])
 def test_every_zero_and_extremum_of_a_sine_is_found_once(per_period):
     """A zero or an extremum lies at every phase of the sample number 10, and exactly there.
 

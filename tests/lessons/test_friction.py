@@ -112,8 +112,9 @@ def test_kinetic_friction_needs_a_motion_and_a_load(lesson, draw):
     axes, mu = frame(draw, 3), draw(0.2, 1.0)
     F = along_surface(draw, axes, draw(1.0, 9.0))
     still, moving = np.zeros(3), along_surface(draw, axes, draw(1.0, 3.0))
-    close("kinetic friction under a load of 1 N [N]", lesson.kinetic_friction(F - axes[0], moving, axes[0], mu),
-          -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {F} N")
+    for pull in (F, draw(0.1, 0.9) * mu / np.linalg.norm(F) * F, 0.0 * F):           # at rest the last two would hold
+        close("kinetic friction under a load of 1 N [N]", lesson.kinetic_friction(pull - axes[0], moving, axes[0], mu),
+              -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {pull - axes[0]} N")
     close("kinetic friction at rest [N]", lesson.kinetic_friction(F - axes[0], still, axes[0], mu), still, 0.0,
           given=f"F = {F} N")
     for friction in (mu, np.inf):

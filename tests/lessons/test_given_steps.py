@@ -236,7 +236,8 @@ def test_the_stability_bounds_of_taut_ropes_are_those_of_verlet_and_of_suzuki():
         assert all(verlet_is_stable(shares, z) for z in np.linspace(0.01, 0.999, 200) * bound)
 
 
-@pytest.mark.parametrize("ratio", [1e3, 1e6, 1e8])
+@pytest.mark.parametrize("ratio", [pytest.param(1e3, marks=pytest.mark.long), 1e6,
+                                   pytest.param(1e8, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("step", "bound"), [(pbd.rattle_step, 2.0), (pbd.rope_step, 2.0),
                                              (pbd.composed_rope_step, 2.72097)])
 def test_a_rope_with_a_light_bead_keeps_its_links_up_to_the_bound_and_raises_beyond(step, bound, ratio):

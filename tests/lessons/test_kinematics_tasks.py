@@ -46,7 +46,7 @@ def test_the_jacobian_of_a_task_is_minus_the_slope_of_its_error(task, arm):
 
 
 @pytest.mark.parametrize("compiled", [False, pytest.param(
-    True, marks=[pytest.mark.xdist_group("compiled test_kinematics"),
+    True, marks=[pytest.mark.long, pytest.mark.xdist_group("compiled test_kinematics"),
                  pytest.mark.skipif(not modules.can_compile(), reason="numba has no wheel for this machine")])])
 def test_six_joints_find_a_place_and_an_orientation(compiled):
     lesson, theta = modules.bind("kinematics", compiled=compiled), drawn(2, 6)

@@ -12,11 +12,11 @@ import pytest
 from validate.grading.expect import LONGEST, MOST_DIGITS
 from validate.grading.points import grade, grade_each, score
 from validate.subject import modules
+from validate.subject.generate import exercises
 
 from ..mutants import collection, variants
 
 LESSONS = modules.lesson_names()
-EACH = 24                    # of so many wrong answers of an exercise the default run grades one; --long grades all [-]
 
 
 def mutants_of(name):
@@ -24,13 +24,14 @@ def mutants_of(name):
 
 
 def sample(name):
-    """Numbers of the answers that the default run grades: all right ones, and one of every EACH wrong ones."""
-    numbers, seen = [], {}
+    """Numbers of the answers that the default run grades: the first right and the first wrong one of each exercise.
+
+    `pytest --long` grades all.
+    """
+    first = {}
     for number, mutant in enumerate(mutants_of(name)):
-        place = seen[mutant.exercise] = seen.get(mutant.exercise, -1) + (not mutant.right)
-        if mutant.right or place % EACH == 0:
-            numbers.append(number)
-    return numbers
+        first.setdefault((mutant.exercise, mutant.right), number)
+    return sorted(first.values())
 
 
 def all_mutants():
@@ -132,7 +133,6 @@ def test_what_has_two_faults_or_none_or_no_right_answer_behind_it_proves_nothing
 
 @pytest.mark.parametrize("name", LESSONS)
 def test_every_exercise_has_three_wrong_answers_and_a_right_one(name):
-    from validate.subject.generate import exercises
     numbers = set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))
     kept = mutants_of(name)
     for number in numbers:
@@ -141,10 +141,16 @@ def test_every_exercise_has_three_wrong_answers_and_a_right_one(name):
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_solutions_score_everything_and_stubs_nothing(name):
-    full, empty = (score(grade(name, modules.bind(name, of))) for of in ("solutions", "lessons"))
-    assert sum(possible for _, possible in full.values()) == 20
-    assert all(earned == possible for earned, possible in full.values())
+def test_stubs_score_nothing_of_twenty_points(name):
+    empty = score(grade(name, modules.bind(name, "lessons")))
+    assert sum(possible for _, possible in empty.values()) == 20
     assert all(earned == 0 for earned, _ in empty.values())
-    from validate.subject.generate import exercises
-    assert list(full) == list(empty) and set(full) == set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))
+    assert set(empty) == set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))
+
+
+@pytest.mark.long                                      # by default the tests of each lesson run on the worked answers
+@pytest.mark.parametrize("name", LESSONS)
+def test_solutions_score_everything(name):
+    full = score(grade(name, modules.bind(name)))
+    assert sum(earned for earned, _ in full.values()) == sum(possible for _, possible in full.values()) == 20
+    assert set(full) == set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))

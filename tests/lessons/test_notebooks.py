@@ -141,7 +141,7 @@ def test_a_lesson_is_told_in_the_same_way_everywhere(path):
     stars = dict(re.findall(rf"`\w+` \(({path.stem[:2].lstrip('0')}\.\d+) (★+)\)", text))
     assert stars.keys() == numbers.keys()
     found = {number for number, hard in stars.items() if hard == "★★"}
-    assert len(found) >= 2 and set(stars.values()) == {"★", "★★"}
+    assert len(found) >= 3 / 8 * len(numbers) and set(stars.values()) == {"★", "★★"}
     for number in found:
         assert "*Find*" in getattr(modules.bind(lesson), numbers[number]).__doc__
         assert f"<details><summary>Hint for {number}</summary>" in text
@@ -198,6 +198,7 @@ def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_pa
     (tmp_path / "friction.py").write_text("def normal_force(:\n")
     monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
     monkeypatch.setattr("validate.notebook.display", lambda shown: print(shown.data))
+    monkeypatch.setattr("validate.measure.selection.NOTEBOOK", 0.002)            # nobody reads these times
     result = measured("stick_slip", 50)
     case = next(iter(result["cases"].values()))
     assert case["ours"] == [] and case["engines"] and scene_of("stick_slip").title

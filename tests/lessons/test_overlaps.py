@@ -48,8 +48,9 @@ def deepest(state):
     return max(0.0, -np.min(state.contacts.gap, initial=0.0))
 
 
-CASES = pytest.mark.parametrize(("shape", "d", "seed"), [(*key, seed) for key, seed in
-                                                         itertools.product(SHAPES, range(3))])
+CASES = pytest.mark.parametrize(("shape", "d", "seed"), [
+    pytest.param(*key, seed, marks=[pytest.mark.long] if seed else []) for key, seed in
+    itertools.product(SHAPES, range(3))])
 
 
 @CASES

@@ -6,8 +6,8 @@ import pytest
 from validate.reference.rotation import HeavyTop
 from validate.subject.modules import bind
 
-contact, friction, impulses, integrators, rotation, springs = map(
-    bind, ("contact", "friction", "impulses", "integrators", "rotation", "springs"))
+contact, friction, impulses, integrators, kinematics, rotation, springs = map(
+    bind, ("contact", "friction", "impulses", "integrators", "kinematics", "rotation", "springs"))
 
 
 # ---------------------------------------------------------------------------------------------- 1 integrators
@@ -197,3 +197,49 @@ def test_a_sweep_carries_an_effect_up_the_whole_stack_and_down_by_one_contact():
     down = contact.gauss_seidel_sweep(A, np.append(np.zeros(n - 1), -1.0), np.zeros(n), 1.0)
     assert np.all(down[:-1] == 0.0) and down[-1] == 0.5
     assert np.flatnonzero(contact.gauss_seidel_sweep(A, np.append(np.zeros(n - 1), -1.0), down, 1.0))[0] == n - 2
+
+
+def test_the_error_that_a_stack_keeps_longest_is_a_quarter_of_a_cosine_wave():
+    """Jacobi's sweep makes each error the mean of its neighbours: the wave shrinks by cos θ, and no other by less."""
+    n = 10
+    A = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    A[0, 0] = 1.0
+    jacobi, theta = np.eye(n) - A / np.diag(A)[:, None], 0.5 * np.pi / n
+    wave = np.cos(theta * np.arange(n))
+    assert np.abs(jacobi @ wave - np.cos(theta) * wave).max() < 1e-12
+    sizes = np.sort(np.abs(np.linalg.eigvals(jacobi)))
+    assert abs(sizes[-1] - np.cos(theta)) < 1e-12 and abs(sizes[-3] - np.cos(3.0 * theta)) < 1e-12    # in pairs ±
+    assert abs(contact.stack_contraction(n) - np.cos(theta) ** 2) < 1e-12
+
+
+def test_a_heavy_box_on_a_light_one_sinks_by_the_numbers_of_the_table():
+    """10 kg on 1 kg, five sweeps per step from zero, 60 steps per second."""
+    w, dt = np.array([1.0, 0.1]), 1.0 / 60.0
+    A, v, before, after = np.array([[1.0, -1.0], [-1.0, 1.1]]), np.zeros(2), [], []
+    for _ in range(60):
+        v = v - 9.81 * dt
+        before.append(-v[1])
+        lam = np.zeros(2)
+        for _ in range(5):
+            lam = contact.gauss_seidel_sweep(A, np.array([v[0], v[1] - v[0]]), lam, 1.0)
+        v = v + w * (lam - np.append(lam[1:], 0.0))
+        after.append(-v[1])
+    assert np.round([*before[:4], before[-1]], 3).tolist() == [0.164, 0.265, 0.328, 0.367, 0.431]
+    assert np.round([*after[:4], after[-1]], 3).tolist() == [0.102, 0.165, 0.204, 0.228, 0.268]
+
+
+# ---------------------------------------------------------------------------------------------- 11 kinematics
+
+def test_a_bend_of_a_straight_arm_shortens_it_by_the_length_beyond_the_later_joint():
+    lengths, small = np.array([1.0, 0.7, 0.4]), 1e-4
+    beyond = np.array([2.1, 1.1, 0.4])
+
+    def reach(theta):
+        return kinematics.joint_positions(theta, lengths)[-1, 0]
+    for i in range(3):
+        for j in range(3):
+            a, b = small * np.eye(3)[i], small * np.eye(3)[j]
+            bends = (reach(a + b) - reach(a - b) - reach(b - a) + reach(-a - b)) / (4.0 * small**2)
+            assert abs(-bends - beyond[max(i, j)]) < 1e-6
+    J = kinematics.jacobian_2d(kinematics.joint_positions(np.zeros(3), lengths))
+    assert np.abs(J.T @ J - np.outer(beyond, beyond)).max() < 1e-12

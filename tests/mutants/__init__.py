@@ -19,12 +19,16 @@ class Mutant(NamedTuple):
     name: str                # of the function that it replaces
     story: str               # what is wrong, or what is different
     right: bool
-    function: Callable
+    make: Callable           # make() is the answer
     kind: str = "written out"     # or edit, or variant
     faults: int = 0               # number of replacements, or of arguments that differ from their defaults
     factory: Callable = None
     old: str = ""                 # of an edit: text of the worked answer
     new: str = ""                 # of an edit: the text in its place
+
+    @property
+    def function(self):
+        return self.make()
 
 
 def variants(make):
@@ -47,7 +51,8 @@ def collection(worked):
     def keep(right):
         def marked(exercise, story):
             def decorate(function):
-                mutant = Mutant(exercise, names[exercise], story, right, function, *getattr(function, "made", ()))
+                made = getattr(function, "made", ())
+                mutant = Mutant(exercise, names[exercise], story, right, lambda: function, *made)
                 whole = (exercise, 0, mutant.factory)
                 if mutant.factory and whole not in [(m.exercise, m.faults, m.factory) for m in mutants] and not right:
                     keep(True)(exercise, f"{mutant.factory.__name__} with its defaults")(mutant.factory())
@@ -56,12 +61,20 @@ def collection(worked):
             return decorate
         return marked
 
+    @functools.cache
+    def text_of(name):
+        return inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
+
     def edit(exercise, story, old, new):
         name = names[exercise]
-        head, mark, answer = inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
-        space = dict(vars(worked))
-        exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)
-        mutant = Mutant(exercise, name, story, False, space[name], "edit", answer.count(old) + old.count("\n"),
+        head, mark, answer = text_of(name)
+
+        @functools.cache                             # there are thousands, and a run of the tests needs a few of them
+        def make():
+            space = dict(vars(worked))
+            exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)
+            return space[name]
+        mutant = Mutant(exercise, name, story, False, make, "edit", answer.count(old) + old.count("\n"),
                         old=old, new=new)
         mutants.append(mutant)
         return mutant

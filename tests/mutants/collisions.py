@@ -182,6 +182,7 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
         return t if inside else NEVER
     s = (-B - np.sqrt(D)) / A
     return NEVER if s > 1.0 else t + s * dt
+edit("6.4", "compares the share s of the step with dt, not with 1", "s > 1.0", "s > dt")
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------

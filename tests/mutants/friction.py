@@ -71,6 +71,7 @@ edit("3.2", "forgets the minus sign beyond the limit", "else -limit", "else limi
 edit("3.2", "forgets the minus sign while it holds", "return -F_t", "return F_t")
 edit("3.2", "forgets μ", "cone_radius(mu_s, normal_force(F, n))", "normal_force(F, n)")
 edit("3.2", "compares the squared force with the limit", "np.sqrt(F_t @ F_t)", "F_t @ F_t")
+edit("3.2", "compares the squared force with the limit", "size <= limit", "size * size <= limit")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -98,6 +99,8 @@ edit("3.3", "forgets μ", "cone_radius(mu_k, normal_force(F, n))", "normal_force
 edit("3.3", "divides by the square of the speed", "np.sqrt(v_t @ v_t)", "v_t @ v_t")
 edit("3.3", "reverses the normal", "normal_force(F, n)", "normal_force(F, -n)")
 edit("3.3", "uses the normal velocity as the load", "normal_force(F, n)", "normal_force(v, n)")
+edit("3.3", "limits the friction to the force along the surface, as at rest", "cone_radius(mu_k, normal_force(F, n))",
+     "min(cone_radius(mu_k, normal_force(F, n)), np.sqrt(tangential(F, n) @ tangential(F, n)))")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -165,6 +168,7 @@ edit("3.5", "forgets the minus sign when it stops the body", "return -m", "retur
 edit("3.5", "exchanges the two cases", "m * speed <= limit", "m * speed > limit")
 edit("3.5", "returns a change of velocity, not an impulse, when it stops the body", "return -m * v_t", "return -v_t")
 edit("3.5", "divides by the mass", "return -m * v_t", "return -v_t / m")
+edit("3.5", "forgets the mass in the minimum", "np.minimum(limit, m * speed)", "np.minimum(limit, speed)")
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
@@ -204,6 +208,9 @@ edit("3.6", "always slides: takes the full limit along each tangent",
 edit("3.6", "forgets μ", "cone_radius(mu, j_n)", "j_n")
 edit("3.6", "divides by the mass in place of multiplying by it",
      "limit = cone_radius(mu, j_n)", "limit, m = cone_radius(mu, j_n), 1.0 / m")
+edit("3.6", "forgets the mass along the first tangent", "m * (v_t @ t_1)", "v_t @ t_1")
+edit("3.6", "shortens the impulse of the pyramid to the radius of the cone", "return -first * t_1 - second * t_2",
+     "return -min(1.0, limit / max(np.hypot(first, second), 1e-300)) * (first * t_1 + second * t_2)")
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
@@ -252,6 +259,9 @@ edit("3.7", "returns the impulse as the new velocity", "v = v + friction_impulse
 edit("3.7", "subtracts the impulse", "v = v + friction_impulse", "v = v - friction_impulse")
 edit("3.7", "multiplies the load by dt twice", "dt * a_n, p.mu_k", "dt * dt * a_n, p.mu_k")
 edit("3.7", "exchanges holding and sliding", "<= cone_radius", "> cone_radius")
+edit("3.7", "computes the friction of the velocity before the forces act", "friction_impulse(v, 1.0",
+     "friction_impulse(v - dt * a_t, 1.0")
+edit("3.7", "tests whether static friction holds a moving block, too", "not np.any(v) and ", "")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -289,6 +299,7 @@ edit("3.8", "exchanges holding and slipping", "pull > cone", "pull < cone")
 edit("3.8", "returns the velocity itself", "return v / speed", "return v")
 edit("3.8", "returns zeros for a moving block", "return v / speed", "return 0.0 * v")
 GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
+edit("3.8", "lets the block slip exactly on the edge of the cone", "pull > cone", "pull >= cone")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -324,6 +335,8 @@ edit("3.9", "tests whether the block moves, whatever its direction, so that it n
 edit("3.9", "exchanges the two halves", "middle, d, p)[1] @ d > 0.0", "middle, d, p)[1] @ d <= 0.0")
 edit("3.9", "returns the rest of the step, after the stop", "return stopped", "return dt - stopped")
 edit("3.9", "returns zero for a block that goes on", "return dt", "return 0.0")
+edit("3.9", "interpolates the speed along a straight line between the ends of the step", "return stopped",
+     "return dt * (v @ d) / ((v - kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1]) @ d)")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -418,6 +431,8 @@ edit("3.12", "adds the centre", "x - p.centre", "x + p.centre")
 edit("3.12", "takes the part along the axis in place of the rest",
      "tangential(x - p.centre, p.axis)", "((x - p.centre) @ p.axis) * p.axis")
 edit("3.12", "compares the squared distance with the radius", "distance = np.sqrt(r @ r)", "distance = r @ r")
+edit("3.12", "divides the normal of a trough by the distance from its centre, not from its axis", "-r / distance if",
+     "-r / np.sqrt((x - p.centre) @ (x - p.centre)) if")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
@@ -540,3 +555,4 @@ edit("3.15", "uses at most 10 cm of the depth", "1.0, depth", "1.0, min(depth, 0
 edit("3.15", "reverses the depth", "depth, mu)", "-depth, mu)")
 edit("3.15", "returns the whole displacement along the surface",
      "friction_impulse(tangential(moved, n), 1.0, depth, mu)", "tangential(moved, n)")
+edit("3.15", "takes the normal part of the displacement for the depth", "1.0, depth", "1.0, max(0.0, -(moved @ n))")

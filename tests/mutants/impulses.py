@@ -365,6 +365,7 @@ edit("7.10", "exchanges the two cases", "size <= mu * (J @ n)", "size > mu * (J 
 edit("7.10", "multiplies by K in place of solving with it",
      "solve3(K[0], K[1], K[2], u_sep * n - u)", "times(K, u_sep * n - u)")
 edit("7.10", "reverses the normal velocity when it slides", "(u_sep - u @ n)", "(u_sep + u @ n)")
+edit("7.10", "divides by the inverse mass along the normal, not along d", "times(K, d)", "times(K, n)")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -544,12 +545,12 @@ edit("7.14", "divides by e", "(a_n * (1.0 - e))", "(a_n * e)")
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
 @variants
-def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new", once=True):
+def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new", once=True, late=False):
     def position_projection_step(acceleration, t, x, v, dt, p):
         v_new = v + (dt if once else 1.0) * acceleration(t, x, v, p)
         x_new = x + dt * (v if old else v_new)
         phi = worked.gap(x if asked == "old" else x_new, p)
-        return (x_new + back * phi * p.n, response(v_new, p.n, p.e)) if phi < 0.0 else (x_new, v_new)
+        return (x_new + back * phi * p.n, response(v if late else v_new, p.n, p.e)) if phi < 0.0 else (x_new, v_new)
     return position_projection_step
 
 
@@ -569,6 +570,7 @@ edit("7.15", "takes the acceleration at the new position",
      "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 edit("7.15", "takes the acceleration at zero velocity", "acceleration(t, x, v, p)", "acceleration(t, x, 0.0 * v, p)")
 wrong("7.15", "forgets dt")(project(once=False))
+wrong("7.15", "reflects the velocity before the acceleration")(project(late=True))
 edit("7.15", "reflects a ball that is exactly on the plane", "phi < 0.0", "phi <= 0.0")
 edit("7.15", "omits the restitution for a ball slower than 2 g dt", "kinematic_response(v, p.n, p.e)",
      "kinematic_response(v, p.n, p.e if v @ p.n < 2.0 * dt * (p.gravity @ p.n) else 0.0)")
@@ -693,6 +695,7 @@ edit("7.16", "lets the ball lie for the whole step, not for what is left",
      "slide_on_plane(x, v, a, left, p.n)", "slide_on_plane(x, v, a, dt, p.n)")
 edit("7.16", "reverses the test of the bouncing time", "p.e) <= left", "p.e) > left")
 edit("7.16", "flies with zero acceleration", "free_flight(x, v, a, tau)", "free_flight(x, v, 0.0 * a, tau)")
+edit("7.16", "compares the bouncing time with the whole step, not with what is left", "p.e) <= left", "p.e) <= dt")
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------

@@ -81,6 +81,7 @@ edit("4.3", "adds the reference point", "x[n] - about", "x[n] + about")
 edit("4.3", "keeps the last point only", "L += m", "L = m")
 edit("4.3", "divides by the mass", "L += m[n] * c", "L += 1.0 / m[n] * c")
 edit("4.3", "takes the dot product in every component", "cross(x[n] - about, v[n])", "(x[n] - about) * v[n]")
+edit("4.3", "uses the velocities relative to their mean", "v[n])", "v[n] - np.sum(v, axis=0) / m.size)")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -119,6 +120,8 @@ edit("4.4", "exchanges Ixz and Iyz",
      "[[yy + zz, -xy, -yz], [-xy, xx + zz, -xz], [-yz, -xz, xx + yy]]")
 edit("4.4", "fills the upper half only",
      "[-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]", "[0.0, xx + zz, -yz], [0.0, 0.0, xx + yy]]")
+edit("4.4", "adds r rᵀ in place of subtracting it", "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]",
+     "[[2.0*xx + yy + zz, xy, xz], [xy, xx + 2.0*yy + zz, yz], [xz, yz, xx + yy + 2.0*zz]]")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -197,6 +200,8 @@ edit("4.7", "takes the moments about the end, not about the centre",
      "across = m * (3.0 * radius * radius + length * length) / 12.0",
      "across = m * (3.0 * radius * radius + 4.0 * length * length) / 12.0")
 edit("4.7", "forgets the square of the length", "length * length", "length")
+edit("4.7", "exchanges the moment about the axis with those across it", "[across, across, 0.5 * m * radius * radius]",
+     "[0.5 * m * radius * radius, 0.5 * m * radius * radius, across]")
 
 
 # 4.8 ------------------------------------------------------------------------------------------------------------
@@ -412,6 +417,7 @@ edit("4.13", "sorts the moments in descending order", "return moments, R", "retu
 edit("4.13", "returns the entries of the diagonal as moments", "return moments, R", "return np.sort(np.diag(I)), R")
 edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
 edit("4.13", "tests the determinant the other way", "< 0.0", "> 0.0")
+edit("4.13", "returns the moments without their signs", "return moments, R", "return np.abs(moments), R")
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
@@ -479,6 +485,8 @@ edit("4.14", "names the asymmetry in the error, where an entry is not finite",
 edit("4.14", "compares the smallest moment with the middle one", "moments[0] <= MOMENT_ROUND_OFF * moments[2]",
      "moments[0] <= MOMENT_ROUND_OFF * moments[1]")
 edit("4.14", "compares the asymmetry with the largest entry, signs included", "np.max(np.abs(I)):", "np.max(I):")
+edit("4.14", "compares the asymmetry with ε itself, not with that part of the largest entry",
+     "asymmetry > MOMENT_ROUND_OFF * np.max(np.abs(I))", "asymmetry > MOMENT_ROUND_OFF")
 
 
 # 4.15 -----------------------------------------------------------------------------------------------------------
@@ -551,6 +559,7 @@ wrong("4.16", "numbers the edges with the number of triangles, not of corners")(
     closing(number=lambda i, j, faces: i * len(faces) + j))
 edit("4.16", "refuses a triangle with a corner twice though it closes", "if i < 0 or i >= count:",
      "if i < 0 or i >= count or i == j:")
+edit("4.16", "compares the edges with themselves, not with the reversed ones", "= j * count + i", "= i * count + j")
 
 
 # 4.17 -----------------------------------------------------------------------------------------------------------

@@ -58,6 +58,9 @@ edit("1.2", "takes the position at the midpoint after a whole step, not after ha
 edit("1.2", "takes the acceleration at time t + dt", "acceleration(t + 0.5 * dt", "acceleration(t + dt")
 edit("1.2", "takes an Euler step with the acceleration at its beginning",
      "acceleration(t + 0.5 * dt, x_mid, v_mid, p)", "acceleration(t, x, v, p)")
+edit("1.2", "takes the mean of the slopes at both ends, as Heun's method does",
+     "v + dt * acceleration(t + 0.5 * dt, x_mid, v_mid, p)", "v + 0.5 * dt * "
+     "(acceleration(t, x, v, p) + acceleration(t + dt, x + dt * v, 2.0 * v_mid - v, p))")
 
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
@@ -108,6 +111,8 @@ edit("1.3", "gives the third acceleration the weight of one at an end", "2.0 * a
 edit("1.3", "gives the third velocity the weight of one at an end", "2.0 * v2 + 2.0 * v3", "2.0 * v2 + v3")
 edit("1.3", "takes the second acceleration at the old velocity", "x + 0.5 * dt * v, v2, p", "x + 0.5 * dt * v, v, p")
 edit("1.3", "takes the fourth acceleration at the third velocity", "dt * v3, v4, p", "dt * v3, v3, p")
+edit("1.3", "moves the position with the mean of the old and the new velocity", "v + 2.0 * v2 + 2.0 * v3 + v4",
+     "3.0 * v + 3.0 * (v + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4))")
 
 
 # 1.4 ------------------------------------------------------------------------------------------------------------
@@ -281,6 +286,7 @@ edit("1.9", "starts both columns from x = 1", "0.0, zero, one, dt", "0.0, one, z
 edit("1.9", "starts the second column from (1, 1)", "0.0, zero, one, dt", "0.0, one, one, dt")
 edit("1.9", "exchanges position and velocity in both starts",
      "x1, v1 = step(oscillator_acceleration, 0.0, one, zero", "x1, v1 = step(oscillator_acceleration, 0.0, zero, one")
+edit("1.9", "gives the oscillator ω² in place of ω", "Oscillator(omega, zeta)", "Oscillator(omega * omega, zeta)")
 
 
 # 1.10 -----------------------------------------------------------------------------------------------------------

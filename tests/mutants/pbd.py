@@ -92,6 +92,8 @@ edit("8.2", "uses the masses in place of their inverses",
      "* inv_mass[:, None] * gradients", "/ inv_mass[:, None] * gradients")
 edit("8.2", "forgets the square of the gradients", "inv_mass[k] * g * g", "inv_mass[k] * g")
 edit("8.2", "forgets C", "-C / weight", "-1.0 / weight")
+edit("8.2", "divides each gradient by its length", "* gradients",
+     "* gradients / np.maximum(1e-300, np.sqrt(np.sum(gradients * gradients, axis=1)))[:, None]")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
@@ -499,6 +501,7 @@ edit("8.10", "adds the centre", "x - obstacle.centre", "x + obstacle.centre")
 edit("8.10", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
 edit("8.10", "adds the radius", "distance - obstacle.radius", "distance + obstacle.radius")
 NORMAL_OVER_RADIUS = edit("8.10", "divides the normal by the radius", "r / distance if", "r / obstacle.radius if")
+edit("8.10", "subtracts squares", "distance - obstacle.radius", "distance**2 - obstacle.radius**2")
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
@@ -713,6 +716,7 @@ edit("8.15", "divides by the squares of the moments", "turn * turn / I_body", "t
 edit("8.15", "returns the effective mass, not its inverse",
      "return 1.0 / m + np.sum(turn * turn / I_body)", "return 1.0 / (1.0 / m + np.sum(turn * turn / I_body))")
 edit("8.15", "subtracts the rotation", "1.0 / m + np", "1.0 / m - np")
+edit("8.15", "does not square the lever r × n", "turn * turn", "np.abs(turn)")
 
 
 # 8.16 -----------------------------------------------------------------------------------------------------------

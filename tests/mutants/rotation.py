@@ -170,6 +170,7 @@ edit("5.7", "adds 1 + cos θ along the axis", "1.0 - c", "1.0 + c")
 edit("5.7", "takes the part along r in place of n", "dot(n, r) * n", "dot(n, r) * r")
 edit("5.7", "converts the angle to degrees",
      "np.cos(rate * dt), np.sin(rate * dt)", "np.cos(np.degrees(rate * dt)), np.sin(np.degrees(rate * dt))")
+edit("5.7", "rotates the rows, not the columns", "return turned", "return R @ R @ turned.T")      # R Qᵀ = R R (Q R)ᵀ
 
 
 # 5.8 ------------------------------------------------------------------------------------------------------------
@@ -534,3 +535,5 @@ edit("5.18", "advances the time by the whole step each time", "t = t + share * d
 edit("5.18", "advances the time before the substep",
      "q, L = step(torque, t, q, L, share * dt, body)", "q, L = step(torque, t + share * dt, q, L, share * dt, body)")
 edit("5.18", "takes 1 − 2γ in the middle", "1.0 - 4.0 * SUZUKI", "1.0 - 2.0 * SUZUKI")
+edit("5.18", "takes the negative substep last", "(SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)",
+     "(SUZUKI, SUZUKI, SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI)")

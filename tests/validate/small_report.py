@@ -1,5 +1,6 @@
 """A small report for tests: results of a few scenes and stability cases as they are stored."""
 
+import functools
 import json
 
 from validate import measure
@@ -7,12 +8,18 @@ from validate.measure.selection import Plan
 from validate.run.run import about
 from validate.stability.examine import all_cases, examine, stored
 
+PLAN = Plan(speeds=("plain",))
+
+
+@functools.cache
+def measured(name):
+    """Return the result of a scene, which all tests of a process share."""
+    errors = measure.errors(name, PLAN)
+    return {**errors, "times": measure.times(name, PLAN, errors)}
+
 
 def small_report(scenes, slugs):
     """Return the content of a report.json of these scenes and of the cases with these slugs, in plain Python."""
-    plan, results = Plan(speeds=("plain",)), []
-    for name in scenes:
-        errors = measure.errors(name, plan)
-        results.append({**errors, "times": measure.times(name, plan, errors)})
     cases = [stored(examine(case, compiled=False)) for case in all_cases() if case.slug in slugs]
-    return json.loads(json.dumps({"run": about(plan, shown=tuple(scenes)), "scenes": results, "stability": cases}))
+    data = {"run": about(PLAN, shown=tuple(scenes)), "scenes": [*map(measured, scenes)], "stability": cases}
+    return json.loads(json.dumps(data))

@@ -17,6 +17,7 @@ from validate.report.audit import audit
 from validate.stability.examine import all_cases
 
 from .small_report import small_report
+from .test_cli import here  # noqa: F401    a fixture
 
 KEPT = required.kept
 pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
@@ -48,9 +49,13 @@ def as_if_compiled(result):
                                 "races": races(rows, case, live, True, times["calls"])}}
 
 
-def write(folder, data):
+def write_texts(folder, data):
     for name, text in report.texts(data["scenes"], data["stability"], data["run"]).items():
         (folder / name).write_bytes(text.encode())
+
+
+def write(folder, data):
+    write_texts(folder, data)
     for plot, name, shown, _ in report.pictures(data["scenes"], data["stability"]):
         plots.draw(plot, folder / name, shown)
 
@@ -233,27 +238,32 @@ def test_the_list_of_scenes_is_that_of_the_code():
     assert set(kept["findings"]) == {f"{case.lesson}/{case.slug}" for case in all_cases()}
 
 
-@pytest.mark.parametrize(("name", "old", "new"), [
-    ("throw.html", "agrees", "departs"), ("index.html", "Throw", "Draw"), ("throw-steps.svg", "from data ", "data "),
-    ("stability.html", "<h", "<H"), ("style.css", ":", ": ")])
-def test_a_page_or_a_picture_that_was_changed_is_noticed(made, name, old, new):
+CHANGES = [("throw.html", "agrees", "departs"), ("index.html", "Throw", "Draw"),
+           ("throw-steps.svg", "from data ", "data "), ("stability.html", "<h", "<H"), ("style.css", ":", ": ")]
+
+
+def test_pages_and_pictures_that_were_changed_are_noticed(made, tmp_path):
     folder, data = made
-    text = (folder / name).read_text(encoding="utf-8")
-    assert old in text
-    try:
-        (folder / name).write_text(text.replace(old, new, 1), encoding="utf-8")
-        assert [problem for problem in audit(folder, data)[0] if problem.startswith(name)]
-        (folder / name).unlink()
-        assert f"{name} is missing" in audit(folder, data)[0]
-    finally:
-        (folder / name).write_text(text, encoding="utf-8")
+    changed, names = shutil.copytree(folder, tmp_path / "changed"), {name for name, _, _ in CHANGES}
+    for name, old, new in CHANGES:
+        text = (folder / name).read_text(encoding="utf-8")
+        assert old in text
+        (changed / name).write_text(text.replace(old, new, 1), encoding="utf-8")
+    problems = audit(changed, data)[0]
+    assert {name for name in names if any(problem.startswith(name) for problem in problems)} == names
+    assert len(problems) == len(names), "a file is named that was not changed"
+    for name in names:
+        (changed / name).unlink()
+    assert {f"{name} is missing" for name in names} <= set(audit(changed, data)[0])
 
 
+@pytest.mark.usefixtures("here")
 def test_the_command_ends_with_1_when_something_differs(made, tmp_path, capsys):
     folder, data = made
     changed = copy.deepcopy(data)
     converging(changed)["verdict"] = "departs"
-    write(tmp_path, changed)
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)              # pictures show no verdict
+    write_texts(tmp_path, changed)
     for report_folder, code in ((folder, 0), (tmp_path, 1), (tmp_path / "nothing", 2)):
         with pytest.raises(SystemExit) as ended:
             command.main(["audit", str(report_folder), "--jobs", "1"])

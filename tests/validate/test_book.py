@@ -21,6 +21,8 @@ from validate.grading import choice, release
 from validate.subject import modules
 from validate.subject.modules import ROOT
 
+from ..lessons.drawn_type import PAGE
+
 pytestmark = pytest.mark.xdist_group("book")
 ESTIMATED = 0.4              # of a lesson's hours [h]: they are given in halves, and a text may change a little
 FILM = "<div>film</div><script>" + "let player = 1;" * 400 + "</script>"
@@ -319,11 +321,12 @@ def test_cleared_outputs_are_gone_when_the_next_one_comes():
     assert [output.text for output in found.cells] == ["new"]
 
 
-@pytest.mark.parametrize(("cell", "said"), [
-    ("import os, signal\nos.kill(os.getpid(), signal.SIGTERM)", "ends its kernel"), ("1 / 0", "ZeroDivisionError")])
-def test_a_cell_that_fails_or_ends_its_kernel_is_named(cell, said, tmp_path):
-    with execute.kernel(tmp_path) as client, pytest.raises(BadInput, match=f"notebook 05 .*{said}"):
-        execute.outputs_of(client, cell, "05")
+def test_a_cell_that_fails_or_ends_its_kernel_is_named(tmp_path):
+    with execute.kernel(tmp_path) as client:
+        for cell, said in (("1 / 0", "ZeroDivisionError"),
+                           ("import os, signal\nos.kill(os.getpid(), signal.SIGTERM)", "ends its kernel")):
+            with pytest.raises(BadInput, match=f"notebook 05 .*{said}"):
+                execute.outputs_of(client, cell, "05")
 
 
 # ---------------------------------------------------------------------------------------------- the checks can fail
@@ -368,7 +371,7 @@ def test_a_folder_that_is_no_book_and_an_unknown_notebook_are_refused(arguments,
     with pytest.raises(SystemExit) as end:
         book.main([argument.format(folder=tmp_path) for argument in arguments])
     assert end.value.code == 2 and (tmp_path / "thesis.tex").exists()
-    assert re.match(r"book: .*(no book|not there)", capsys.readouterr().err)
+    assert re.match(r"python -m validate.book: .*(no book|not there)", capsys.readouterr().err)
 
 
 # ---------------------------------------------------------------------------------------------- whole books
@@ -387,15 +390,58 @@ def built(folder, *arguments, without_node=False):
     return run.stdout, folder
 
 
+@pytest.fixture(scope="module")
+def one_notebook(tmp_path_factory):
+    """What the command said about a book of notebook 00, and the site."""
+    folder = tmp_path_factory.mktemp("one")
+    return built(folder / "book", "--notebook", "00", "--report", str(folder / "none"), without_node=True)
+
+
 @pytest.mark.long
-def test_a_book_of_one_notebook_is_built_without_node(tmp_path):
-    said, site = built(tmp_path / "book", "--notebook", "00", "--report", str(tmp_path / "none"), without_node=True)
+def test_a_book_of_one_notebook_is_built_without_node(one_notebook):
+    said, site = one_notebook
     assert "in the reader's browser" in said and (site / "_static" / "katex.min.js").is_file()
     start = Texts((site / "notebooks" / "00_start_here.html").read_text(encoding="utf-8"))
     assert any('raise NotImplementedError("Exercise 1.1: euler_step")' in block for block in start.blocks)
     assert leaks(texts_of(site)) == []
     index = (site / "searchindex.js").read_text(encoding="utf-8")
     assert "restitut" in index and "cone_impulse" in index
+
+
+@pytest.fixture(scope="module")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="without playwright no page can be driven")
+    path = os.environ.get("WORKBOOK_CHROMIUM") or shutil.which("chromium")
+    with playwright.sync_playwright() as run:
+        chromium = run.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield chromium
+        chromium.close()
+
+
+ADDED = """wide => {
+  const canvas = document.createElement("canvas"), output = document.createElement("div"), image = new Image();
+  [canvas.width, canvas.height, output.className] = [wide, 400, "output image_png"];
+  image.src = canvas.toDataURL();
+  output.append(image);
+  document.querySelector(".cell_output").append(output);
+  return image.decode();
+}"""                         # a figure of that many pixels, among the outputs of the first cell that has any
+SIZES = """() => [document.documentElement.scrollWidth,
+  Math.max(...[...document.querySelectorAll("article section > p")].map(text => text.getBoundingClientRect().width)),
+  [...document.querySelectorAll(".cell_output img")].map(image => image.getBoundingClientRect().width)]"""
+
+
+@pytest.mark.long
+def test_a_book_of_one_notebook_shows_a_figure_as_wide_as_its_type_needs(one_notebook, browser):
+    """Lines of text stay short, and no page is wider than its window."""
+    page = browser.new_page()
+    for window, least in ((1440, PAGE), (1280, 940), (1920, PAGE), (800, 740), (390, 330)):
+        page.set_viewport_size({"width": window, "height": 900})
+        page.goto((one_notebook[1] / "notebooks" / "00_start_here.html").as_uri())
+        page.evaluate(ADDED, PAGE)
+        wide, text, figures = page.evaluate(SIZES)
+        assert wide == window and text <= 46 * 17.6 and min(figures) >= least, f"{window}: {wide}, {text}, {figures}"
+    page.close()
 
 
 @pytest.mark.long

@@ -16,6 +16,7 @@ import pytest
 from validate import __main__ as cli
 from validate import measure, report
 from validate.measure import record, traces
+from validate.notebook.pytest_process import quiet
 from validate.products import PYMUNK, Product
 from validate.report import plots, summary
 from validate.run import processes, store
@@ -67,7 +68,7 @@ def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_pa
     (lambda path: path.write_text(path.read_text() + "\n1 / 0\n"), "ZeroDivisionError"),
     (lambda path: path.write_text(path.read_text() + "raise SystemExit\n"), "SystemExit"),
     (lambda path: path.write_bytes(path.read_bytes() + b"\xff"), "utf-8"),
-    (lambda path: [p.unlink() for p in path.parent.iterdir()], "without inertia_tensors.py"),
+    (lambda path: [p.unlink() for p in path.parent.glob("*.py")], "without inertia_tensors.py"),
 ], ids=["missing", "syntax", "import", "error", "exit", "encoding", "empty folder"])
 def test_answers_that_are_not_there_or_do_not_load_are_named_in_one_sentence(capsys, tmp_path, here, change, says):
     shutil.copytree(modules.ROOT / "lessons", tmp_path / "answers")
@@ -477,8 +478,9 @@ def test_the_tests_name_what_they_cannot_find(arguments, said):
 
 
 def test_one_exercise_loads_one_test_file():
-    asked = pytest_run("--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v")
-    assert "test_pbd.py" in asked.stdout and not set(re.findall(r"test_\w+\.py", asked.stdout)) - {"test_pbd.py"}
+    said = quiet(str(modules.ROOT / "tests"), f"--rootdir={modules.ROOT}", "--of=lessons", "--exercise=8.1",
+                 "--collect-only", "-q", "-v")
+    assert set(re.findall(r"test_\w+\.py", said)) == {"test_pbd.py"}
 
 
 def test_a_method_without_error_ends_up_on_the_page_and_in_the_table(capsys, tmp_path, here, monkeypatch):
@@ -488,3 +490,22 @@ def test_a_method_without_error_ends_up_on_the_page_and_in_the_table(capsys, tmp
     page = (tmp_path / "throw.html").read_text()
     assert "no error that can be told" in (tmp_path / "throw-times.svg").read_text() and "What theory allows" in page
     assert "exact" in (tmp_path / "index.html").read_text()
+
+
+def programs():
+    """The modules that a person can start: all with a start of their own, but those that a worker starts and feeds."""
+    for file in sorted((modules.ROOT / "validate").rglob("*.py")):
+        text = file.read_text()
+        if '\nif __name__ == "__main__":' in text and "sys.stdin.buffer" not in text:
+            yield ".".join(file.relative_to(modules.ROOT).with_suffix("").parts).removesuffix(".__main__")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("module", list(programs()))
+def test_every_program_has_a_help_text_and_refuses_an_unknown_option_in_one_sentence(module):
+    def run_with(option):
+        return subprocess.run([sys.executable, "-m", module, option], cwd=modules.ROOT, capture_output=True, text=True)
+    asked, refused = run_with("--help"), run_with("--bogus")
+    assert asked.returncode == 0 and len(asked.stdout.split()) > 5 and not asked.stderr
+    assert refused.returncode == 2 and not refused.stdout and "--bogus" in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1

@@ -7,7 +7,7 @@ import pytest
 
 from solutions.support.model import Body, make_model
 from validate import __main__ as cli
-from validate.products import BOX2D, MUJOCO, PYMUNK
+from validate.products import BOX2D, MUJOCO, PYMUNK, RAPIER
 from validate.subject.modules import ROOT
 from validate.worlds import conformance
 from validate.worlds.described import DESCRIBED
@@ -66,9 +66,11 @@ def test_every_described_scene_begins_where_its_truth_does():
 @pytest.mark.parametrize(("product", "expected"), [
     (PYMUNK, {"incline": "agrees", "rod_chain": "agrees", "heavy_top": "refuses"}),
     (MUJOCO, {"asymmetric_top": "agrees", "rod_chain": "agrees", "cradle": "refuses"}),
-    (BOX2D, {"incline": "agrees", "rod_chain": "departs", "heavy_top": "refuses"})], ids=str)
+    (BOX2D, {"incline": "agrees", "rod_chain": "departs", "heavy_top": "refuses"}),
+    (RAPIER, {"incline": "agrees", "rod_chain": "agrees", "asymmetric_top": "shown, not judged"})], ids=str)
 def test_known_engines_get_the_verdicts_of_their_joints(capsys, tmp_path, product, expected):
-    """Box2D's joints are soft, so that its chain does not converge to one of rigid rods."""
+    """Box2D's joints are soft, so that its chain does not converge to one of rigid rods.  Rapier turns a top in single
+    precision: its error grows with the number of steps."""
     if not product.installed():
         pytest.skip(f"{product} is not installed: {product.remedy}")
     text = f"from validate.worlds.{product.file} import build, refuses\n"

@@ -5,7 +5,6 @@ import gc
 import os
 import re
 import signal
-import threading
 import time
 import weakref
 
@@ -20,7 +19,7 @@ from validate.subject.modules import SOLUTIONS
 
 from .test_live_simulation import FIRST_LINE, boxes, learner, with_line  # noqa: F401    learner is a fixture
 
-SOON = 8.0                   # until something must have happened on a busy machine [s]
+PATIENCE = 300.0             # [s]: only a scene that hangs takes so long, on the busiest machine, too
 HEAD = re.search(r"const HEAD = \[(.*?)\]", (widget.HERE / "live.js").read_text(encoding="utf-8"), re.S)[1]
 HEAD = re.findall(r'"(\w+)"', HEAD)
 
@@ -51,14 +50,14 @@ class Page:
     def head(self, name):
         return float(self.frames[-1][HEAD.index(name)])
 
-    async def until(self, happened, within=SOON):
-        """Wait until happened() is true; the page gives its sign every tenth of a second."""
-        end = time.monotonic() + within
+    async def until(self, happened):
+        """Wait until happened() is true, and say in between that the page is there."""
+        end = time.monotonic() + PATIENCE
         while not happened():
             assert time.monotonic() < end, (self.said[-3:], len(self.frames))
             if self.answers:
                 self.tell(do="here")
-            await asyncio.sleep(0.1)
+            await asyncio.sleep(0.02)
 
     async def runs(self):
         """Wait until the time of the scene has moved on."""
@@ -223,13 +222,20 @@ ENDLESS = """while True:
 
 @pytest.mark.parametrize(("loop", "limit"), [(ENDLESS, "LONGEST"), ("__import__('time').sleep(1e6)", "LONGEST_WAIT")])
 def test_an_endless_loop_is_stopped_and_told(loop, limit, learner, monkeypatch):      # noqa: F811
-    monkeypatch.setattr(widget, limit, 0.5)
-
+    """The limit is short for this loop only: on a busy machine other steps may take as long by the clock."""
     async def test(opened):
         page = opened(learner.folder)
         await page.runs()
-        learner("simulator", with_line(loop))
-        await page.until(lambda: page.scene.broken)
+        follow = page.scene.simulation.follow
+        with monkeypatch.context() as patch:
+            def limited():
+                changed = follow()
+                if changed:
+                    patch.setattr(widget, limit, 0.5)
+                return changed
+            patch.setattr(page.scene.simulation, "follow", limited)
+            learner("simulator", with_line(loop))
+            await page.until(lambda: page.scene.broken)
         place = r"\(simulator.py, line \d+, in new_velocities_2d\)\."
         assert re.match(rf"✗ a step is still running after 0.5 s {place}", page.said[-1]), page.said
         learner("simulator")
@@ -237,12 +243,17 @@ def test_an_endless_loop_is_stopped_and_told(loop, limit, learner, monkeypatch):
     in_a_loop(test)
 
 
+PRESSED = """import os, signal, threading
+    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+    while True: pass"""
+
+
 def test_the_stop_button_ends_a_loop_that_hangs_and_play_goes_on(learner):      # noqa: F811
+    """The loop itself lets it be pressed a moment later: then it surely runs."""
     async def test(opened):
         page = opened(learner.folder)
         await page.runs()
-        learner("simulator", with_line("while True: pass"))
-        threading.Timer(0.6, os.kill, (os.getpid(), signal.SIGINT)).start()
+        learner("simulator", with_line(PRESSED))
         await page.until(lambda: page.said[-1] == widget.STOPPED)
         learner("simulator")
         page.tell(do="play")
@@ -269,12 +280,10 @@ def test_slow_code_leaves_the_kernel_free_for_other_cells(learner):      # noqa:
         await page.runs()
         learner("simulator", with_line("__import__('time').sleep(0.1)"))
         await page.until(lambda: page.scene.cost > 0.05)
-        waits = []
         for _ in range(5):
-            began = time.perf_counter()
+            t = page.scene.simulation.t
             await asyncio.sleep(0)
-            waits.append(time.perf_counter() - began)
-        assert min(waits) < 0.2
+            assert page.scene.simulation.t < t + 1.5 / 120.0
         await page.until(lambda: page.head("pace") < 0.5)
     in_a_loop(test)
 

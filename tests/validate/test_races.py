@@ -84,6 +84,11 @@ def test_the_interval_of_a_median_leaves_out_one_repeat_on_either_side_of_nine()
     assert inside == pytest.approx(1.0 - 20.0 / 2.0**9, abs=0.006)           # four standard deviations
 
 
+def test_long_loops_are_repeated_seven_times_and_long_plain_ones_three_times():
+    for speed, seconds, laps in (("engine", 0.03, 9), ("engine", 0.3, 7), ("plain", 0.01, 9), ("plain", 0.2, 3)):
+        assert sum(timing.is_due(speed, lap, seconds) for lap in range(timing.REPEATS)) == laps
+
+
 def test_there_is_a_race_to_each_error_and_to_the_engines_best():
     found = held([engine()], [EULER, RK4])
     assert list(found) == [*LEVELS, BEST] and HEADLINE in LEVELS

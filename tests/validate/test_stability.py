@@ -103,9 +103,18 @@ WRONG = [                         # case, the method that it examines, what is p
 ]
 
 
-@pytest.mark.parametrize(("name", "method", "wrong"), [
-    pytest.param(n, m, w, id=f"{n}-{w}_as_{m}", marks=pytest.mark.xdist_group(f"compiled test_{CASES[n].lesson}"))
-    for n, m, w in WRONG])
+SLOW = {"rotation/fast-spin", "rotation/slender-body", "rotation/sleeping-top"}       # they compile loops for seconds
+
+
+def wrong_methods():
+    """By default the first of each case that is not slow; `pytest --long` tries all."""
+    for k, (name, method, wrong) in enumerate(WRONG):
+        marks = [pytest.mark.xdist_group(f"compiled test_{CASES[name].lesson}"),
+                 *[pytest.mark.long] * (name in SLOW or name in [other for other, *_ in WRONG[:k]])]
+        yield pytest.param(name, method, wrong, id=f"{name}-{wrong}_as_{method}", marks=marks)
+
+
+@pytest.mark.parametrize(("name", "method", "wrong"), list(wrong_methods()))
 def test_a_wrong_method_does_not_find_the_bound(name, method, wrong):
     lesson = subject_of(CASES[name])
     subject = types.SimpleNamespace(**{**vars(lesson), method: getattr(lesson, wrong)})

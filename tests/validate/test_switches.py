@@ -1,5 +1,6 @@
 """The engines' own switches: each acts on its part, changes what it must, and leaves nothing behind."""
 
+import functools
 import json
 
 import pytest
@@ -13,6 +14,12 @@ from validate.scene import MUJOCO, PYBULLET, PYMUNK
 PLAN = Plan(quick=False, speeds=("plain",))
 
 
+@functools.cache
+def rolling():
+    """What the scene of a rolling ball gives, measured once for all tests."""
+    return parts("slide_then_roll", live=(PYMUNK, PYBULLET))
+
+
 def parts(name, **changes):
     """{(product, part): its row} of a scene."""
     selection = select(name, PLAN._replace(**changes))
@@ -24,7 +31,7 @@ def test_a_particle_has_no_part_to_leave_out():
 
 
 def test_without_collisions_or_friction_a_rolling_ball_moves_otherwise():
-    found = parts("slide_then_roll")
+    found = rolling()
     product = next(iter(found))[0]
     assert found[product, "collision detection"]["change"] > 0.01
     assert found[product, "friction"]["change"] > 0.01
@@ -65,7 +72,7 @@ def test_pybullet_forgets_a_switch_when_its_world_is_closed():
 
 
 def test_the_audit_derives_the_cost_and_the_change_of_a_part_again():
-    rows = json.loads(json.dumps(list(parts("slide_then_roll", live=(PYMUNK, PYBULLET)).values())))
+    rows = json.loads(json.dumps(list(rolling().values())))
     times = {"rows": [], "time_to_error": [], "races": [], "calls": [], "ablations": [], "engine_parts": rows}
     result = {"cases": {"only": {"ours": [], "engines": []}}, "times": times}
     assert list(audit.of_times(result, {"times": 0})) == []

@@ -15,7 +15,7 @@ from rich.console import Console
 
 from solutions.checks import BadInput
 
-from ..run.processes import one_sentence
+from ..run.command import start
 from ..subject import modules
 from .site import LIVE, outside_requests, size, wrong_links
 
@@ -111,8 +111,7 @@ def sphinx(source, site):
 
 def main(arguments=None):
     """Run the command line."""
-    with one_sentence("book"):
-        app(arguments, prog_name="python -m validate.book")
+    start("python -m validate.book", app, arguments)
 
 
 if __name__ == "__main__":

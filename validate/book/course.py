@@ -25,7 +25,8 @@ from ..subject.modules import ROOT, SOLUTIONS
 WORDS_PER_MINUTE = 100       # of a text with formulas
 MINUTES_PER_OUTPUT = 2.0     # to run a cell, and to look at what it shows
 MINUTES_PER_EXERCISE = 5.0   # to read the docstring, to run the check
-MINUTES_PER_LINE = 2.0       # of the worked answer: to derive, to write and to mend
+MINUTES_PER_LINE = 2.0       # of the worked answer: to write and to mend
+MINUTES_TO_FIND = 6.0        # the formula of a ★★ exercise
 
 
 class Exercise(NamedTuple):
@@ -42,7 +43,7 @@ class Exercise(NamedTuple):
     @property
     def minutes(self):
         """Return an estimate of the minutes."""
-        return MINUTES_PER_EXERCISE + MINUTES_PER_LINE * self.lines
+        return MINUTES_PER_EXERCISE + MINUTES_PER_LINE * self.lines + MINUTES_TO_FIND * (self.stars == "★★")
 
 
 class Head(NamedTuple):

@@ -41,7 +41,7 @@ def kernel(folder, python=sys.executable, **environment):
         client.is_kernel_alive = manager.is_alive
         try:
             client.start_channels()
-            client.wait_for_ready(timeout=60)
+            client.wait_for_ready(timeout=300)
             yield client
         finally:
             client.stop_channels()

@@ -4,18 +4,19 @@ It writes docs/scenes.webp, which moves, and docs/scenes.png, one of its frames 
 """
 
 import base64
-import sys
 from itertools import product
 from pathlib import Path
+from typing import Annotated
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
+import typer
 from matplotlib.collections import LineCollection, PolyCollection
 from PIL import Image
 
 from ..check import Role
-from ..run.processes import one_sentence
+from ..run.command import start
 from ..run.store import stored_report
 from ..subject.modules import ROOT
 
@@ -135,18 +136,15 @@ def film(scenes):
     return images
 
 
-def main(arguments=None):
-    """Run the command line."""
-    arguments = sys.argv[1:] if arguments is None else arguments
-    with one_sentence("picture"):
-        report = stored_report(Path(arguments[0] if arguments else "report"))
-        scenes = {scene["scene"]: scene for scene in report["scenes"]}
-        images = film(scenes)
-        durations = [PER_FRAME] * (len(images) - 1) + [HOLD]
-        images[0].save(FILM, save_all=True, append_images=images[1:], duration=durations, loop=0, quality=60, method=6)
-        images[round(STILL_FRAME * (len(images) - 1))].save(STILL, optimize=True)
-        print(f"{FILM.relative_to(ROOT)}: {FILM.stat().st_size / 1e6:.2f} MB, {len(images)} frames")
+def main(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report")):
+    """Draw the film and the picture of the README from the films of a report."""
+    scenes = {scene["scene"]: scene for scene in stored_report(report)["scenes"]}
+    images = film(scenes)
+    durations = [PER_FRAME] * (len(images) - 1) + [HOLD]
+    images[0].save(FILM, save_all=True, append_images=images[1:], duration=durations, loop=0, quality=60, method=6)
+    images[round(STILL_FRAME * (len(images) - 1))].save(STILL, optimize=True)
+    print(f"{FILM.relative_to(ROOT)}: {FILM.stat().st_size / 1e6:.2f} MB, {len(images)} frames")
 
 
 if __name__ == "__main__":
-    main()
+    start("python -m validate.book.picture", main)

@@ -7,8 +7,8 @@ import numpy as np
 
 from solutions.support.scenes import make_pile, make_pile_2d
 
-from . import quiet_import
-from .bullet import WARM, Rigid
+from . import quiet_import, watched
+from .bullet import WARM, Client, Rigid
 from .chipmunk import pymunk_floor, pymunk_space
 from .switches import made
 
@@ -112,6 +112,10 @@ class PymunkPile:
         for _ in range(steps):
             self.space.step(DT)
 
+    def watch(self):
+        """Return the same world, whose steps can be watched."""
+        return watched.Pymunk(self.space, DT)
+
     def judged(self):
         """Return the Judged record of discs, whose contacts have one point each.
 
@@ -210,6 +214,10 @@ class BulletPile:
     def run(self, steps):
         for _ in range(steps):
             self.p.stepSimulation(physicsClientId=self.c)
+
+    def watch(self):
+        """Return the same world, whose steps can be watched."""
+        return watched.Bullet(Client(self.p, self.c), DT, (0.0, 0.0, -G))
 
     def places(self):
         """Return (x (n + p, 3), quaternions (n + p, 4), w first) of bodies and planes."""

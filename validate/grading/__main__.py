@@ -14,7 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from solutions.checks import BadInput
-from validate.run.processes import Ended, alone_in, ending_once, one_sentence
+from validate.run.command import start
+from validate.run.processes import Ended, alone_in
 from validate.run.store import whole, writable, write_whole
 
 from . import children, choice, classlist, ending, local, marking, marks, pages, sandbox, similar, submissions, uploads
@@ -197,8 +198,7 @@ def on_cluster(executor, todo, settings):
 
 def main(arguments=None):
     """Run the command line."""
-    with one_sentence("grade"), ending_once():
-        app(arguments, prog_name="grade")
+    start("grade", app, arguments)
 
 
 if __name__ == "__main__":

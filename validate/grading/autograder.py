@@ -2,7 +2,6 @@
 
 import json
 import os
-import sys
 import tempfile
 import traceback
 import zipfile
@@ -14,6 +13,7 @@ from typing import Annotated
 import typer
 
 from solutions.checks import BadInput
+from validate.run.command import start
 from validate.run.store import writable, write_text, write_whole
 from validate.subject.modules import ROOT
 
@@ -253,11 +253,7 @@ def whole_scale(totals):
 
 def main(arguments=None):
     """Run the command line; bad input ends with one sentence and exit code 2."""
-    try:
-        app(arguments, prog_name="autograder")
-    except BadInput as e:
-        print(f"autograder: {e}", file=sys.stderr)
-        sys.exit(2)
+    start("autograder", app, arguments)
 
 
 if __name__ == "__main__":

@@ -4,11 +4,14 @@ ada has everything right (a zip).  bob forgets dt in Euler's method.  cem has no
 not load.  eve's first file ends the program that imports it.  fay is on the list and hands nothing in.
 """
 
-import sys
 import zipfile
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from solutions.checks import BadInput
+from validate.run.command import start
 from validate.subject import generate, modules
 
 PEOPLE = """student_id,last_name,first_name,email
@@ -62,17 +65,10 @@ def make(folder):
     return folder
 
 
-def main(arguments):
-    if len(arguments) != 1:
-        print("example: name one new folder, like: python -m validate.grading.example class", file=sys.stderr)
-        return 2
-    try:
-        print(f"a class of five, and its list, in {make(arguments[0])}")
-    except BadInput as e:
-        print(f"example: {e}", file=sys.stderr)
-        return 2
-    return 0
+def main(folder: Annotated[Path, typer.Argument(help="A new folder.")]):
+    """Write a class of five submissions, and its list, into a new folder."""
+    print(f"a class of five, and its list, in {make(folder)}")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    start("python -m validate.grading.example", main)

@@ -2,9 +2,10 @@
 
 `--compiled`, `--exercise=1.2` and `--seed=anything` choose among the tests and their inputs.
 Without options the subject is `solutions`, plain and compiled, and the tests of the workbook itself run too.
-With --of only the grading tests run.  Long tests run only with --long.
+With --of only the grading tests run.  Long tests run only with --long, and with --part=K/N only a part of them.
 """
 
+import argparse
 import hashlib
 import importlib.util
 import json
@@ -47,9 +48,20 @@ def pytest_addoption(parser):
     seed = "draw the inputs of the tests from this; a class is graded with a secret one"
     group.addoption("--seed", default=PUBLIC, help=seed)
     group.addoption("--long", action="store_true", help="run the long tests, too")
+    part = "with --long: only part K of N of the long tests, drawn from their names (K may be any whole number)"
+    group.addoption("--part", metavar="K/N", type=part_of, default=(0, 1), help=part)
     group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
     case = "with --of and the public seed: write the first failing call there, as JSON, for a notebook to draw"
     group.addoption("--case", metavar="FILE", help=case)
+
+
+def part_of(text):
+    """Return (k, n) of K/N."""
+    try:
+        k, n = map(int, text.split("/"))
+        return k % n, n
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(f"{text!r} is not K/N, such as 1/4") from None
 
 
 def pytest_configure(config):
@@ -153,9 +165,12 @@ def limit_of(item, limit):
     return min(AGAIN, limit) if any((subject, number) in stopped for number in below) else limit
 
 
+@pytest.hookimpl(tryfirst=True)                         # before pytest's own -m, which must see what is long
 def pytest_collection_modifyitems(config, items):
     wanted = [item for item in items if is_wanted(item, config)]
-    keep = once_compiled([item for item in wanted if not is_left_out(item, config)], config)
+    if not (config.getoption("--compiled") or hasattr(config, "given")):
+        mark_compiled_as_long(wanted)
+    keep = [item for item in wanted if not is_left_out(item, config)]
     count_left_out(config, len(wanted) - len(keep))
     if len(keep) < len(items):
         kept = {*keep}
@@ -179,21 +194,19 @@ def is_wanted(item, config):
 
 def is_left_out(item, config):
     """Return whether this test is long and was not asked for."""
-    return bool(item.get_closest_marker("long")) and not config.getoption("--long")
+    k, n = config.getoption("--part")
+    asked = config.getoption("--long") and int(hashlib.sha256(item.nodeid.encode()).hexdigest(), 16) % n == k
+    return bool(item.get_closest_marker("long")) and not asked
 
 
-def once_compiled(items, config):
-    """Run one test of each lesson with compiled answers by default, because each test compiles something else."""
-    if config.getoption("--long") or config.getoption("--compiled") or hasattr(config, "given"):
-        return items
-    seen, keep = set(), []
+def mark_compiled_as_long(items):
+    """Let the tests of a lesson with compiled answers be long, but for the first: each compiles something else."""
+    seen = set()
     for item in items:
-        compiled = hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled"
-        if not compiled or item.path not in seen:
-            keep.append(item)
-        if compiled:
+        if hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled":
+            if item.path in seen:
+                item.add_marker(pytest.mark.long)
             seen.add(item.path)
-    return keep
 
 
 def count_left_out(config, count):
@@ -359,7 +372,9 @@ def pytest_terminal_summary(terminalreporter, config):
     left_out = getattr(config, "long_tests_left_out", 0)
     if left_out:
         tests, were = ("test", "was") if left_out == 1 else ("tests", "were")
-        terminalreporter.line(f"{left_out} long {tests} {were} left out: pytest --long runs them, too")
+        how = "another --part" if config.getoption("--long") else "pytest --long"
+        them = "it" if left_out == 1 else "them"
+        terminalreporter.line(f"{left_out} long {tests} {were} left out: {how} runs {them}, too")
     if not hasattr(config, "points") or not config.points.outcomes:
         return
     table = score(config.points.all())

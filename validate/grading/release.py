@@ -37,7 +37,7 @@ from typing import Annotated, NamedTuple
 import typer
 
 from solutions.checks import BadInput
-from validate.run.processes import one_sentence
+from validate.run.command import start
 from validate.run.store import writable
 from validate.subject import generate, modules
 from validate.subject.modules import ROOT
@@ -513,8 +513,7 @@ def write(out, files):
 def main(arguments=None):
     """Run the command line."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    with one_sentence("release"):
-        app([f"{a}={EVERY}" if a == "--with-solutions" else a for a in arguments], prog_name="release")
+    start("release", app, [f"{a}={EVERY}" if a == "--with-solutions" else a for a in arguments])
 
 
 if __name__ == "__main__":

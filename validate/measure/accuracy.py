@@ -9,6 +9,7 @@ from solutions.checks import BadInput
 
 from ..check import Role, Verdict, jsonable
 from ..methods import engine_look
+from ..reference import contact_laws
 from ..reference.stored import agreed
 from ..scene import ROUND_OFF, parameter_table
 from ..subject.modules import report_text
@@ -23,6 +24,7 @@ class Outcome(NamedTuple):
     observed: np.ndarray | None
     failure: str | None = None
     attempted: bool = True
+    laws: list | None = None             # of contact, in its watched steps: fields of each Law
 
 
 @with_overrides
@@ -73,7 +75,7 @@ def unfinished_curve(runner, why):
     """Return the curve of a method of ours that does not come to its end in a case: it has no runs, and says why."""
     return {"label": runner.label, "rows": [], "order": None, "expected": runner.order, "verdict": Verdict.UNFINISHED,
             "message": why, "departure_reason": "", "unpredicted": "", "measured": runner.measured, "reference": False,
-            **our_look(runner)}
+            "laws": [], **our_look(runner)}
 
 
 # ---------------------------------------------------------------------------------------------- runs
@@ -105,16 +107,22 @@ def run_to_end(scene, step, p, steps, asked=False):
     return finite(observed)
 
 
-def run_engine_to_end(scene, engine, p, steps):
-    """Return the Outcome of an engine after this number of steps."""
+def run_engine_to_end(scene, engine, p, steps, allowed=None):
+    """Return the Outcome of an engine after this number of steps.
+
+    allowed: the laws of contact then judge its watched steps, with what they allow it
+    """
+    laws = None
     world = engine.make(p, scene.duration / steps)
     try:
         for _ in range(steps // engine.substeps):
             world.step()
         observed = np.array(world.read(), dtype=float)
+        if allowed:
+            laws = [law._asdict() for law in contact_laws.judged(world.watched(), allowed)]
     finally:
         world.close()
-    return finite(observed)
+    return finite(observed)._replace(laws=laws)
 
 
 def finite(observed):
@@ -160,7 +168,7 @@ def engine_curve(selection, case, runner, p, truth):
              "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
         source = f"live, {engine.product} {engine.product.installed()}"
-        runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(runner, p))
+        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.laws)) for n in selection.steps_of(runner, p))
     else:
         record = traces.recorded(selection.name, case, engine)
         if record is None:
@@ -169,10 +177,10 @@ def engine_curve(selection, case, runner, p, truth):
                        "verdict": Verdict.UNDECIDED}
             return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "",
                     "unpredicted": reason(runner), "measured": runner.measured,
-                    "reference": runner.is_reference(p)}
+                    "reference": runner.is_reference(p), "laws": []}
         source = record["source"]
-        runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
-                for r in record["runs"]]
+        runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"],
+                                    laws=r.get("laws"))) for r in record["runs"]]
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
     return {**about, **found, "source": source}
 
@@ -216,11 +224,14 @@ def judged(scene, runner, p, truth, runs, enough):
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
+    laws = outcome.laws if verdict is Verdict.UNDECIDED and outcome.laws else []
+    if laws:
+        verdict, message = contact_laws.verdict_on([contact_laws.Law(**law) for law in laws])
     if runner.is_reference(p):
         verdict, message = Verdict.REFERENCE, ""
     found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
              "message": message, "departure_reason": "", "unpredicted": reason(runner), "measured": runner.measured,
-             "reference": runner.is_reference(p)}
+             "reference": runner.is_reference(p), "laws": laws}
     if departure is None:
         return found
     return {**found, "verdict": Verdict.FOLLOWS_OWN_LAW if verdict is Verdict.AGREES else verdict,

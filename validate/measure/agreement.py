@@ -7,6 +7,7 @@ import json
 
 from ..methods import SETTLED_LOOP
 from ..reference.stored import RECORDED, kept, key_of
+from ..run.command import start
 from ..run.store import whole
 from ..scenes.simulator import dominoes
 from ..subject import modules
@@ -58,4 +59,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    start("python -m validate.measure.agreement", main)

@@ -23,7 +23,7 @@ def picture(selection, p, agreeing):
             shown = {"our run": (Role.OURS, frames)}
         return {"seconds": seconds, "dt": 0.0, "links": links(scene, p), "look": scene.link_look,
                 "films": films(scene, shown, p), "space": in_space(scene, shown, p, seconds or 1.0)}
-    steps = scene.steps[min(selection.plan.enough(), len(scene.steps) - 2) - 1]
+    steps = scene.steps[min(selection.plan.enough() + 1, len(scene.steps) - 2) - 1]      # finer than what is judged
     per_frame = max(1, steps // FRAMES)
     seconds = scene.film_seconds or scene.duration
     dt = seconds / (per_frame * FRAMES)

@@ -17,7 +17,7 @@ from solutions.support.model import make_model
 from solutions.support.shapes import Ball
 
 from ..check import jsonable
-from ..worlds.ours import lesson_of
+from ..worlds.ours import compiled_advance, lesson_of
 from . import dimension
 from .accuracy import relative
 from .timing import Timed, interleaved, seconds_per_step
@@ -119,24 +119,26 @@ def shaped(model):
     return make_model(bodies, model.gravity, model.joints, model.springs, model.loads)
 
 
-def advancing(lesson, names, loop):
-    """Return the function (steps, dt) → PileState of a loop, with the functions of a plain or a compiled lesson."""
-    twin = lambda function: getattr(lesson, function.__name__, function)
-    parts = lesson_of("solutions").padded(loop._replace(parts=[Part(getattr(lesson, name)) for name in names]))
-    rest = twin(loop.load), twin(loop.bounds), twin(loop.narrow), 0.0, loop.state
-    return lambda steps, dt: lesson.advance_parts(twin(loop.step.step), *map(twin, parts), *rest, dt, steps, loop.p)
+def advancing(of, compiled, names, loop):
+    """Return the function (steps, dt) → PileState of a loop of a subject, plain or compiled, with the parts named."""
+    lesson = lesson_of(of)
+    loop = loop._replace(parts=[Part(getattr(lesson, name)) for name in names])
+    advance = compiled_advance(loop, of) if compiled else partial(lesson.run_parts, loop)
+    return lambda steps, dt: advance(0.0, loop.state, dt, steps)
 
 
 def rows_of(selection, described, model, p, speeds):
     """Return the rows of all parts at these speeds."""
-    plain, see = lesson_of(selection.plan.of), partial(seen_in, described, p)
+    of, see = selection.plan.of, partial(seen_in, described, p)
+    plain = lesson_of(of)
     loops, lifted = variants(plain, model), (dimension.in_both(plain, shaped(model)) if model.d == 2 else None) or {}
 
-    def composed(lesson):
-        return {name: Run(advancing(lesson, *one), partial(see, partial(plain.state_of, one[1])))
+    def composed(compiled):
+        return {name: Run(advancing(of, compiled, *one), partial(see, partial(plain.state_of, one[1])))
                 for name, one in loops.items()}
 
-    def in_space(lesson):
+    def in_space(compiled):
+        lesson = lesson_of(of, compiled)
         return {dim: Run(dimension.advancing(lesson, one), partial(see, partial(dimension.state_in_plane, one)))
                 for dim, one in lifted.items()}
     rows = priced(selection, composed, [*((part, WITH, part) for part in WITHOUT), (TOTAL, WITH, OWN)], speeds)
@@ -154,11 +156,10 @@ def seen_in(described, p, read, state):
 def priced(selection, runs_of, pairs, speeds):
     """Return a row for each speed and each of `pairs`, (part, name of the run with it, name of the run without it).
 
-    runs_of(lesson) → {name: Run}.  All runs of one speed are timed alternately.  Their ends are observed at the last
+    runs_of(compiled) → {name: Run}.  All runs of one speed are timed alternately.  Their ends are observed at the last
     speed, the fastest, which gets farthest.
     """
-    of, rows = selection.plan.of, []
-    runs = {speed: runs_of(lesson_of(of, speed == "compiled")) for speed in speeds}
+    rows, runs = [], {speed: runs_of(speed == "compiled") for speed in speeds}
     dt, far = length_of_run(selection.scene, runs[speeds[-1]][pairs[0][1]].advance, SEEN)
     seen = {name: observed(run, far, dt) for name, run in runs[speeds[-1]].items()}
     until = far * dt / selection.scene.duration

@@ -26,7 +26,7 @@ def record(name):
     witnesses = [r.who for r in scene.engine_runners if r.who.product == PYBULLET]
     if not witnesses:
         return None
-    runs = {case: {r.label: readings(selection, r.who, p) for r in selection.engines_for(p)
+    runs = {case: {r.label: readings(selection, r, p) for r in selection.engines_for(p)
                    if r.who in witnesses and r.who.recorded_as is None}
             for case, p in scene.cases.items()}
     p, shown = scene.parameters, [e for e in witnesses if e.recorded_as is None][-1]
@@ -62,13 +62,14 @@ def numbers_of(scene):
     return found
 
 
-def readings(selection, engine, p):
-    """Return what the engine reads at T, for each number of steps."""
+def readings(selection, runner, p):
+    """Return what the engine reads at T, for each number of steps, and what the laws of contact say of its run."""
     found = []
     for steps in selection.steps:
-        if steps <= (engine.most_steps or steps):
-            outcome = run_engine_to_end(selection.scene, engine, p, steps)
-            found.append({"steps": steps, "observed": outcome.observed, "failure": outcome.failure})
+        if steps <= (runner.who.most_steps or steps):
+            outcome = run_engine_to_end(selection.scene, runner.who, p, steps, runner.laws)
+            found.append({"steps": steps, "observed": outcome.observed, "failure": outcome.failure,
+                          **({"laws": outcome.laws} if outcome.laws else {})})
     return found
 
 

@@ -17,7 +17,7 @@ from ..products import PYBULLET, PYMUNK
 from ..scene import Scene
 from ..subject import modules
 
-REPEATS = 9                  # of a timed run; fewer only of long ones in plain Python
+REPEATS = 9                  # of a timed run; fewer of long ones
 NOTEBOOK = 0.02              # longest time of a timed run in a notebook [s]
 
 
@@ -36,19 +36,21 @@ class Plan(NamedTuple):
 
         A quick run leaves longer ones to --full, and a full run leaves them out.
         """
-        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.1, 0.4)
-        return {"plain": ours, "compiled": ours, "engine": engine}
+        if self.most_steps:
+            return dict.fromkeys(("plain", "compiled", "engine"), NOTEBOOK)
+        plain, compiled, engine = (0.003, 0.003, 0.01) if self.quick else (0.03, 0.1, 0.4)
+        return {"plain": plain, "compiled": compiled, "engine": engine}
 
     def repeats(self):
         """Return the number of timed repeats; fewer in a notebook, where the reader is waiting."""
         return 3 if self.most_steps else REPEATS
 
     def enough(self):
-        """Return how many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.
+        """Return how many of a curve's runs are judged before it ends: three in a quick validation, not in a notebook.
 
-        Finer runs take most of the time, and the coarser ones show a fault as well.
+        Finer runs take most of the time, and the coarser ones show a fault as well.  Three runs show an order.
         """
-        return 4 if self.quick and not self.most_steps else np.inf
+        return 3 if self.quick and not self.most_steps else np.inf
 
 
 class Selection(NamedTuple):
@@ -187,7 +189,7 @@ def notes_of(scene, plan, ours):
         return omitted
     slow = [r.label for r in scene.our_runners if r not in ours]
     plain = [r.label for r in ours if speeds_of(scene, plan, r) != plan.speeds]
-    finest = "finer steps, where four runs of a method or an engine can be judged already"
+    finest = "finer steps, where three runs of a method or an engine can be judged already"
     short = [r.label for r in ours if r.most_in_quick]
     slow_cases = [case for case in scene.cases if any(case in r.slow_cases for r in scene.our_runners)]
     several = len(scene.cases) > 1 and scene.moves and scene.engine_runners

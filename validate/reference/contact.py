@@ -137,6 +137,41 @@ def turning(omega, inv_inertia):
     return omega[:, None] * about_z, inv_inertia[:, None, None] * np.outer(about_z, about_z)
 
 
+def relative_motion(bodies, a, b, p_a, p_b):
+    """Return u (c, 3) [m/s] of contacts at p_a on body a and at p_b on body b; bodies = (x, v, ω), each (n, 3)."""
+    x, v, omega = bodies
+    return v[a] + np.cross(omega[a], p_a - x[a]) - v[b] - np.cross(omega[b], p_b - x[b])
+
+
+def natural_parts(inverse, x, u, contacts, gap, J, mu, dt, axes=None):
+    """Return the residuals (c,), (c,) [m/s] of Signorini's and of Coulomb's law at each contact: see natural_residual.
+
+    inverse = (inverse masses (n,), inverse moments (n, 3, 3));    u (c, 3) relative velocities after the step;
+    contacts = (a, b, n, p_a, p_b), where the impulses act on a and on b;    axes (c, 2, 3): friction is a pyramid,
+    with each component at most μ J_n;    None: it is a cone
+    """
+    (inv_mass, inv_inertia), (a, b, n, p_a, p_b) = inverse, contacts
+    k_n, trace = np.zeros(len(n)), np.zeros(len(n))
+    for body, p in ((a, p_a), (b, p_b)):
+        r = p - x[body]
+        lever = np.cross(r, n)
+        k_n += inv_mass[body] + np.einsum("ki,kij,kj->k", lever, inv_inertia[body], lever)
+        around = np.trace(inv_inertia[body], axis1=1, axis2=2)
+        trace += (3.0 * inv_mass[body] + np.sum(r**2, axis=1) * around
+                  - np.einsum("ki,kij,kj->k", r, inv_inertia[body], r))
+    k_t, J_n, u_n = trace - k_n, np.sum(n * J, axis=1), np.sum(n * u, axis=1)
+    J_t, u_t = J - J_n[:, None] * n, u - u_n[:, None] * n
+    pushed = np.maximum(0.0, J_n - (u_n + np.maximum(gap, 0.0) / dt) / k_n)
+    stuck, limit = J_t - u_t / k_t[:, None], mu * np.maximum(J_n, 0.0)
+    if axes is None:
+        size = np.linalg.norm(stuck, axis=1)
+        held = stuck * np.where(size > limit, limit / np.where(size > 0.0, size, 1.0), 1.0)[:, None]
+    else:
+        along = np.einsum("cad,cd->ca", axes, stuck)
+        held = np.einsum("cad,ca->cd", axes, np.clip(along, -limit[:, None], limit[:, None]))
+    return k_n * np.abs(pushed - J_n), k_t * np.linalg.norm(held - J_t, axis=1)
+
+
 def natural_residual(bodies, contacts, J, mu, dt):
     """Return the residual [m/s] of the laws of Signorini and Coulomb for impulses J (m, d) of a step dt, d = 2 or 3.
 
@@ -153,23 +188,9 @@ def natural_residual(bodies, contacts, J, mu, dt):
     (x, v, omega, inv_mass, inv_inertia), (a, b, n, p, gap) = bodies, contacts
     x, v, n, p, J = (in_space(each) for each in (x, v, n, p, J))
     omega, inv_inertia = turning(omega, inv_inertia)
-    u, k_n, trace = np.zeros_like(n), np.zeros(len(n)), np.zeros(len(n))
-    for body, sign in ((a, 1.0), (b, -1.0)):
-        r = p - x[body]
-        u += sign * (v[body] + np.cross(omega[body], r))
-        lever = np.cross(r, n)
-        k_n += inv_mass[body] + np.einsum("ki,kij,kj->k", lever, inv_inertia[body], lever)
-        around = np.trace(inv_inertia[body], axis1=1, axis2=2)
-        trace += (3.0 * inv_mass[body] + np.sum(r**2, axis=1) * around
-                  - np.einsum("ki,kij,kj->k", r, inv_inertia[body], r))
-    k_t, J_n, u_n = trace - k_n, np.sum(n * J, axis=1), np.sum(n * u, axis=1)
-    J_t, u_t = J - J_n[:, None] * n, u - u_n[:, None] * n
-    pushed = np.maximum(0.0, J_n - (u_n + np.maximum(gap, 0.0) / dt) / k_n)
-    stuck, limit = J_t - u_t / k_t[:, None], mu * np.maximum(J_n, 0.0)
-    size = np.linalg.norm(stuck, axis=1)
-    held = stuck * np.where(size > limit, limit / np.where(size > 0.0, size, 1.0), 1.0)[:, None]
-    apart = k_n * np.abs(pushed - J_n), k_t * np.linalg.norm(held - J_t, axis=1)
-    return max(np.max(each, initial=0.0) for each in apart)
+    u = relative_motion((x, v, omega), a, b, p, p)
+    parts = natural_parts((inv_mass, inv_inertia), x, u, (a, b, n, p, p), gap, J, mu, dt)
+    return max(np.max(each, initial=0.0) for each in parts)
 
 
 def enumerated(A, b):

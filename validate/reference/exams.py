@@ -36,6 +36,14 @@ def iftomm_class(error):
     return "high precision" if error <= HIGH else "low precision" if error <= LOW else ""
 
 
+def velocity_error(outputs, reference):
+    """Return SimBenchmark's error [m²/s²] of (outputs, (place, velocity) of the box and of a ball): the mean over the
+    outputs of the squared errors of both velocities.
+    """
+    off = (np.asarray(outputs) - np.asarray(reference)).reshape(-1, 2, 2, 3)[:, :, 1]
+    return float(np.mean(np.sum(off * off, axis=(1, 2))))
+
+
 def largest_relative_error(y, reference):
     """Return the largest relative error of any component: −log₁₀ of it are the correct digits.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import solve_banded
-from scipy.sparse import block_diag, csr_matrix, identity, kron
+from scipy.sparse import bsr_matrix, csr_matrix, identity, kron
 from scipy.sparse.linalg import spsolve
 from scipy.special import ellipj, ellipk
 
@@ -212,7 +212,7 @@ def weave_rest(cloth, begin):
     """
     B, free = cloth.matrix(), np.flatnonzero(cloth.free())
     columns = (3 * free[:, None] + np.arange(3)).ravel()
-    wide = kron(B, identity(3), format="csr")[:, columns]
+    wide, springs = kron(B, identity(3), format="csr")[:, columns], np.arange(len(cloth.pairs))
     x, damping = begin.copy(), 1.0
 
     def energy(x):
@@ -229,7 +229,7 @@ def weave_rest(cloth, begin):
             break
         slack = cloth.k * (1.0 - cloth.rest / length)
         blocks = (cloth.k - slack)[:, None, None] * n[:, :, None] * n[:, None, :] + slack[:, None, None] * np.eye(3)
-        H = wide.T @ block_diag(blocks, format="csr") @ wide
+        H = wide.T @ bsr_matrix((blocks, springs, np.arange(len(springs) + 1))) @ wide
         while True:
             step = np.zeros_like(x)
             step[free] = spsolve((H + damping * identity(len(columns))).tocsc(), -pull).reshape(-1, 3)
@@ -255,18 +255,24 @@ GAMMA = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))                # Suzuki 1990
 
 
 def links_of(x):
-    return np.diff(x, axis=0)
+    return x[1:] - x[:-1]
+
+
+@cache
+def coupling(n):
+    """Return BBᵀ (n, n) of n links, without the row of the fixed point of B."""
+    weights = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    weights[0, 0] = 1.0
+    return weights
 
 
 def along_links(x, z, right):
     """Return the change of all points along the links of x with (link s of z) · (change of link s) = right[s].
 
-    Σ_r (z_s · x_r) (BBᵀ)_sr λ_r = right_s,  without the rows of the fixed point of B; a dense solve.
+    Σ_r (z_s · x_r) (BBᵀ)_sr λ_r = right_s: a dense solve.
     """
-    d, n = links_of(x), len(x) - 1
-    weights = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
-    weights[0, 0] = 1.0
-    pull = np.linalg.solve(links_of(z) @ d.T * weights, right)[:, None] * d
+    d = links_of(x)
+    pull = np.linalg.solve(links_of(z) @ d.T * coupling(len(d)), right)[:, None] * d
     change = np.zeros_like(x)
     change[1:] += pull
     change[1:-1] -= pull[1:]
@@ -361,7 +367,7 @@ class RopeMotion(NamedTuple):
 
     def predict(self, step, order):
         """Return the field `predicted` of a Runner that takes these steps."""
-        law = self.error_law(partial(rope_after, step), order, FINEST[order])
+        law = rope_law(self, step, order)
 
         def predicted_error(p, dt):
             """The error, with its sign, of the same step with a dense matrix: at the same step where that is coarse,
@@ -375,7 +381,7 @@ class RopeMotion(NamedTuple):
 
         Their error is known to a factor of two only.
         """
-        law = self.error_law(partial(rope_after, step), order, FINEST[order])
+        law = rope_law(self, step, order)
 
         def predicted_error(p, dt):
             """pymunk moves the points first and then corrects each link within one step.
@@ -384,6 +390,12 @@ class RopeMotion(NamedTuple):
             """
             return widened(law(p), dt, self.floor(p, dt), UNFINISHED)
         return predicted_error
+
+
+@cache
+def rope_law(motion, step, order):
+    """Return p → ErrorLaw of a rope that takes these steps: methods and engines with the same step share its runs."""
+    return motion.error_law(partial(rope_after, step), order, FINEST[order])
 
 
 def widened(law, dt, floor, share):

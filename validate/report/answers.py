@@ -106,6 +106,8 @@ def departures(results):
     compared = [one for one in curves_of(results, "engines") if Verdict(one[2]["verdict"]) is not Verdict.REFERENCE]
     return {"lines": lines, "undecided": undecided, "runs": len(compared),
             "depart": sum(line["cases"] for line in lines),
+            "by_laws": sum(Verdict(c["verdict"]) in (Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN)
+                           for _, _, c in compared),
             "open": sum(Verdict(c["verdict"]) is Verdict.UNDECIDED for _, _, c in compared),
             "agree": sum(Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in compared),
             "scenes": len({scene for line in lines for scene in line["places"]})}

@@ -134,6 +134,8 @@ def of_curve(curve, case, result):
     if (order is None) != (curve["order"] is None) or (order is not None and abs(order - curve["order"]) > 1e-6):
         yield f"the order is {curve['order']}, but its rows show {order}"
     verdict = None if curve["reference"] else verdict_of(judged, curve["expected"], order, own is not None)
+    if verdict is Verdict.UNDECIDED and curve.get("laws"):
+        verdict = verdict_by_laws(curve["laws"])
     if verdict is not None and verdict is not Verdict(curve["verdict"]):
         yield f"the verdict is {curve['verdict']!r}, but its rows say {verdict.value!r}"
 
@@ -175,6 +177,15 @@ def verdict_of(rows, expected, order, has_own_law):
     if expected in (1, 2, 4) and order is not None and order < expected - 0.3 and len(unpredicted) >= 2:
         return Verdict.DEPARTS
     return Verdict.FOLLOWS_OWN_LAW if has_own_law else Verdict.AGREES
+
+
+def verdict_by_laws(laws):
+    """Return the Verdict that stored laws of contact give.  None is a number that is not finite."""
+    lost = [law for law in laws if law["found"] is None or law["found"] > law["allowed"]]
+    if any(law["found"] is None or not law["reason"] or (law["known"] is not None and law["found"] > law["known"])
+           for law in lost):
+        return Verdict.DEPARTS
+    return Verdict.BREAKS_AS_KNOWN if lost else Verdict.KEEPS_LAWS
 
 
 # ---------------------------------------------------------------------------------------------- times

@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from solutions.checks import BadInput
 
-from ..check import Verdict
+from ..check import JUDGED_RIGHT, Verdict
 from ..products import PRODUCTS
 from .words import busy_warning
 
-GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.REFERENCE}
+GOOD = {*JUDGED_RIGHT, Verdict.REFERENCE}
 ORDER = 0.05                 # a smaller change of an order is noise of the fit [-]
 ERROR = 0.01                 # a smaller relative change of an error is not listed [-]
 ROUND_OFF = 1e-11            # relative errors below this are round-off, and differ from machine to machine [-]

@@ -25,6 +25,7 @@ MARK = re.compile(f"<!-- {DRAWN_FROM}(?P<data>[0-9a-f]+)( as (?P<text>[0-9a-f]+)
 NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 9, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 WIDTH, HEIGHT = 5.2, 3.4        # of the axes with their labels [in]: as wide as a phone shows without shrinking letters
+PAGE = 10.0                     # widest figure of a notebook [in]: a page shrinks what is wider, and its letters
 LARGEST, SMALLEST = 8.0, 4.5    # markers of the lowest and of the uppermost curve [pt]
 MARKERS = "o^sDvP<>hdX*p8H"     # of the things in a stability picture that are no method
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 3)), (0, (3, 2, 1, 2, 1, 2)))
@@ -357,6 +358,6 @@ def _margins(figure, axes, title):
     """Leave room for labels and legend by their length in letters: finding it by drawing twice takes twice as long."""
     longest = max(map(len, [title or "", *axes.get_legend_handles_labels()[1]]))
     left, bottom, top, right = 0.85, 0.6, 0.35, 0.6 + LETTER * longest
-    width, height = 6.0 + left + right, 4.0 + bottom + top
+    width, height = min(6.0 + left + right, PAGE), 4.0 + bottom + top
     figure.set_size_inches(width, height)
     figure.subplots_adjust(left / width, bottom / height, 1.0 - right / width, 1.0 - top / height)

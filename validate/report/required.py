@@ -4,13 +4,14 @@
 repository, so that the list of an earlier commit can judge a report of that commit.
 """
 
-import argparse
 import json
 import subprocess
-import sys
 from pathlib import Path
+from typing import Annotated
 
-from ..run.processes import one_sentence
+import typer
+
+from ..run.command import start
 from ..run.store import read_whole, write_text
 from ..stability.examine import all_cases, examine, stored
 from ..subject import modules
@@ -120,11 +121,9 @@ def same(found, theory):
             and abs(tolerance - tolerance_there) <= NEAR * tolerance_there)
 
 
-def main(arguments):
+def main(lesson: Annotated[list[str] | None, typer.Argument(help="Such as springs.")] = None):
     """Run the stability cases of these lessons, or of all, and write the list."""
-    parser = argparse.ArgumentParser(prog="python -m validate.report.required", description=main.__doc__)
-    parser.add_argument("lesson", nargs="*", help="such as springs")
-    lessons = parser.parse_args(arguments).lesson or modules.lesson_names()
+    lessons = lesson or modules.lesson_names()
     for name in lessons:
         modules.bind(name)               # raises BadInput for a name that is no lesson
     names = {place(case._asdict()) for case in all_cases()}
@@ -134,5 +133,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    with one_sentence("required"):
-        main(sys.argv[1:])
+    start("python -m validate.report.required", main)

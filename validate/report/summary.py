@@ -12,9 +12,11 @@ from . import races, words
 from .numbers import factor, percent, rounded
 
 SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"), Verdict.FOLLOWS_OWN_LAW: ("≈", "green"),
+         Verdict.BREAKS_AS_KNOWN: ("≈", "green"), Verdict.KEEPS_LAWS: ("§", "green"),
          Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow"),
          Verdict.UNFINISHED: ("○", "yellow")}            # a reference counts nowhere
-LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided, unfinished, not attempted\n"
+LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   § keeps the laws of contact   ✗ departs\n"
+          "○ undecided, unfinished, not attempted\n"
           f"order: the highest of ours.   faster: the engine's time to an error of {percent(HEADLINE)},\n"
           "over our time to the same error; the smallest of the engines' ratios.")
 
@@ -81,7 +83,8 @@ def by_lesson(report):
     """
     run, level = report["run"], percent(HEADLINE)
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
-             "✓ agrees with the truth · ≈ as predicted, by a law of its own · ✗ departs · ○ undecided.", "",
+             "✓ agrees with the truth · ≈ as predicted, by a law of its own · § keeps the laws of contact · "
+             "✗ departs · ○ undecided.", "",
              f"| lesson | scenes | our methods | engines | stability | engine's time over ours, to {level} error | "
              "losses, ties, undecided |",
              "|---|---|---|---|---|---|---|"]

@@ -16,15 +16,22 @@ from . import races
 from .numbers import engine_name, number, percent, percents, rounded
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
-         Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open", Verdict.UNFINISHED: "open",
+         Verdict.KEEPS_LAWS: "laws", Verdict.BREAKS_AS_KNOWN: "predicted", Verdict.UNDECIDED: "open",
+         Verdict.NOT_ATTEMPTED: "open", Verdict.UNFINISHED: "open",
          Verdict.REFERENCE: "reference"}                                       # classes of the style sheet
-SIGNS = {"agrees": "✓", "predicted": "≈", "departs": "✗", "open": "○"}         # as the style sheet draws them
+SIGNS = {"agrees": "✓", "predicted": "≈", "laws": "§", "departs": "✗", "open": "○"}  # as the style sheet draws them
 LEGEND = {                   # every verdict has one name and one sign
     Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured, "
                     "except where the page calls it measured. Where theory predicts the error itself, a second code "
                     "with the same scheme computes it: the run must miss the truth by just that error.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
+    Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. What the engine reports of its own steps keeps the "
+                        "laws that hold for every solver: balances of momentum, angular momentum and energy, "
+                        "no impulse that pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of "
+                        "g dt.",
+    Verdict.BREAKS_AS_KNOWN: "The same laws judge it, and it breaks one of them by a rule of its own, which the scene "
+                             "names beforehand, and by no more than that rule can.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
     Verdict.UNDECIDED: "No theory says how far it may be off, or every step was too coarse, or the engine is missing "
                        "here. The error is shown and not judged.",
@@ -66,8 +73,8 @@ def verdicts(curves):
     """Return [(text, kind, count)] of several curves at once."""
     count = Counter(Verdict(c["verdict"]) for c in curves)
     return [(one.value, KINDS[one], count[one]) for one in
-            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED,
-             Verdict.UNFINISHED, Verdict.REFERENCE)
+            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.KEEPS_LAWS,
+             Verdict.BREAKS_AS_KNOWN, Verdict.UNDECIDED, Verdict.UNFINISHED, Verdict.REFERENCE)
             if count[one]]
 
 

@@ -17,6 +17,7 @@ from ..stability.examine import all_cases
 from ..subject import modules
 
 STABILITY = "stability/"
+PARTS = ast.Name, ast.Attribute, ast.Constant, ast.ImportFrom
 CHECKS = "check"             # begins the names of functions that refuse bad input, which no scene gives
 CHECKED_ELSEWHERE = "records", "model_checks"            # modules of such functions: the tests of students call them
 
@@ -30,8 +31,8 @@ def trees():
 
 @cache
 def parts(piece):
-    """Return all names, attributes and constants in a piece of source."""
-    return [node for node in ast.walk(piece) if isinstance(node, (ast.Name, ast.Attribute, ast.Constant))]
+    """Return all names, attributes, constants and imports in a piece of source."""
+    return [node for node in ast.walk(piece) if isinstance(node, PARTS)]
 
 
 def imported(tree, home=""):
@@ -50,7 +51,7 @@ def imported(tree, home=""):
 
 def from_solutions(tree, home=""):
     """Yield (import, module below solutions) of what a file imports from there."""
-    for node in ast.walk(tree):
+    for node in parts(tree):
         if isinstance(node, ast.ImportFrom):
             module = node.module or ""
             if node.level:

@@ -4,6 +4,8 @@ import os
 import platform
 import re
 import subprocess
+import threading
+from contextlib import suppress
 from datetime import date
 from importlib.metadata import version
 from pathlib import Path
@@ -23,13 +25,16 @@ def run(names, plan, pool, out, console, measuring=None):
 
     pool: processes of this machine, which draw the report;    measuring: what measures, where that is not the pool
     """
-    from ..report import summary  # brings matplotlib along
     store = store_for(out, plan, names)
+    prepared = threading.Thread(target=prepare, daemon=True)
+    prepared.start()
     columns = TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     with Progress(*columns, console=console) as bars:
         measure_errors(store, names, plan, measuring or pool, bars)
+        prepared.join()                                  # nothing else runs while a clock does
         measure_times(store, names, plan, measuring or pool, bars)
         front = report_on(store, names, plan, pool, bars, measuring)
+    from ..report import summary
     departures = summary.show(console, store.results(names), store.stability(names))
     if store.out != out:
         console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.",
@@ -39,6 +44,13 @@ def run(names, plan, pool, out, console, measuring=None):
     if lost:
         console.print(f"Nothing in the report runs {', '.join(lost)}.", highlight=False, soft_wrap=True)
     return 1 if departures or lost else 0
+
+
+def prepare():
+    """Do what takes the run itself seconds and needs no result, while its processes measure."""
+    with suppress(Exception):                            # what fails here fails again in the run, and is said there
+        from .. import report  # noqa: F401    brings matplotlib along
+        coverage.table()
 
 
 def measure_errors(store, names, plan, pool, bars):

@@ -49,9 +49,9 @@ def constantly(value):
 ONE_LINK = constantly([(0, 1)])          # of a picture of two points
 
 
-def one_reading(read, close=lambda: None):
+def one_reading(read, close=lambda: None, watched=None):
     """Return the EngineRun of a computation without steps: one long reading."""
-    return EngineRun(lambda: None, read, close)
+    return EngineRun(lambda: None, read, close, watched)
 
 
 # ---------------------------------------------------------------------------------------------- limits

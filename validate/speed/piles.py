@@ -2,7 +2,8 @@
 
 Kinds: discs, boxes (in the plane), spheres, bricks (in space).  Ours and an engine run the same bodies from the same
 settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping, in a process of their own.  Times are CPU times
-of all its threads.  An engine runs with its defaults, and tuned so that its bodies overlap less.
+of all its threads.  An engine runs with its defaults, and tuned so that its bodies overlap less.  Against each engine
+ours takes the fewest substeps with which its bodies overlap no more than the engine's.
 Overlaps are judged by `reference/overlaps.py`, which uses no code of the lessons.
 
 The cost of a step should grow as n to the power of 1, within a tenth, from 100 to 10,000 bodies; all sizes are timed in
@@ -31,10 +32,16 @@ from .opponents import Box2DPile, MuJoCoPile, RapierPile
 
 BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
-SIZES = (100, 316, 1000, 3162, 10_000)  # bodies of the piles whose cost is compared
+SIZES = (100, 316, 1000, 3162, 10_000, 31_623, 100_000)  # bodies of the piles whose cost is compared
+ENGINE_UP_TO = 10_000        # of these, the largest pile with which the tuned engine is timed
 LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
 GROWTH = (0.9, 1.1)          # goal: the power of n with which the cost of a step grows [-]
 ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
+
+
+FEW, FEWER = (2, 160.0), (1, 80.0)       # (substeps, hertz): each as stiff as its substeps allow
+LOOSE, FIRM = {"discs": FEWER, "boxes": FEWER}, {"discs": FEW, "boxes": FEW}
+SOFT_SPACE = {"spheres": FEWER, "bricks": FEWER}
 
 
 class Rival(NamedTuple):
@@ -43,23 +50,24 @@ class Rival(NamedTuple):
     settings: str            # for people
     make: Callable           # (kind, state, pile) → what has run(steps) and places()
     goal: dict               # {kind: greatest ratio of times, ours over its}
+    ours: dict               # {kind: (substeps, hertz) of ours, where fewer than usual overlap no more than the engine}
 
 
 PLANE = (
-    Rival(PYMUNK, "10 iterations", partial(PymunkPile, iterations=10), {"discs": 0.5, "boxes": 0.5}),
-    Rival(BOX2D, "defaults: 4 substeps, 30 Hz, slop 5 mm", Box2DPile, {}),
-    Rival(BOX2D, "2 substeps", partial(Box2DPile, substeps=2), {}),
+    Rival(PYMUNK, "10 iterations", partial(PymunkPile, iterations=10), {"discs": 0.5, "boxes": 0.5}, {}),
+    Rival(BOX2D, "defaults: 4 substeps, 30 Hz, slop 5 mm", Box2DPile, {}, LOOSE),
+    Rival(BOX2D, "2 substeps", partial(Box2DPile, substeps=2), {}, LOOSE),
     Rival(BOX2D, "tuned: 4 substeps, 240 Hz, slop 0.5 mm", partial(Box2DPile, hertz=240.0, unit=0.1),
-          {"discs": 0.6, "boxes": 0.6}),
+          {"discs": 0.6, "boxes": 0.6}, FIRM),
 )
 SPACE = (
-    Rival(PYBULLET, "10 iterations", partial(BulletPile, iterations=10), {"spheres": 0.25, "bricks": 0.5}),
-    Rival(PYBULLET, "50 iterations", partial(BulletPile, iterations=50), {"spheres": 0.1, "bricks": 0.3}),
-    Rival(RAPIER, "defaults: 4 iterations, 30 Hz, slop 1 mm", RapierPile, {}),
-    Rival(RAPIER, "2 iterations", partial(RapierPile, iterations=2), {}),
+    Rival(PYBULLET, "10 iterations", partial(BulletPile, iterations=10), {"spheres": 0.25, "bricks": 0.5}, {}),
+    Rival(PYBULLET, "50 iterations", partial(BulletPile, iterations=50), {"spheres": 0.1, "bricks": 0.3}, {}),
+    Rival(RAPIER, "defaults: 4 iterations, 30 Hz, slop 1 mm", RapierPile, {}, SOFT_SPACE),
+    Rival(RAPIER, "2 iterations", partial(RapierPile, iterations=2), {}, SOFT_SPACE),
     Rival(RAPIER, "tuned: 4 iterations, 120 Hz, slop 0.1 mm", partial(RapierPile, hertz=120.0, slop=1e-4),
-          {"spheres": 0.2, "bricks": 0.5}),
-    Rival(MUJOCO, "20 iterations of CG, contacts as stiff as two steps allow", MuJoCoPile, {}),
+          {"spheres": 0.2, "bricks": 0.5}, {"bricks": (2, 120.0)}),
+    Rival(MUJOCO, "20 iterations of CG, contacts as stiff as two steps allow", MuJoCoPile, {}, {}),
 )
 RIVALS = {2: PLANE, 3: SPACE}            # {dimension: engines}
 SETTLE_RIVAL = 480           # steps in which an engine settles from our state [-]
@@ -71,6 +79,11 @@ def functions(lesson, kind):
             (2, "box"): (lesson.advance_pile_2d, lesson.box_bounds_2d, lesson.box_contacts_2d),
             (3, "round"): (lesson.advance_pile, lesson.ball_bounds, lesson.round_contacts),
             (3, "box"): (lesson.advance_pile, lesson.box_bounds, lesson.box_contacts)}[kind.d, kind.shape]
+
+
+def compiled_lesson():
+    """Return lesson 9, compiled, as scenes call it: they find its machine code sooner than numba's own search does."""
+    return modules.module_set(compiled=True).lesson_of_scenes("contact")
 
 
 class Ours:
@@ -100,11 +113,11 @@ def directions(q):
     return Rotation.from_quat(q[:, [1, 2, 3, 0]]).as_matrix()
 
 
-def cpu_time(work):
+def cpu_time(work, steps=BLOCK):
     """Return milliseconds per step of one block, of all threads of this process."""
     began = time.process_time()
-    work.run(BLOCK)
-    return 1e3 * (time.process_time() - began) / BLOCK
+    work.run(steps)
+    return 1e3 * (time.process_time() - began) / steps
 
 
 class Race(NamedTuple):
@@ -116,13 +129,21 @@ class Race(NamedTuple):
     overlap_engine: tuple
 
 
+def with_settings(pile, rival, name):
+    """Return the pile with our settings against an engine."""
+    substeps, hertz = rival.ours.get(name, (pile.substeps, pile.hertz))
+    return pile._replace(substeps=substeps, hertz=hertz)
+
+
 def race(name, n, rival, rounds):
     """Return the Race of one kind of pile against one engine."""
     kind = KINDS[name]
     state, pile = fallen(kind, n)
-    ours = Ours(modules.bind("contact", compiled=True), kind, state, pile)
+    ours = Ours(compiled_lesson(), kind, state, pile)
     ours.run(round(SETTLE / DT))
     other = rival.make(kind, ours.state, pile)
+    ours.pile = with_settings(pile, rival, name)
+    ours.run(SETTLE_RIVAL)
     other.run(SETTLE_RIVAL)
     times = np.array([(cpu_time(ours), cpu_time(other)) for _ in range(rounds)])
     return Race(np.sort(times[:, 0] / times[:, 1]), *np.median(times, axis=0).tolist(),
@@ -144,22 +165,72 @@ def landed(lesson, name, n):
     return ours
 
 
-def growth(lesson, name, sizes, rounds):
-    """Return (power of n, [(n, ms per step, contacts per body)]): the slope of all medians, over logarithms."""
-    piles = [landed(lesson, name, n) for n in sizes]
-    times = np.median([[cpu_time(pile) for pile in piles] for _ in range(rounds)], axis=0)
-    power = np.polyfit(np.log(sizes), np.log(times), 1)[0]
-    return power, [(n, t, len(pile.state.contacts.a) / n) for n, t, pile in zip(sizes, times, piles)]
+class Size(NamedTuple):
+    """The cost of a pile of some size."""
+    bodies: int
+    contacts: int
+    ms: float                # median time of a step, ours
+    engine: float            # the same of the tuned engine; NaN where it is not timed
+    memory: float            # the most memory that the process has had until this pile had landed [GiB]
 
 
-def grow(lesson, names, rounds):
-    """Print how the cost of a step grows."""
-    table = Table("pile", "power of n", "goal", *(f"{n:,}: ms per step (contacts per body)" for n in SIZES))
+def growth(name, sizes, rounds):
+    """Return [Size]: all sizes are timed in turn, ours and, up to ENGINE_UP_TO, the last engine that has a goal."""
+    lesson, rows = compiled_lesson(), []
+    rival = next((one for one in reversed(RIVALS[KINDS[name].d]) if one.goal and one.product.installed()), None)
+    for n in sorted(sizes):
+        ours = landed(lesson, name, n)
+        memory, other = peak_memory(), None
+        if rival and n <= ENGINE_UP_TO:
+            other = rival.make(KINDS[name], ours.state, ours.pile)
+            other.run(BLOCK)
+        rows.append((n, ours, other, memory))
+    times = np.array([[(cpu_time(ours, few(n)), cpu_time(other, few(n)) if other else np.nan)
+                       for n, ours, other, _ in rows] for _ in range(rounds)])
+    return [Size(n, len(ours.state.contacts.a), *middle, memory)
+            for (n, ours, _, memory), middle in zip(rows, np.median(times, axis=0).tolist())]
+
+
+def few(n):
+    """Return the number of steps in a block: fewer where a step takes long."""
+    return min(BLOCK, max(2, 40_000 // n))
+
+
+def power(rows):
+    """Return the power of n with which the cost of a step grows: the slope of all medians, over logarithms."""
+    return np.polyfit(np.log([row.bodies for row in rows]), np.log([row.ms for row in rows]), 1)[0]
+
+
+def grow(names, most, rounds, figure=None):
+    """Print how the cost of a step grows; each kind in a process of its own, whose memory it shows."""
+    table = Table("pile", "power of n", "goal", "bodies", "contacts", "ms per step", "ns per contact and step",
+                  "tuned engine [ms]", "memory [GiB]")
+    sizes, found = [n for n in SIZES if n <= most], {}
     for name in names:
-        power, rows = growth(lesson, name, SIZES, rounds)
-        costs = [f"{ms:.3g} ({contacts:.1f})" for _, ms, contacts in rows]
-        table.add_row(name, f"{power:.2f}", f"{GROWTH[0]:g} to {GROWTH[1]:g}", *costs)
+        found[name] = rows = alone(growth, name, sizes, rounds)
+        for k, row in enumerate(rows):
+            first = (name, f"{power(rows):.2f}", f"{GROWTH[0]:g} to {GROWTH[1]:g}") if k == 0 else ("", "", "")
+            engine = f"{row.engine:.3g}" if row.engine == row.engine else "–"
+            table.add_row(*first, f"{row.bodies:,}", f"{row.contacts:,}", f"{row.ms:.3g}",
+                          f"{1e6 * row.ms / max(row.contacts, 1):.0f}", engine, f"{row.memory:.2f}")
     Console(width=160).print(table)
+    if figure:
+        draw_growth(found, figure)
+
+
+def draw_growth(found, path):
+    """Draw the time per contact and step against the number of bodies: a level line is a cost that grows as n."""
+    import matplotlib.pyplot as plt
+    chart, axis = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
+    for k, (name, rows) in enumerate(found.items()):
+        n, ms, engine, contacts = (np.array(column) for column in zip(*((r.bodies, r.ms, r.engine, r.contacts)
+                                                                          for r in rows)))
+        axis.plot(n, 1e6 * ms / contacts, "o-", color=f"C{k}", label=f"{name}: n to the power of {power(rows):.2f}")
+        axis.plot(n, 1e6 * engine / contacts, "x:", color=f"C{k}", label=f"{name}, tuned engine")
+    axis.set(xscale="log", yscale="log", xlabel="bodies", ylabel="CPU time per contact and step [ns]")
+    axis.legend(fontsize=9)
+    chart.savefig(path)
+    plt.close(chart)
 
 
 def peak_memory():
@@ -188,15 +259,22 @@ def compare(names, bodies, rounds):
     return found
 
 
+def our_settings(rival, name):
+    """Return our settings against an engine, in words."""
+    substeps, hertz = rival.ours.get(name, KINDS[name][-2:])
+    return f"{substeps} × {hertz:g} Hz"
+
+
 def show(races, bodies):
     """Print the time of a step and the overlap, ours and each engine's."""
-    table = Table("pile", "engine", "settings", "time, ours / engine", "middle half", "goal", "ours [ms]",
+    table = Table("pile", "engine", "settings", "ours", "time, ours / engine", "middle half", "goal", "ours [ms]",
                   "engine [ms]", "overlap, ours [mm]", "engine [mm]")
     for name, rows in races.items():
         for rival, one in rows:
             quarter, goal = len(one.ratios) // 4, rival.goal.get(name)
             depths = (f"{most:.2f}, mean {mean:.3f}" for most, mean in (one.overlap, one.overlap_engine))
-            table.add_row(f"{bodies} {name}", rival.product.name, rival.settings, f"{np.median(one.ratios):.3f}",
+            table.add_row(f"{bodies} {name}", rival.product.name, rival.settings, our_settings(rival, name),
+                          f"{np.median(one.ratios):.3f}",
                           f"{one.ratios[quarter]:.3f}–{one.ratios[-1 - quarter]:.3f}", f"{goal:g}" if goal else "–",
                           f"{one.ours:.3f}", f"{one.engine:.3f}", *depths)
     Console(width=200).print(table)
@@ -208,7 +286,8 @@ def draw(races, bodies, path):
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
     figure, panels = plt.subplots(1, len(races), figsize=(5.2 * len(races), 4.2), squeeze=False, layout="constrained")
     for panel, (name, rows) in zip(panels[0], races.items()):
-        points = [("ours", "", "#0072B2", "o", rows[0][1].overlap[1], np.median([one.ours for _, one in rows]))]
+        points = [("ours", our_settings(rival, name), "#0072B2", "o", one.overlap[1], one.ours)
+                  for rival, one in {our_settings(rival, name): (rival, one) for rival, one in rows}.values()]
         points += [(rival.product.name, rival.settings.partition(":")[0], rival.product.colour, rival.product.marker,
                     one.overlap_engine[1], one.engine) for rival, one in rows]
         for engine, settings, colour, marker, overlap, ms in points:
@@ -226,16 +305,16 @@ def draw(races, bodies, path):
     plt.close(figure)
 
 
-def measure(kinds, bodies, rounds, growth, memory, figure=None):
-    """Print the memory, the growth, or else the races of some kinds of piles; of all without names.
+def measure(kinds, bodies, rounds, growth, memory, figure=None, most=10_000):
+    """Print the memory, the growth up to `most` bodies, or else the races of some kinds of piles; of all without names.
 
-    figure: a file for a picture of the races.  Raises BadInput for an unknown kind.
+    figure: a file for a picture of the growth or of the races.  Raises BadInput for an unknown kind.
     """
     check_known("pile", kinds, KINDS)
     if memory:
-        remember(modules.bind("contact", compiled=True))
+        remember(compiled_lesson())
     if growth:
-        grow(modules.bind("contact", compiled=True), kinds or KINDS, rounds)
+        grow(kinds or KINDS, most, rounds, figure)
     if not (memory or growth):
         races = compare(kinds or KINDS, bodies, rounds)
         show(races, bodies)

@@ -24,7 +24,7 @@ from solutions.checks import BadInput
 from ..measure.selection import Plan, select
 from ..measure.timing import interval, time_ours
 from ..methods import BACKTRACKING, CONTINUOUS, LOOP_2D, RATTLE, RK4, RUNGE_KUTTA, SLIDING, TRIANGLES
-from ..run.processes import one_sentence
+from ..run.command import start
 from ..run.store import full_run
 from ..subject import modules
 from . import benchmark, piles, targets
@@ -197,5 +197,4 @@ def main(base: Annotated[str | None, typer.Option(help="Else that of the last fu
 
 
 if __name__ == "__main__":
-    with one_sentence("regression"):
-        typer.run(main)
+    start("python -m validate.speed.regression", main)

@@ -96,12 +96,9 @@ def turning(lesson, method, h_omega, steps, flatness=1.0):
     On a wrong ellipse the angle alternately leads and lags, but the mean over many steps stays the same.
     """
     step, p = getattr(lesson, method.function), lesson.Oscillator(OMEGA, 0.0)
-    x, v = np.ones(1), np.zeros(1)
-    angles = np.zeros(steps + 1)
-    for n in range(steps):
-        x, v = lesson.advance(step, lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, 1, p)
-        angles[n + 1] = np.arctan2(-v[0] / (flatness * OMEGA), x[0])
-    return np.unwrap(angles)[-1] / steps
+    _, xs, vs = lesson.trajectory(step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1),
+                                  h_omega / OMEGA, steps, p)
+    return np.unwrap(np.arctan2(-vs[:, 0] / (flatness * OMEGA), xs[:, 0]))[-1] / steps
 
 
 # ---------------------------------------------------------------------------------------------- the theory of edges
@@ -405,9 +402,9 @@ def phase_curves(lesson, check, method, inverse, flat, known):
     """Check that a method turns by 2 inverse(½hω) per step, on the ellipse 1 − flat (hω)²; return its curves."""
     name, title = method.label, capitalised(method.label)
     law = lambda y: 2.0 * inverse(0.5 * y) / y
-    frequency = lambda y: turning(lesson, method, y, 1000, np.sqrt(1.0 - flat * y * y)) / y
+    frequency = lambda y, steps: turning(lesson, method, y, steps, np.sqrt(1.0 - flat * y * y)) / y
     for y in (0.1, 0.5, 1.0):
-        got = frequency(y)
+        got = frequency(y, 1000)
         side = "ahead" if got > 1.0 else "behind"
         check(f"{title} oscillates at (2/h) {'asin' if flat else 'atan'}(hω/2) instead of ω.",
               f"{name}: frequency over the true one at hω = {y:g} [-]", law=law(y), found=got, within=known / y,
@@ -419,7 +416,7 @@ def phase_curves(lesson, check, method, inverse, flat, known):
               "in the phase.")
     fine, dots = np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8)
     return [series(f"{name}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
-            series(f"{name}, measured", dots, [100.0 * (frequency(y) - 1.0) for y in dots], DOTS)]
+            series(f"{name}, measured", dots, [100.0 * (frequency(y, 200) - 1.0) for y in dots], DOTS)]
 
 
 def capitalised(label):

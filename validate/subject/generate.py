@@ -1,6 +1,7 @@
 """Generation of lessons/ from solutions/, the same modules without answers, and of needs.json, the calls in them.
 
-`python -m validate.subject.generate` writes them, `--check` only says whether they are what it would write.
+`python -m validate.subject.generate` writes them.  `--check` only says whether they are what it would write, and
+`--force` overwrites answers in lessons/, too.
 """
 
 import json
@@ -78,6 +79,9 @@ def worked_in(folder=None):
 
 
 def main(arguments):
+    if arguments == ["--help"]:
+        print(__doc__)
+        return 0
     if arguments not in ([], ["--check"], ["--force"]):
         print(f"{' '.join(arguments)} is not an option here: give --check, --force or nothing", file=sys.stderr)
         return 2

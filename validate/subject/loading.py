@@ -11,6 +11,7 @@ import threading
 import time
 import traceback
 import types
+from importlib.machinery import FileFinder, SourceFileLoader
 from pathlib import Path
 
 from solutions.checks import BadInput
@@ -29,6 +30,35 @@ class Unloadable(BadInput):
 
     def __reduce__(self):                                            # it may come from another process
         return Unloadable, (self.file, self.reason, self.remedy)
+
+
+class AsSaved(SourceFileLoader):
+    """Loads a file as it is saved now.
+
+    Python keeps what it compiled in `__pycache__`, and knows it by the second and the length of the file.  Two saves
+    within a second, of files of one length, would be one to it.
+    """
+
+    def get_code(self, fullname):
+        file = self.get_filename(fullname)
+        return self.source_to_code(self.get_data(file), file)
+
+
+class Folders(list):
+    """The `__path__` of a package of a module set: what lies in these folders is loaded as it is saved now."""
+
+
+class FinderOfFolders:
+    """Finds the modules of such packages, and no others."""
+
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        folders = path if isinstance(path, Folders) else ()
+        found = (FileFinder(folder, (AsSaved, [".py"])).find_spec(name) for folder in folders)
+        return next(filter(None, found), None)
+
+
+sys.meta_path.insert(0, FinderOfFolders)
 
 
 class TooLong(BaseException):

@@ -37,7 +37,16 @@ from pathlib import Path
 from solutions.checks import BadInput
 
 from ..scene import Scene, field_names
-from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
+from .loading import (
+    LOAD_WITHIN,
+    Folders,
+    Unloadable,
+    alarm,
+    answer_for_what_is_missing,
+    part,
+    stand_in,
+    unloadable,
+)
 from .numba_twins import CACHE, CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -145,9 +154,13 @@ def written_scene(name):
     return record_of(importlib.import_module(f"validate.scenes.{scene_files()[name].parent.name}.{name}"), name)
 
 
+@cache
 def called_by_scene(name):
     """Return {(lesson, function)} that a scene calls of lessons, in its file and in its `run`, if that is elsewhere."""
-    texts = scene_files()[name].read_text(encoding="utf-8"), inspect.getsource(written_scene(name).run)
+    file, run = scene_files()[name], written_scene(name).run
+    texts = [file.read_text(encoding="utf-8")]
+    if inspect.getfile(run) != str(file):
+        texts.append(inspect.getsource(run))
     return {call for text in texts for call in called_of_lessons(ast.parse(text))}
 
 
@@ -170,18 +183,19 @@ def called_of_lessons(tree):
     """
     found = set()
     for function in tree.body:
-        meant = _names_of_lessons(function)
-        for node in ast.walk(function):
+        nodes = [node for node in ast.walk(function) if isinstance(node, ast.Attribute | ast.Assign)]
+        meant = _names_of_lessons(nodes)
+        for node in nodes:
             if isinstance(node, ast.Attribute):
                 lesson = meant.get(node.value.id) if isinstance(node.value, ast.Name) else _lesson_named(node.value)
                 found |= {(lesson, node.attr)} if lesson else set()
     return found
 
 
-def _names_of_lessons(function):
-    """Return {name: lesson} of the names that a function gives to lessons."""
+def _names_of_lessons(nodes):
+    """Return {name: lesson} of the names that the statements of a function give to lessons."""
     found = {}
-    for node in ast.walk(function):
+    for node in nodes:
         if isinstance(node, ast.Assign):
             names, values = (side.elts if isinstance(side, ast.Tuple) else [side]
                              for side in (node.targets[0], node.value))
@@ -246,7 +260,7 @@ def module_set(of="solutions", compiled=False):
 def digest_of(folder):
     """Return a fingerprint of every file of which a module set of this subject consists, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
-    ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
+    ours = Path(__file__), *map(Path(__file__).with_name, ("numba_twins.py", "addresses.py"))
     return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.rglob("*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
@@ -290,9 +304,11 @@ def compiled_twice(of="solutions"):
     try:
         for _ in range(2):
             forget_modules(f"_compiled_{digest}")
+            forget_modules(f"_inside_{digest}")
             yield CompiledModules(subject_folder(of), digest)
     finally:
         forget_modules(f"_compiled_{digest}")
+        forget_modules(f"_inside_{digest}")
         shutil.rmtree(CACHE / digest, ignore_errors=True)
 
 
@@ -385,7 +401,7 @@ class ModuleSet(Binding):
         paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": [], ".subject.given": []}
         for package, path in paths.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
-            module.__path__ = [str(p) for p in path]
+            module.__path__ = Folders(map(str, path))
         for given in given_modules():                    # ours, even where the subject's folder has copies of them
             sys.modules[f"{self.name}.subject.{given}"] = original(given)
 
@@ -573,9 +589,17 @@ class CompiledModules(ModuleSet):
     seconds for every kind of record, and in plain Python microseconds.
     """
 
+    speed = "compiled"
+    from_python: tuple[str, ...] | None = None      # names of the functions that Python can call; None: all
+
     def __init__(self, folder, digest):
-        super().__init__(folder, digest, "compiled")
+        super().__init__(folder, digest, self.speed)
         self.cache, self.digest, self.outside = use_cache(digest), digest, {}
+
+    @cached_property
+    def inside(self):
+        """Return the set whose functions are called by their addresses, from compiled code only."""
+        return InsideModules(self.folder, self.digest)
 
     def lesson(self, name):
         """Return a lesson with plain make_* and with loops that check their record first."""
@@ -616,7 +640,8 @@ class CompiledModules(ModuleSet):
         own = {name for name, f in vars(module).items()
                if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
         space = {**vars(module), CHECK: passed_over} if module.__name__.endswith(f".{RECORDS}") else vars(module)
-        vars(module).update(compiled_twins(module, own, space, os.path.join(self.cache, package)))
+        cache = os.path.join(self.cache, package if self.from_python is None else f"{self.speed}-{package}")
+        vars(module).update(compiled_twins(module, own, space, cache, self.from_python))
 
     def _stays(self, origin):
         return False
@@ -643,7 +668,7 @@ class CompiledModules(ModuleSet):
 
         One of its own is compiled here.
         """
-        law = scene.acceleration and scene.acceleration(Lessons(self._inside))
+        law = scene.acceleration and scene.acceleration(Lessons(self.lesson_inside))
         if law is None or hasattr(law, "py_func"):
             return law
         source, origin = self._home(law)
@@ -651,11 +676,31 @@ class CompiledModules(ModuleSet):
             return getattr(self.given(origin), law.__name__)
         return compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes"))
 
-    def _inside(self, name):
+    def lesson_inside(self, name):
         """Return a lesson as compiled functions call it."""
         if (self.folder / f"{name}.py").is_file():
             return self.inner_lesson(name)
         return self._with_companion(name, self.solution(name))
+
+
+class InsideModules(CompiledModules):
+    """The same for a loop that is made of parts: Python must call none of these functions but the loop itself."""
+
+    speed = "inside"
+    from_python = ("advance_parts",)
+
+    def __init__(self, folder, digest):
+        from .addresses import pass_by_address
+        pass_by_address(original("given.rows").Composed)
+        super().__init__(folder, digest)
+
+    def advance(self, loop, names):
+        """Return the function (t, state, dt, steps) → PileState of a Loop whose parts have these names."""
+        from .addresses import functions_of_loop
+        lesson = self.lesson_inside("simulator")
+        functions = functions_of_loop(lesson, loop, [getattr(lesson, name) for name in names])
+        advance_parts = self.lesson_of_scenes("simulator").advance_parts
+        return lambda t, state, dt, steps: advance_parts(*functions, t, state, dt, steps, loop.p)
 
 
 @cache

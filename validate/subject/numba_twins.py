@@ -24,11 +24,11 @@ CACHED_SETS = 6              # digests kept on disk: some edits back
 IN_USE = 3600.0              # a digest that was asked for so long ago [s] may still be in use by another process
 
 
-def compiled_twins(module, names, space, cache):
+def compiled_twins(module, names, space, cache, from_python=None):
     """Return {name: compiled function}, whose globals are `space`, for those functions of a module.
 
     cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
-    its functions call others there.
+    its functions call others there.    from_python: names of those that Python can call, or None: all
     """
     twins = {}
     for name in names:
@@ -36,19 +36,22 @@ def compiled_twins(module, names, space, cache):
         copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
         inline = "always" if module.__name__.rpartition(".")[2] == INLINED else "never"
-        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, inline)
+        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, inline,
+                               from_python is None or name in from_python)
     return twins
 
 
-def compiled(function, name, cache, inline="never"):
+def compiled(function, name, cache, inline="never", from_python=True):
     """Return the twin of a function, which may be a closure that calls other twins.
 
     name: the same in every process, and no other function's.  numba recognises a function argument in its disk cache
-    by the id that is made from it.
+    by the id that is made from it.    from_python: whether Python can call the twin.  What numba compiles for that
+    takes up to nine tenths of the time, because it takes all records apart and makes new ones.
     """
     from numba import config, njit
     config.CACHE_DIR = cache
-    twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(function)
+    twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=not from_python,
+                inline=inline)(function)
     twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, name)))
     return twin
 
@@ -116,7 +119,7 @@ def _kind(argument):
         return argument.dtype, argument.ndim, argument.flags.num
     if isinstance(argument, tuple):
         return kind, *[_kind(one) for one in argument]
-    return argument if hasattr(argument, "py_func") else kind
+    return argument if hasattr(argument, "py_func") else getattr(argument, "kind_name", kind)
 
 
 @cache

@@ -20,7 +20,7 @@ from solutions.support.model import (
     loads_at,
     start_of,
 )
-from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron
 
 from ..engines.bullet import CONTACT_ERP, WARM, Bullet
 from ..reference.orientation import about, quaternion
@@ -78,7 +78,8 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if carries(model):
         return "in maximal coordinates it ignores the velocity of a body without mass"
-    return unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, HalfSpace, Hinge, BallJoint, Weld)
+    return unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
+                       Weld)
 
 
 def build(model, dt, **settings):
@@ -139,6 +140,8 @@ def shape_of(parts, body, place=(0.0, 0.0, 0.0)):
                                        collisionFrameOrientation=TO_CAPSULE, **at)
     if isinstance(shape, Polygon):
         return pb.createCollisionShape(pb.GEOM_MESH, vertices=parts.space.deep(shape.corners).tolist(), **at)
+    if isinstance(shape, Polyhedron):
+        return pb.createCollisionShape(pb.GEOM_MESH, vertices=list(map(list, shape.corners)), **at)
     if isinstance(shape, HalfSpace):
         if round_only(parts.model):
             return pb.createCollisionShape(pb.GEOM_PLANE)
@@ -188,7 +191,7 @@ def describe(parts, k):
             change |= {"linearDamping": 0, "angularDamping": 0}
     if bounces(parts.model):
         change["contactProcessingThreshold"] = 0
-    if isinstance(body.shape, Polygon):
+    if isinstance(body.shape, Polygon | Polyhedron):
         change["collisionMargin"] = 0.0                      # else a hull is a millimetre larger than its corners
     parts.pb.changeDynamics(one, link, **change)
     if can_move(body) and not parts.settings.damped and not parts.settings.maximal:

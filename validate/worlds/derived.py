@@ -22,7 +22,7 @@ from solutions.support.model import (
     touching_pairs,
     world_place,
 )
-from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, core_of, size_of
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polyhedron, core_of, hull_triangles, size_of
 
 TOUCH = 1e-9                 # gap at which two bodies count as touching at the start, over their size [-]
 STICKY = 1e6                 # stands for infinite friction in an engine [-]: its product with 0 is 0
@@ -65,6 +65,10 @@ def core(body):
     elif isinstance(body.shape, Capsule):
         corners, radius = np.outer((1.0, -1.0), (body.shape.half_length, 0.0, 0.0)), body.shape.radius
         edges = np.eye(3)[:1]
+    elif isinstance(body.shape, Polyhedron):
+        corners, radius = np.array(body.shape.corners), 0.0
+        triangles = corners[hull_triangles(corners)]
+        edges = np.concatenate([np.roll(triangles, -1, axis=1) - triangles]).reshape(-1, 3)
     else:
         corners, radius, edges = np.array(list(product(*((-h, h) for h in body.shape.half)))), 0.0, np.eye(3)
     R = rotation_of(body.q)

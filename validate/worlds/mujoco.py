@@ -21,7 +21,7 @@ from solutions.support.model import (
     start_of,
     touching_pairs,
 )
-from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron
 
 from ..engines.mujoco import IMPEDANCE, TIME_CONSTANT, module, text
 from ..reference.orientation import quaternion
@@ -47,7 +47,7 @@ def refuses(model):
         return "its bodies without mass do not move"
     if bounces(model):
         return "it has no restitution"
-    return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, BallJoint, Weld, Distance)
+    return unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
 
 
 def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
@@ -85,8 +85,8 @@ def xml_of(parts, dt, integrator, time_constant):
     """Return the XML."""
     model, bodies = parts.model, range(len(parts.model.bodies))
     roots = "".join(element(parts, k) for k in bodies if parts.above[k][0] == WORLD)
-    hulls = "".join(f'<mesh name="m{k}" vertex="{text(parts.space.deep(model.bodies[k].shape.corners))}"/>'
-                    for k in bodies if isinstance(model.bodies[k].shape, Polygon))
+    hulls = "".join(f'<mesh name="m{k}" vertex="{text(hull_of(parts, k))}"/>' for k in bodies
+                    if isinstance(model.bodies[k].shape, Polygon | Polyhedron))
     condim = 3 if rubs(model) else 1
     pairs = "".join(
         f'<pair geom1="g{i}" geom2="g{k}" condim="{condim}" friction="{text(np.full(2, sliding(model, i, k)))} '
@@ -104,6 +104,12 @@ def xml_of(parts, dt, integrator, time_constant):
 def sliding(model, i, k):
     """Return the friction of a pair as a number that MuJoCo takes [-]."""
     return min(max(friction_of(model, i, k), SLIPPERY), STICKY)
+
+
+def hull_of(parts, k):
+    """Return the corners (n, 3) of the hull of body k."""
+    corners = np.array(parts.model.bodies[k].shape.corners)
+    return parts.space.deep(corners) if parts.space.flat else corners
 
 
 def frame(parts, k):
@@ -161,7 +167,7 @@ def geom(parts, k):
     elif isinstance(shape, Capsule):
         ends = np.outer((-shape.half_length, shape.half_length), (1.0, 0.0, 0.0))
         about = {"type": "capsule", "size": text(shape.radius), "fromto": text(ends)}
-    elif isinstance(shape, Polygon):
+    elif isinstance(shape, Polygon | Polyhedron):
         about = {"type": "mesh", "mesh": f"m{k}"}
     elif isinstance(shape, HalfSpace):                       # it lies in the world, and is put into its body
         n = space.point(shape.normal)

@@ -1,5 +1,7 @@
 """A Model in our own loop, plain or compiled, which is composed of what the Model needs."""
 
+from functools import partial
+
 from solutions.support.model import WORLD
 from validate.subject import modules
 
@@ -25,26 +27,21 @@ def build(model, dt, of="solutions", compiled=False, **settings):
     lesson = lesson_of(of)
     loop = lesson.compose(model, lesson.Settings(**settings))
     fast = compiled and not any(callable(load) for load in model.loads)
-    advance = (compiled_advance(loop, lesson.padded(loop), lesson_of(of, True)) if fast else
-               lambda t, state, dt: lesson.run_parts(loop, t, state, dt, 1))
+    advance = compiled_advance(loop, of) if fast else partial(lesson.run_parts, loop)
     history, clock = [loop.state, loop.state], [0]                     # before and after the last step
 
     def step():
-        history[:] = history[1], advance(clock[0] * dt, history[1], dt)
+        history[:] = history[1], advance(clock[0] * dt, history[1], dt, 1)
         clock[0] += 1
 
     return World(step, lambda: lesson.state_of(loop, history[1]),
                  lambda: pushes(lesson, loop, clock[0], *history, dt) if clock[0] else [])
 
 
-def compiled_advance(loop, parts, lesson):
-    """Return the function (t, state, dt) → state of one step, with the compiled twins of the parts.
-
-    A compiled lesson has them by their names.
-    """
-    functions = [getattr(lesson, function.__name__)
-                 for function in (loop.step.step, *parts, loop.load, loop.bounds, loop.narrow)]
-    return lambda t, state, dt: lesson.advance_parts(*functions, t, state, dt, 1, loop.p)
+def compiled_advance(loop, of="solutions"):
+    """Return the function (t, state, dt, steps) → PileState of a Loop, with the compiled twins of its functions."""
+    names = [function.__name__ for function in lesson_of(of).padded(loop)]
+    return modules.module_set(of, True).inside.advance(loop, names)
 
 
 def pushes(lesson, loop, steps, before, after, dt):

@@ -13,6 +13,7 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.contact import make_contacts
 from validate.check import states
+from validate.engines import watched
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
@@ -103,8 +104,8 @@ def limit(p, dt):
 
 def unknown(p, dt):
     """Any disturbance brings down an arch near its smallest thickness.  Engines disturb it, because gravity acts for
-    a step before the joints carry.  No theory says how much more thickness they need, so their errors are shown and
-    not judged.
+    a step before the joints carry.  No theory says how much more thickness they need, so their errors are shown.  The
+    laws of contact judge what they report of their runs nearest to the edge.
     """
     return np.inf
 
@@ -117,8 +118,8 @@ def corners(stones, k):
     return np.array([(radius * np.cos(theta), radius * np.sin(theta)) for radius, theta in ends]) - stones.x[k]
 
 
-def pymunk_stands(p, number, dt, iterations, slop):
-    """Return whether all stones are within MOVED of their positions after WATCHED."""
+def pymunk_stands(p, number, kept, dt, iterations, slop):
+    """Return whether all stones are within MOVED of their positions after WATCHED; kept: gets its watched steps."""
     import pymunk
     (t, mu), space, bodies = given(p, number), pymunk_space((0.0, -G)), []
     space.iterations, space.collision_slop = iterations, slop
@@ -133,13 +134,12 @@ def pymunk_stands(p, number, dt, iterations, slop):
         stone.friction = np.sqrt(mu)
         space.add(body, stone)
         bodies.append(body)
-    for _ in range(round(WATCHED / dt)):
-        space.step(dt)
+    watched.run(watched.Pymunk(space, dt), round(WATCHED / dt), kept)
     return np.max(np.abs(np.array([body.position for body in bodies]) - stones.x)) < MOVED
 
 
-def pybullet_stands(p, number, dt, iterations, residual):
-    """Return whether all stones are within MOVED of their positions after WATCHED."""
+def pybullet_stands(p, number, kept, dt, iterations, residual):
+    """Return whether all stones are within MOVED of their positions after WATCHED; kept: gets its watched steps."""
     (t, mu), bullet, bodies = given(p, number), Rigid(dt, (0.0, 0.0, -G), iterations), []
     pb = bullet.pb
     pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
@@ -154,8 +154,7 @@ def pybullet_stands(p, number, dt, iterations, residual):
                                   (stones.x[k, 0], 0.0, stones.x[k, 1]), (0.0,) * 3, True, R=UPRIGHT,
                                   shape=pb.createCollisionShape(pb.GEOM_MESH, vertices=hull), mu=np.sqrt(mu)))
     bullet.begin()
-    for _ in range(round(WATCHED / dt)):
-        bullet.step()
+    watched.run(watched.Bullet(pb, dt, bullet.gravity), round(WATCHED / dt), kept)
     x = np.array([bullet.position(body) for body in bodies])[:, [0, 2]]
     bullet.close()
     return np.max(np.abs(x - stones.x)) < MOVED
@@ -163,10 +162,12 @@ def pybullet_stands(p, number, dt, iterations, residual):
 
 def make(p, dt, holds):
     """Make the EngineRun of an engine in which an arch holds or falls: the bisection is one long reading."""
+    tried = watched.NearTheEdge(partial(holds, p))
+
     def read():
         expected = truth(p, T)[0]
-        return np.array([bisected(lambda number: holds(p, number), 0.5 * expected, 2.0 * expected, 1e-3)])
-    return one_reading(read)
+        return np.array([bisected(tried, 0.5 * expected, 2.0 * expected, 1e-3)])
+    return one_reading(read, watched=tried.steps)
 
 
 def thick(p):
@@ -181,14 +182,16 @@ RUNNERS = (
     ours(SWEEPS, limit=limit, predicted=BISECTED, order=EXACT),
     engine(PYMUNK, "", partial(make, holds=partial(pymunk_stands, dt=1e-3, iterations=100, slop=1e-5)),
            "polygons; 100 iterations, collision_slop 1e-5; stands if nothing moves by R/50 in 1 s of 1/1000 s",
-           **NUDGED),
+           laws=watched.pymunk_rules(100), **NUDGED),
     engine(PYMUNK, "default", partial(make, holds=partial(pymunk_stands, dt=1.0 / 240.0, iterations=10, slop=0.1)),
-           "polygons; 10 iterations, collision_slop 0.1; 1 s of 1/240 s", **NUDGED),
+           "polygons; 10 iterations, collision_slop 0.1; 1 s of 1/240 s", laws=watched.pymunk_rules(10), **NUDGED),
     engine(PYBULLET, "", partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=200, residual=0)),
-           "hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations; 1 s of 1/240 s", **NUDGED),
+           "hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations; 1 s of 1/240 s",
+           laws=watched.bullet_rules(200, creeps=True), **NUDGED),
     engine(PYBULLET, "default",
            partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
-           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s", **NUDGED),
+           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s",
+           laws=watched.bullet_rules(50, creeps=True), **NUDGED),
 )
 
 

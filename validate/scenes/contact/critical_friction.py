@@ -13,6 +13,7 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.contact import make_contacts
 from validate.check import states
+from validate.engines import watched
 from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
@@ -186,13 +187,15 @@ def moved_limit(p, dt):
 
 def pybullet_limit(p, dt):
     """pybullet lets an overhanging stack sink and lean before it carries.  No theory says by how much, so this error is
-    shown and not judged.
+    shown, and the laws of contact judge what it reports of its runs nearest to the edge.
     """
     return np.inf if p.kind == "overhang" else moved_limit(p, dt)
 
 
 def unknown(p, dt):
-    """Default settings are coarse.  No theory says how coarse, so these errors are shown and not judged."""
+    """Default settings are coarse, and no theory says how coarse.  These errors are shown.  The laws of contact judge
+    what the engine reports of its runs nearest to the edge.
+    """
     return np.inf
 
 
@@ -265,13 +268,12 @@ def pymunk_overhang(p, number, x, static, movable):
         movable(x[k] - sunk, (1.0 + HEIGHT**2) / 12.0, block, p.mu)
 
 
-def pymunk_stands(p, number, dt, iterations, slop):
-    """Return whether no body has moved by a millimetre after one second."""
+def pymunk_stands(p, number, kept, dt, iterations, slop):
+    """Return whether no body has moved by a millimetre after one second; kept: gets its watched steps."""
     space, bodies = pymunk_world(p, number)
     space.iterations, space.collision_slop = iterations, slop
     before = np.array([body.position for body in bodies])
-    for _ in range(round(WATCHED / dt)):
-        space.step(dt)
+    watched.run(watched.Pymunk(space, dt), round(WATCHED / dt), kept)
     return np.max(np.abs(np.array([body.position for body in bodies]) - before)) < MOVED
 
 
@@ -309,13 +311,12 @@ def pybullet_world(p, number, dt, iterations):
     return bullet.begin(), bodies
 
 
-def pybullet_stands(p, number, dt, iterations, residual):
-    """Return whether no body has moved by a millimetre after one second."""
+def pybullet_stands(p, number, kept, dt, iterations, residual):
+    """Return whether no body has moved by a millimetre after one second; kept: gets its watched steps."""
     bullet, bodies = pybullet_world(p, number, dt, iterations)
     bullet.pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
     before = np.array([bullet.position(body) for body in bodies])
-    for _ in range(round(WATCHED / dt)):
-        bullet.step()
+    watched.run(watched.Bullet(bullet.pb, dt, bullet.gravity), round(WATCHED / dt), kept)
     moved = np.max(np.abs(np.array([bullet.position(body) for body in bodies]) - before))
     bullet.close()
     return moved < MOVED
@@ -323,7 +324,8 @@ def pybullet_stands(p, number, dt, iterations, residual):
 
 def make(p, dt, holds):
     """Make the EngineRun of an engine in which a scene holds or falls: the bisection is one long reading."""
-    return one_reading(lambda: edge(lambda number: holds(p, number), p, 1e-4))
+    tried = watched.NearTheEdge(partial(holds, p))
+    return one_reading(lambda: edge(tried, p, 1e-4), watched=tried.steps)
 
 
 def boards(p):
@@ -346,14 +348,17 @@ RUNNERS = (
            "100 iterations, collision_slop 1e-5; stands if nothing moves by 1 mm in 1 s of 1/1000 s",
            order=EXACT, limit=moved_limit, predicted=WATCHING),
     engine(PYMUNK, "default", partial(make, holds=partial(pymunk_stands, dt=1.0 / 240.0, iterations=10, slop=0.1)),
-           "10 iterations, collision_slop 0.1; 1 s of 1/240 s", order=EXACT, limit=unknown, predicted=COARSE),
+           "10 iterations, collision_slop 0.1; 1 s of 1/240 s", order=EXACT, limit=unknown, predicted=COARSE,
+           laws=watched.pymunk_rules(10)),
     engine(PYBULLET, "", partial(make, holds=partial(pybullet_stands, dt=2e-3, iterations=100, residual=0)),
            "maximal coordinates; solverResidualThreshold 0, 100 iterations; 1 s of 1/500 s",
-           order=EXACT, limit=pybullet_limit, predicted=LEANING, supports=boards),
+           order=EXACT, limit=pybullet_limit, predicted=LEANING, supports=boards,
+           laws=watched.bullet_rules(100, creeps=True)),
     engine(PYBULLET, "default",
            partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
            "maximal coordinates; 50 iterations; 1 s of 1/240 s",
-           order=EXACT, limit=unknown, predicted=COARSE, supports=low_boards),
+           order=EXACT, limit=unknown, predicted=COARSE, supports=low_boards,
+           laws=watched.bullet_rules(50, creeps=True)),
 )
 
 

@@ -15,6 +15,7 @@ from solutions.checks import BadInput
 from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
 from validate.check import states
+from validate.engines import watched
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
@@ -156,7 +157,7 @@ def pymunk_limit(p, dt):
 
 def unknown(p, dt):
     """pymunk's default slop is larger than the bodies.  pybullet's iterations leave more than its slop.  No theory says
-    how much, so these errors are shown and not judged.
+    how much, so these errors are shown.  The laws of contact judge what the engine reports of some of its steps.
     """
     return np.inf
 
@@ -165,11 +166,13 @@ def unknown(p, dt):
 
 def make(p, dt, rival, wider=1.0):
     """Make the EngineRun of an engine's pile: its whole run is one long reading."""
+    kept = []
+
     def read():
         state, pile = start(p)
-        world, energies = rival(kind_of(p), state, pile), []
-        for _ in range(round(p.seconds / DT / BLOCK)):
-            world.run(BLOCK)
+        world, energies, blocks = rival(kind_of(p), state, pile), [], round(p.seconds / DT / BLOCK)
+        for block in range(blocks):
+            watched.run(world.watch(), BLOCK, kept, {BLOCK - 1} if block in watched.watched_steps(blocks) else ())
             energies.append(energy(pile, *world.places(), *world.velocities()))
         residual = 0.0
         if p.judged:
@@ -178,7 +181,7 @@ def make(p, dt, rival, wider=1.0):
         found = numbers(p, pile, *world.places(), world.wall_force(), energies, residual)
         world.close()
         return found
-    return one_reading(read)
+    return one_reading(read, watched=lambda: kept)
 
 
 def flat(p):
@@ -196,6 +199,7 @@ def few_in_space(p):
 
 CREEPS = "the final place of each body and its creep there are unknown; the limit bounds the creep"
 NO_LAW = "no theory says how much its iterations leave"
+STILL_CREEPS = "10 iterations per step do not bring a pile to rest"
 RUNNERS = (
     ours(PILE_IN_SPACE, limit=limit, predicted=CREEPS, order=EXACT, supports=solid),
     ours(PILE, limit=limit, predicted=CREEPS, order=EXACT, supports=flat),
@@ -204,13 +208,16 @@ RUNNERS = (
            order=EXACT, limit=pymunk_limit, predicted=CREEPS, supports=flat),
     engine(PYMUNK, "default", partial(make, rival=partial(PymunkPile, iterations=10, slop=0.1)),
            "10 iterations, collision_slop 0.1; steps of 1/240 s",
-           order=EXACT, limit=unknown, predicted=NO_LAW, supports=flat),
+           order=EXACT, limit=unknown, predicted=NO_LAW, supports=flat,
+           laws=watched.pymunk_rules(10, STILL_CREEPS)),
     engine(PYBULLET, "", partial(make, rival=partial(BulletPile, iterations=50), wider=PYRAMID),
            "maximal coordinates; solverResidualThreshold 0, 50 iterations; steps of 1/240 s",
-           order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space),
+           order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
+           laws=watched.bullet_rules(50, creeps=True)),
     engine(PYBULLET, "default", partial(make, rival=partial(BulletPile, iterations=50, residual=1e-7), wider=PYRAMID),
            "maximal coordinates; 50 iterations; steps of 1/240 s",
-           order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space),
+           order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
+           laws=watched.bullet_rules(50, creeps=True)),
 )
 
 

@@ -140,13 +140,14 @@ def sun_and_planet(observed, p):
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
-def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_steps):
+def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_steps, compiled=EXPLICIT):
     """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
 
     The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
     symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
     *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large; MuJoCo's needs none
     most_steps             of an engine of order 1
+    compiled               methods that a quick run compiles
     """
     T, limits = motion.T, kepler_limits(motion.T)
     symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
@@ -156,7 +157,7 @@ def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_
     leapfrog = {"order": 2, "limit": limits, "predicted": errors[VERLET], "most_steps": most_steps}
     return (
         *(ours(m, limit=limits, predicted=errors[m], order=LATE_LEAPFROG if m is SYMPLECTIC_EULER else m.order,
-               in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in EXPLICIT) for m in errors),
+               in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in compiled) for m in errors),
         engine(PYMUNK, "", pymunk_make, "attraction in velocity_func",
                order=LATE_LEAPFROG, limit=early_limit(T), predicted=pymunk_errors, most_steps=most_steps),
         engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **leapfrog),

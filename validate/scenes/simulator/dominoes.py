@@ -275,7 +275,7 @@ BY_CHANCE = "the phase of an impact in its step is random, and each impact passe
 LONG_LIVED = "its contact points persist over several steps, so it does not converge to this motion"
 RUNNERS = (
     ours(PILE, order=ABOUT_1, limit=limit, predicted=BY_CHANCE),
-    ours(SETTLED_LOOP, order=ABOUT_1, limit=limit, predicted=BY_CHANCE, most_in_quick=200,
+    ours(SETTLED_LOOP, order=ABOUT_1, limit=limit, predicted=BY_CHANCE, most_in_quick=100,
          finer_in_full=(2000, 5000, 10_000, 20_000)),
     engine(PYMUNK, "", partial(pymunk_make, iterations=50, slop=1e-6), "50 iterations, collision_slop 1e-6",
            order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),

@@ -209,7 +209,7 @@ RUNNERS = (
     # the positions need shorter steps than a quick run has, and are not judged
     ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("places",), most_in_quick=120),
     engine(PYMUNK, "", pymunk_make, "boxes on a kinematic floor, a DampedSpring, air by a velocity function; 100 "
-           "iterations, collision_slop 1e-5", order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED,
+           "iterations, collision_slop 1e-5", order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, most_in_quick=600,
            supports=tells_places, is_truth=tells_places),
 )
 

@@ -164,7 +164,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Two stars", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, mujoco_stars, 20_000),
+    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, mujoco_stars, 20_000, compiled=()),
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks, points=points,

@@ -1,0 +1,85 @@
+"""Given.  Contacts that are kept over many steps: a pair of bodies is looked at again only once one of them has moved.
+
+A kept contact keeps its place and its normal.  Its gap follows the velocities of its bodies in every substep, so it is
+wrong only in the second order of the way that they have made, which is at most KEPT of their size.
+*Source:* Box2D 3 and Rapier keep the points of a pair in the same way (contact recycling).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .broad_phase import Pairs
+from .contact_points import first_of, room_for
+
+KEPT = 1e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
+UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
+
+
+class Ways(NamedTuple):
+    """How far n bodies and p planes have moved since their contacts were found."""
+    length: np.ndarray       # (n + p,) the longest way of any point of the body [m]
+    allowed: np.ndarray      # (n + p,) with which contacts are kept [m]
+    radius: np.ndarray       # (n + p,) of the ball around the centre that holds the body [m]
+
+
+def unknown_ways(half, planes, margin):
+    """Return the Ways of bodies whose contacts are not known yet, and of planes, which never move."""
+    n, count = half.shape[0], half.shape[0] + planes
+    ways = Ways(np.zeros(count), np.full(count, np.inf), np.zeros(count))
+    for i in range(n):
+        squared, ways.length[i], ways.allowed[i] = 0.0, np.inf, UNSEEN * margin
+        for c in range(half.shape[1]):
+            squared += half[i, c] ** 2
+            ways.allowed[i] = min(ways.allowed[i], KEPT * half[i, c])
+        ways.radius[i] = np.sqrt(squared)
+    return ways
+
+
+def have_moved(ways):
+    """Return whether contacts of each body or plane must be found anew, (n + p,); also where its way is no number."""
+    moved = np.empty(ways.length.size, np.bool_)
+    for i in range(moved.size):
+        moved[i] = not ways.length[i] <= ways.allowed[i]
+    return moved
+
+
+def begin_ways(ways, moved):
+    """Set the ways of those that have moved back to zero, in place: their contacts have just been found."""
+    for i in range(moved.size):
+        if moved[i]:
+            ways.length[i] = 0.0
+
+
+def moved_pairs(pairs, moved):
+    """Return those Pairs of which at least one has moved."""
+    first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
+    for i in range(first.size - 1):
+        for k in range(pairs.first[i], pairs.first[i + 1]):
+            if moved[i] or moved[pairs.partner[k]]:
+                partner[m] = pairs.partner[k]
+                m += 1
+        first[i + 1] = m
+    return Pairs(first, partner[:m])
+
+
+def copy_contact(c, J, m, old, J_old, k):
+    """Write contact k of `old` and its impulse to place m of c and J; return m + 1."""
+    c.a[m], c.b[m], c.gap[m] = old.a[k], old.b[k], old.gap[k]
+    for e in range(J.shape[1]):
+        c.n[m, e], c.p[m, e], J[m, e] = old.n[k, e], old.p[k, e], J_old[k, e]
+    return m + 1
+
+
+def with_kept(old, J_old, new, J_new, moved):
+    """Return (ContactSet, J (m, d)): the new contacts, and those old ones of which neither body has moved."""
+    n, d, m = new.first.size - 1, J_new.shape[1], 0
+    c, J = room_for(n, old.a.size + new.a.size, d), np.empty((old.a.size + new.a.size, d))
+    for i in range(n):
+        for k in range(old.first[i], old.first[i + 1]):
+            if not (moved[i] or moved[old.b[k]]):
+                m = copy_contact(c, J, m, old, J_old, k)
+        for k in range(new.first[i], new.first[i + 1]):
+            m = copy_contact(c, J, m, new, J_new, k)
+        c.first[i + 1] = m
+    return first_of(c, m), J[:m]

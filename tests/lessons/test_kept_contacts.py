@@ -1,0 +1,143 @@
+"""Contacts that are kept while bodies hardly move are those that a new search finds, to the second order of the way."""
+
+import numpy as np
+import pytest
+
+from solutions.given import contact
+from solutions.support import kept_contacts
+from solutions.support.broad_phase import near_pairs
+
+G, DT, TILT = 9.81, 1.0 / 240.0, 1e-3
+FIND = {2: (contact.box_bounds_2d, contact.box_contacts_2d), 3: (contact.box_bounds, contact.box_contacts)}
+
+
+def tower(rng, d):
+    """(state, pile) of three boxes that stand askew on each other and on a plane, and overlap by up to a millimetre."""
+    half = 0.1 * rng.uniform(0.9, 1.1, (3, d)) * np.array([3.0, 2.0, 1.0])[:, None] ** (np.arange(d) < d - 1)
+    x = rng.uniform(-0.02, 0.02, (3, d))
+    x[:, -1] = half[:, -1] + 2.0 * np.append(0.0, np.cumsum(half[:-1, -1])) - rng.uniform(2e-4, 1e-3) * np.arange(1, 4)
+    planes, settings = [(*np.eye(d)[-1], 0.0)], (0.5, 4, 120.0, 10.0, 0.008)
+    if d == 2:
+        return contact.make_pile_2d(x, rng.uniform(-TILT, TILT, 3), 1.0, 0.01, half, planes, (0.0, -G), *settings)
+    q = np.append(np.ones((3, 1)), 0.5 * TILT * rng.uniform(-0.5, 0.5, (3, 3)), axis=1)
+    return contact.make_pile(x, q / np.linalg.norm(q, axis=1)[:, None], 1.0, np.full((3, 3), 0.01), half, planes,
+                             (0.0, 0.0, -G), *settings)
+
+
+def found(d, x, q, pile):
+    """(contacts, pairs, turn) of all pairs."""
+    low, high, turn = FIND[d][0](x, q, pile.half)
+    pairs = near_pairs(low - pile.margin, high + pile.margin, pile.planes)
+    return FIND[d][1](x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin), pairs, turn
+
+
+def shifted(rng, d, state, pile):
+    """(x, q, v, omega) after bodies have moved with v and omega for 1 s, as far as their contacts are kept."""
+    ways = kept_contacts.unknown_ways(pile.half, len(pile.planes), pile.margin)
+    v, omega = np.zeros(state.v.shape), np.zeros(state.omega.shape)
+    for i in range(3):
+        share = rng.uniform(0.2, 0.8)
+        direction, axis = rng.normal(size=d), rng.normal(size=1 if d == 2 else 3)
+        v[i] = share * ways.allowed[i] * direction / np.linalg.norm(direction)
+        turned = 0.999 * (1.0 - share) * ways.allowed[i] / ways.radius[i] * axis / np.linalg.norm(axis)
+        omega[i] = turned[0] if d == 2 else turned
+    ways.length[:] = 0.0
+    x, q = (contact.move_2d if d == 2 else contact.move)(state.x, state.q, v, omega, ways, 1.0)
+    assert not kept_contacts.have_moved(ways).any()
+    return x, q, v, omega
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_kept_contacts_are_those_of_a_new_search_to_the_second_order(d):
+    """The gap errs by 7 w²/h + 2 w α: w is the way, h the half size, α the angle between the faces.
+
+    The normal turns by w/h while bodies part by 2 w; an arm turns twice; the ends of a contact go 2 w along faces at an
+    angle of α + 2 w/h.
+    """
+    rng, least = np.random.default_rng(5), 0.09
+    way = kept_contacts.KEPT * 0.33
+    for _ in range(20):
+        state, pile = tower(rng, d)
+        old, _, turn = found(d, state.x, state.q, pile)
+        x, q, v, omega = shifted(rng, d, state, pile)
+        if d == 2:
+            arms = contact.arms_2d(state.x, pile.inv_mass, pile.inv_inertia, old)
+            u_n = contact.normal_velocities_2d(v, omega, old, arms)
+        else:
+            arms = contact.arms_3d(state.x, pile.inv_mass, contact.world_inertia(turn, pile.inv_inertia), old)
+            u_n = contact.normal_velocities(v, omega, old, arms)
+        new = found(d, x, q, pile)[0]
+        assert len(old.a) >= 3 * 2 ** (d - 1) and np.max(np.abs(u_n)) > 1e-5
+        for k in range(len(old.a)):
+            same = (new.a == old.a[k]) & (new.b == old.b[k])
+            away = np.linalg.norm(new.p[same] - old.p[k], axis=1)
+            assert away.min() < 2.0 * way
+            near = np.flatnonzero(same)[away.argmin()]
+            assert np.linalg.norm(new.n[near] - old.n[k]) < way / least
+            assert abs(old.gap[k] + u_n[k] - new.gap[near]) < 7.0 * way**2 / least + 2.0 * way * TILT
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d):
+    rng = np.random.default_rng(6)
+    state, pile = tower(rng, d)
+    old = found(d, state.x, state.q, pile)[0]
+    x, q, _, _ = shifted(rng, d, state, pile)
+    new, pairs, turn = found(d, x, q, pile)
+    J, moved = rng.normal(size=old.p.shape), np.array([True, False, False, False])
+    c, J_c = contact._next_contacts(FIND[d][1], x, turn, pairs, moved, old, J, pile)
+    assert np.all(np.diff(c.a) >= 0) and np.array_equal(c.first, np.searchsorted(c.a, np.arange(4)))
+    ours, of_old, of_new = ((one.a == 0) | (one.b == 0) for one in (c, old, new))
+    for field in ("a", "b", "n", "p", "gap"):
+        assert np.array_equal(getattr(c, field)[ours], getattr(new, field)[of_new])
+        assert np.array_equal(getattr(c, field)[~ours], getattr(old, field)[~of_old])
+    assert np.array_equal(J_c[~ours], J[~of_old])
+    assert np.array_equal(J_c[ours], contact.kept_impulses(new, old, J, pile.margin)[of_new])
+
+
+def test_a_way_is_that_of_the_farthest_point_and_a_way_that_is_no_number_has_moved():
+    half = np.array([(0.3, 0.4), (0.3, 0.4), (0.3, 0.4)])
+    ways = kept_contacts.unknown_ways(half, 1, 0.1)
+    assert kept_contacts.have_moved(ways).tolist() == [True, True, True, False]
+    ways.length[:] = 0.0
+    v = np.array([(0.0, 0.0), (0.3, 0.4), (np.nan, 0.0), (0.0, 0.0)])
+    contact.move_2d(np.zeros((4, 2)), np.zeros(4), v, np.array([2.0, 0.0, 0.0, 0.0]), ways, 1e-4)
+    assert ways.length[:2] == pytest.approx([1e-4 * 2.0 * 0.5, 1e-4 * 0.5])
+    assert kept_contacts.have_moved(ways).tolist() == [False, False, True, False]
+    kept_contacts.begin_ways(ways, np.array([False, True, True, False]))
+    assert ways.length[0] > 0.0 and np.all(ways.length[1:] == 0.0)
+
+
+def test_no_pair_comes_into_reach_unseen_and_gaps_stay_small_of_small_bodies():
+    """Both bodies of a pair beyond reach, margin/2, may go 2 · margin/16 each before it is looked at."""
+    for half, margin in ((0.1, 0.008), (0.1, 1e-5), (1e-4, 0.008)):
+        allowed = kept_contacts.unknown_ways(np.full((1, 2), half), 0, margin).allowed[0]
+        assert 4.0 * allowed <= 0.5 * margin and allowed <= 1e-3 * half
+
+
+def counted(find):
+    """(find, calls): the same function, which notes how many pairs it was given."""
+    calls = []
+
+    def noted(x, turn, half, planes, pairs, reach):
+        calls.append(len(pairs.partner))
+        return find(x, turn, half, planes, pairs, reach)
+    return noted, calls
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_tower_at_rest_is_not_searched_again_and_stands_as_if_it_were(d):
+    """Single steps find all contacts anew."""
+    state, pile = tower(np.random.default_rng(7), d)
+    advance = contact.advance_pile_2d if d == 2 else contact.advance_pile
+    find, calls = counted(FIND[d][1])
+    kept = advance(FIND[d][0], find, state, DT, 240, pile)
+    anew = state
+    for _ in range(240):
+        anew = advance(*FIND[d], anew, DT, 1, pile)
+    assert sum(pairs > 0 for pairs in calls) < 60
+    assert np.max(np.abs(kept.x - anew.x)) < 2.0 * kept_contacts.KEPT * 0.1
+    assert np.max(np.abs(kept.v)) < 1e-4
+    on_floor = kept.contacts.b == 3
+    weight = 3.0 * G * DT / pile.substeps
+    assert np.sum(kept.J[on_floor, -1]) == pytest.approx(weight, rel=1e-3)

@@ -1,0 +1,118 @@
+"""Records and functions that compiled code gets by their addresses, and the loops that are made of such functions."""
+
+import sys
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from solutions.support.model import Body, make_model
+from validate.subject import modules
+from validate.worlds.ours import lesson_of
+
+numba = pytest.importorskip("numba", reason="numba has no wheel for this machine")
+addresses = pytest.importorskip("validate.subject.addresses")
+
+DOWN = (0.0, -9.81)
+
+
+class Scaling(NamedTuple):
+    """A record with an array."""
+    factors: np.ndarray
+    share: float
+
+
+def scaled(x, p):
+    """Return x, scaled; raises where a factor is not positive."""
+    if np.min(p.factors) <= 0.0:
+        raise ArithmeticError("a factor is not positive")
+    return p.share * p.factors * x
+
+
+def twice(step, x, p):
+    """Return x after two calls of a function."""
+    return step(step(x, p), p)
+
+
+@pytest.fixture(scope="module")
+def scaled_twice():
+    """twice, compiled, with the address of scaled, compiled."""
+    addresses.pass_by_address(Scaling)
+    row, record = numba.typeof(np.ones(2)), numba.typeof(Scaling(np.ones(2), 1.0))
+    inner = numba.njit(no_cpython_wrapper=True)(scaled)
+    step = addresses.address_of(inner, addresses.function(row, row, record))
+    outer = numba.njit(twice)
+    return lambda x, p, inner=inner: outer(step, x, p)
+
+
+def test_a_function_that_is_called_by_its_address_reads_the_record_at_its_address(scaled_twice):
+    p = Scaling(np.array([2.0, 3.0]), 0.5)
+    assert scaled_twice(np.ones(2), p) == pytest.approx([1.0, 2.25], rel=1e-15)
+    assert scaled_twice(np.ones(2), p._replace(share=1.0)) == pytest.approx([4.0, 9.0], rel=1e-15)
+
+
+def test_what_a_function_raises_arrives_through_its_address(scaled_twice):
+    with pytest.raises(ArithmeticError, match="a factor is not positive"):
+        scaled_twice(np.ones(2), Scaling(np.array([2.0, 0.0]), 0.5))
+
+
+def test_a_record_that_is_passed_by_its_address_keeps_no_array_alive(scaled_twice):
+    p = Scaling(np.array([2.0, 3.0]), 0.5)
+    before = sys.getrefcount(p.factors)
+    for _ in range(20):
+        scaled_twice(np.ones(2), p)
+    assert sys.getrefcount(p.factors) == before
+
+
+def test_a_function_that_returns_something_else_than_its_caller_expects_is_refused():
+    row = numba.typeof(np.ones(2))
+    with pytest.raises(TypeError, match="returns float64 and not"):
+        addresses.address_of(numba.njit(lambda x: x[0]), addresses.function(row, row))
+
+
+# ---------------------------------------------------------------------------------------------- loops
+
+@pytest.fixture
+def compilations():
+    """Return a list that gets the name of each function that numba compiles."""
+    from numba.core import event
+    names = []
+
+    class Noted(event.Listener):
+        def on_start(self, event):
+            names.append(event.data["dispatcher"].py_func.__name__)
+
+        def on_end(self, event):
+            pass
+    with event.install_listener("numba:compile", Noted()):
+        yield names
+
+
+def run(modules_of_loop, model):
+    """Return the state of a Model after two steps of a compiled loop, and of a plain one."""
+    lesson = lesson_of("solutions")
+    loop = lesson.compose(model)
+    advance = modules_of_loop.inside.advance(loop, [part.__name__ for part in lesson.padded(loop)])
+    return advance(0.0, loop.state, 1e-3, 2), lesson.run_parts(loop, 0.0, loop.state, 1e-3, 2)
+
+
+@pytest.mark.long
+@pytest.mark.xdist_group("compiled simulator")
+def test_a_part_is_compiled_once_for_all_models_and_once_for_all_processes(compilations):
+    """Three models: the second needs a part of its own only, and the third none; then all of them from the disk."""
+    point = Body((0.0, 1.0), 1.0, v=(1.0, 0.5))
+    models = (make_model([point], DOWN), make_model([point._replace(inertia=0.1, omega=1.0)], DOWN),
+              make_model([point, point._replace(x=(0.0, 2.0))], DOWN))
+    sets, found = modules.compiled_twice(), []
+    for _ in range(2):
+        modules_of_loop = next(sets)
+        for model in models:
+            compilations.clear()
+            ours, plain = run(modules_of_loop, model)
+            assert ours.x == pytest.approx(plain.x, abs=1e-15)
+            found.append(set(compilations))
+    sets.close()
+    shared = {"weight", "accelerate", "advance_parts"}
+    assert shared | {"move"} <= found[0] and not shared & found[1]
+    assert "move_and_turn" in found[1]
+    assert found[2:] == [set()] * 4

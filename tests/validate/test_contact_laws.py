@@ -1,0 +1,166 @@
+"""Laws of contact judge an engine by what it reports, and notice an engine whose impulses are wrong by 10 %."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from validate.check import Verdict
+from validate.engines import watched
+from validate.engines.bullet import Rigid
+from validate.products import PYBULLET
+from validate.reference import contact_laws
+from validate.reference.contact_laws import Law, Touching, judged, verdict_on
+from validate.report import audit
+from validate.scenes.contact import arch, critical_friction, galperin, mass_ratio, piles, stack
+
+LADDER = critical_friction.CASES["ladder at 60°"]
+ENGINES = pytest.mark.parametrize("engine", [
+    "pymunk", pytest.param("pybullet", marks=pytest.mark.skipif(not PYBULLET.installed(), reason="no pybullet"))])
+SETTINGS = {"pymunk": (critical_friction.pymunk_stands, {"dt": 1e-3, "iterations": 100, "slop": 1e-5},
+                       watched.pymunk_rules(100)),
+            "pybullet": (critical_friction.pybullet_stands, {"dt": 2e-3, "iterations": 100, "residual": 0},
+                         watched.bullet_rules(100))}
+
+
+@cache
+def ladder(engine):
+    """Return (the watched steps of a ladder that slips and of one that stands, what is allowed)."""
+    stands, settings, allowed = SETTINGS[engine]
+    tried = watched.NearTheEdge(lambda number, kept: stands(LADDER, number, kept, **settings))
+    edge = critical_friction.truth(LADDER, 1.0)[0]
+    assert [tried(share * edge) for share in (0.95, 1.05)] == [False, True]
+    return tried.steps(), allowed
+
+
+def changed(step, factor):
+    """Return the step as it would be reported with impulses factor(J_n (c,), J_t (c, d)) → J."""
+    t = step.touching
+    J_n = np.sum(t.n * t.J, axis=1)
+    return step._replace(touching=t._replace(J=factor(J_n[:, None] * t.n, t.J - J_n[:, None] * t.n)))
+
+
+def really(step, factor):
+    """Return the step of an engine that applies these impulses, so that its velocities follow them."""
+    other = changed(step, factor)
+    more = contact_laws.jumps(step.in_space(), other.in_space().touching.J - step.in_space().touching.J)
+    v, omega = (rows[:-1] for rows in more)
+    flat = step.before.omega.ndim == 1
+    after = step.after._replace(v=step.after.v + (v[:, :2] if flat else v),
+                                omega=step.after.omega + (omega[:, 2] if flat else omega))
+    return other._replace(after=after)
+
+
+WRONG = {
+    "10 % too large": lambda J_n, J_t: 1.1 * (J_n + J_t), "10 % too small": lambda J_n, J_t: 0.9 * (J_n + J_t),
+    "normal ones 10 % too large": lambda J_n, J_t: 1.1 * J_n + J_t,
+    "friction 10 % too large": lambda J_n, J_t: J_n + 1.1 * J_t, "friction reversed": lambda J_n, J_t: J_n - J_t,
+    "nothing reported": lambda J_n, J_t: 0.0 * J_n, "not a number": lambda J_n, J_t: np.nan * J_n,
+}
+
+
+@ENGINES
+def test_a_ladder_keeps_the_laws_in_an_engine_with_many_iterations(engine):
+    steps, allowed = ladder(engine)
+    laws = judged(steps, allowed)
+    assert verdict_on(laws)[0] is Verdict.KEEPS_LAWS, [law for law in laws if not law.holds]
+    assert laws[0].found < 1e-11 and laws[0].allowed < 1e-9
+
+
+@ENGINES
+@pytest.mark.parametrize("wrong", WRONG)
+def test_impulses_that_are_reported_wrongly_break_a_balance(engine, wrong):
+    steps, allowed = ladder(engine)
+    laws = judged([changed(step, WRONG[wrong]) for step in steps], allowed)
+    assert not (laws[0].holds and laws[1].holds) and verdict_on(laws)[0] is Verdict.DEPARTS
+
+
+@ENGINES
+@pytest.mark.parametrize("wrong", [name for name in WRONG if name != "not a number"])
+def test_an_engine_that_applies_wrong_impulses_departs_though_its_balances_hold(engine, wrong):
+    steps, allowed = ladder(engine)
+    laws = judged([really(step, WRONG[wrong]) for step in steps], allowed)
+    assert laws[0].holds and laws[1].holds and verdict_on(laws)[0] is Verdict.DEPARTS
+
+
+@ENGINES
+def test_a_single_wrong_contact_of_a_single_step_is_noticed(engine):
+    steps, allowed = ladder(engine)
+    k = next(k for k, step in enumerate(steps) if len(step.touching.a))
+    J = steps[k].touching.J.copy()
+    J[0] *= 1.1
+    one = steps[k]._replace(touching=steps[k].touching._replace(J=J))
+    assert verdict_on(judged([*steps[:k], one, *steps[k + 1:]], allowed))[0] is Verdict.DEPARTS
+
+
+def test_a_wrong_adapter_departs_in_its_scene(monkeypatch):
+    """The reader of pymunk's impulses is wrong by 10 %, the engine is not."""
+    right = watched.Pymunk.contacts
+    monkeypatch.setattr(watched.Pymunk, "contacts", lambda self: [(*row[:6], 1.1 * row[6], *row[7:])
+                                                                  for row in right(self)])
+    kept = []
+    critical_friction.pymunk_stands(LADDER, 0.5, kept, dt=1.0 / 240.0, iterations=10, slop=0.1)
+    assert verdict_on(judged(kept, watched.pymunk_rules(10)))[0] is Verdict.DEPARTS
+
+
+def test_the_impulses_of_points_add_up_to_what_pymunk_reports_of_a_pair():
+    space, bodies = critical_friction.pymunk_world(critical_friction.CASES["box that slides"], 0.25)
+    world = watched.Pymunk(space, 1e-3)
+    for _ in range(50):
+        step = world.watched()
+    found = []
+    bodies[0].each_arbiter(lambda arbiter: found.append(np.array(arbiter.total_impulse)))
+    assert len(step.touching.a) == 2
+    assert np.sum(step.touching.J, axis=0) == pytest.approx(found[0] if step.touching.a[0] == 0 else -found[0],
+                                                              abs=1e-15)
+
+
+def test_pymunk_counts_a_remembered_impulse_that_it_does_not_apply():
+    """So the balance fails by that impulse where a contact has come back, and holds to round-off without it."""
+    space, _ = critical_friction.pymunk_world(critical_friction.CASES["discs: friction between them"], 0.25)
+    space.iterations, space.collision_slop = 10, 0.1
+    world = watched.Pymunk(space, 1.0 / 240.0)
+    steps, allowed = [world.watched() for _ in range(8)], watched.pymunk_rules(10)
+    found = [contact_laws.values(step, allowed)[0] for step in steps]
+    assert max(one["unapplied"] for one in found) > 0.1 and max(one["momentum"] for one in found) < 1e-12
+    assert found[0]["unapplied"] == 0.0
+    without = [step._replace(touching=step.touching._replace(ghosts=0.0 * step.touching.ghosts)) for step in steps]
+    assert verdict_on(judged(without, allowed))[0] is Verdict.DEPARTS
+
+
+def test_friction_without_a_normal_impulse_is_known_of_pybullet_only():
+    laws = [Law("friction without a normal impulse [-]", 0.02, 1e-13, 1.0, "it leaves it")]
+    laws += [Law(quantity, 0.0, 1.0, None, "") for quantity in contact_laws.QUANTITIES.values()]
+    assert verdict_on(laws)[0] is Verdict.BREAKS_AS_KNOWN
+    assert verdict_on([laws[0]._replace(reason="", known=None), *laws[1:]])[0] is Verdict.DEPARTS
+    assert verdict_on([laws[0]._replace(found=1.5), *laws[1:]])[0] is Verdict.DEPARTS
+    assert verdict_on([laws[0]._replace(found=np.nan), *laws[1:]])[0] is Verdict.DEPARTS
+    assert verdict_on(laws[1:])[0] is Verdict.KEEPS_LAWS
+
+
+@pytest.mark.parametrize("found", [0.0, 0.5, 2.0, np.nan])
+@pytest.mark.parametrize("reason", ["", "it does so"])
+def test_the_audit_derives_the_same_verdict_from_stored_laws(found, reason):
+    laws = [Law(quantity, found if k == 3 else 0.0, 0.1, 1.0 if reason else None, reason)
+            for k, quantity in enumerate(contact_laws.QUANTITIES.values())]
+    stored = [{**law._asdict(), "found": None if np.isnan(law.found) else law.found} for law in laws]
+    assert audit.verdict_by_laws(stored) is verdict_on(laws)[0]
+
+
+@pytest.mark.parametrize("scene", [arch, critical_friction, galperin, mass_ratio, piles, stack])
+def test_an_engine_whose_error_no_theory_gives_has_laws_in_lesson_9(scene):
+    for runner in scene.SCENE.engine_runners:
+        unjudged = [p for p in scene.CASES.values() if (runner.supports is None or runner.supports(p))
+                    and not np.isfinite(runner.largest_error(p, 1.0))]
+        assert bool(unjudged) == (runner.laws is not None), runner.label
+
+
+def test_a_step_without_contacts_keeps_all_laws():
+    bullet = Rigid(1e-3, (0.0, 0.0, -9.81)) if PYBULLET.installed() else pytest.skip("no pybullet")
+    bullet.body(1.0, (0.1, 0.1, 0.1), (0.0, 0.0, 5.0), (0.0, 1.0, 0.0), True)
+    bullet.begin()
+    world = watched.Bullet(bullet.pb, 1e-3, bullet.gravity)
+    steps = [world.watched() for _ in range(3)]
+    bullet.close()
+    assert isinstance(steps[0].touching, Touching) and len(steps[0].touching.a) == 0
+    assert verdict_on(judged(steps, watched.bullet_rules(50)))[0] is Verdict.KEEPS_LAWS

@@ -1,0 +1,51 @@
+"""Piles against engines: settings, and what is printed and drawn of measured times."""
+
+import numpy as np
+import pytest
+
+from solutions.support.scenes import HIGHEST
+from validate.engines.contact import DT, KINDS, fallen
+from validate.speed import piles
+
+
+def test_our_settings_against_an_engine_are_fewer_substeps_that_can_carry_their_hertz():
+    for rival in piles.PLANE + piles.SPACE:
+        for name, (substeps, hertz) in rival.ours.items():
+            assert substeps < KINDS[name].substeps
+            assert hertz * DT / substeps <= HIGHEST + 1e-12
+
+
+def test_settings_change_nothing_else_of_a_pile():
+    kind = KINDS["bricks"]._replace(across=2)
+    pile, tuned = fallen(kind, 4)[1], next(r for r in piles.SPACE if r.goal and "bricks" in r.ours)
+    ours = piles.with_settings(pile, tuned, "bricks")
+    assert (ours.substeps, ours.hertz) == tuned.ours["bricks"]
+    assert all(a is b for a, b in zip(ours[:6], pile[:6], strict=True)) and ours.margin == pile.margin
+    assert piles.with_settings(pile, piles.SPACE[0], "bricks") == pile
+
+
+def test_a_cost_that_grows_as_n_has_the_power_of_one():
+    rows = [piles.Size(n, 2 * n, 3e-4 * n, np.nan, 0.1) for n in piles.SIZES]
+    assert piles.power(rows) == pytest.approx(1.0)
+    assert piles.power([row._replace(ms=row.ms * row.bodies) for row in rows]) == pytest.approx(2.0)
+    assert [piles.few(n) for n in (100, 10_000, 100_000)] == [piles.BLOCK, 4, 2]
+
+
+def test_growth_and_races_are_printed_and_drawn(monkeypatch, tmp_path, capsys):
+    sizes = []
+
+    def grown(function, name, asked, rounds):
+        sizes.append(asked)
+        return [piles.Size(n, 2 * n, 3e-4 * n, 6e-4 * n if n <= 1000 else np.nan, 0.1) for n in asked]
+    monkeypatch.setattr(piles, "alone", grown)
+    piles.measure(["discs", "bricks"], 0, 9, True, False, tmp_path / "growth.png", 3162)
+    said = capsys.readouterr().out
+    assert sizes == [[100, 316, 1000, 3162]] * 2 and said.count("1.00") == 2 and "150" in said
+    one = piles.Race(np.full(9, 0.5), 1.0, 2.0, (1.0, 0.1), (2.0, 0.2))
+    races = {"discs": [(rival, one._replace(ours=2.0 if rival.ours else 3.0)) for rival in piles.PLANE]}
+    piles.show(races, 100)
+    assert "Hz" in capsys.readouterr().out
+    assert [piles.our_settings(rival, "discs") for rival in piles.PLANE] == ["3 × 240 Hz", "1 × 80 Hz", "1 × 80 Hz",
+                                                                             "2 × 160 Hz"]
+    piles.draw(races, 100, tmp_path / "races.png")
+    assert all((tmp_path / f"{name}.png").stat().st_size > 10_000 for name in ("growth", "races"))

@@ -1,0 +1,196 @@
+"""Steps of an engine with all that it reports of them, for the laws of contact in `validate/reference/contact_laws.py`.
+
+A run is watched in its first steps, in which nothing is remembered yet, and in some later ones.
+"""
+
+import numpy as np
+
+from ..check import Allowed
+from ..reference.contact_laws import ITERATED, Motion, Step, Touching
+from ..reference.orientation import quaternion_matrix
+from .bullet import CONTACT_ERP, WARM
+
+SLOP = 1e-5                  # of pybullet, by default [m]
+FIRST, LATER = 2, 8          # number of watched steps at the beginning of a run, and afterwards
+
+
+def ends_early(iterations):
+    """Return the rules of a solver that makes so many iterations per step, whatever is left."""
+    why = f"its {iterations} iterations per step end before the impulses are found"
+    return ("gain", f"{why}; the largest was measured as 0.018"), *((name, why) for name in ITERATED)
+
+
+def pymunk_rules(iterations, creeps=""):
+    """Return what is Allowed to pymunk.
+
+    creeps: why its contacts still have a residual at the end; empty where bodies come to rest
+
+    *Source:* Chipmunk's cpArbiter.c: cpArbiterUpdate takes over the impulses of a contact that it still remembers, and
+    cpArbiterApplyCachedImpulse returns at the first step of a collision.
+    """
+    why = ("it remembers the impulse of a contact that opens for up to three steps, counts it as applied when the "
+           "contact comes back, and does not apply it")
+    rules = ("unapplied", why), *ends_early(iterations)
+    return Allowed(iterations, rules=(*rules, ("rest", creeps)) if creeps else rules)
+
+
+def bullet_rules(iterations, creeps=False):
+    """Return what is Allowed to pybullet.
+
+    creeps: its solver begins with a tenth of the last impulses, as by default, and does not finish a tower at rest
+
+    *Source:* Bullet's btSequentialImpulseConstraintSolver.cpp: an iteration visits the friction of a contact only if
+    its normal impulse is above zero.
+    """
+    why = "it leaves the friction of a contact as it was when its normal impulse falls to zero"
+    rules = ("loose", why), *ends_early(iterations)
+    slow = f"with warmStartingFactor {WARM} its sweeps do not accumulate over the steps, so that a tower creeps"
+    return Allowed(iterations, SLOP, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules)
+
+
+def watched_steps(steps):
+    """Return numbers of the steps of a run that are watched."""
+    return {*range(min(FIRST, steps)), *np.linspace(FIRST, steps - 1, LATER).astype(int).tolist()}
+
+
+def run(world, steps, kept, watched=None):
+    """Make so many steps in a world with step() and watched() → Step; append those that are watched to `kept`.
+
+    watched: their numbers; None: as watched_steps says
+    """
+    watched = watched_steps(steps) if watched is None else watched
+    for n in range(steps):
+        if n in watched:
+            kept.append(world.watched())
+        else:
+            world.step()
+
+
+class NearTheEdge:
+    """Calls of holds(number, kept) → bool, with the watched steps of the last run that stood and of the last that fell.
+
+    A bisection ends with the two runs that are nearest to the edge.
+    """
+
+    def __init__(self, holds):
+        self.holds, self.kept = holds, {}
+
+    def __call__(self, number):
+        steps = []
+        stands = bool(self.holds(number, steps))
+        self.kept[stands] = steps
+        return stands
+
+    def steps(self):
+        """Return the steps of both runs."""
+        return [step for stands in sorted(self.kept) for step in self.kept[stands]]
+
+
+def touching(rows, d):
+    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes)."""
+    a, b, n, p_a, p_b, gap, J, mu, ghosts, axes = zip(*rows) if rows else ((),) * 10
+    n, p_a, p_b, J, ghosts = (np.reshape(np.array(each, float), (-1, d)) for each in (n, p_a, p_b, J, ghosts))
+    return Touching(np.array(a, int), np.array(b, int), n, p_a, p_b, np.array(gap, float), J, np.array(mu, float),
+                    ghosts, np.reshape(np.array(axes, float), (-1, 2, 3)) if d == 3 else None)
+
+
+class Pymunk:
+    """A space whose bodies move or are static."""
+
+    def __init__(self, space, dt):
+        self.space, self.dt, self.remembered = space, dt, {}
+        self.bodies = [body for body in space.bodies if body.body_type == body.DYNAMIC]
+
+    def step(self):
+        self.space.step(self.dt)
+
+    def motion(self):
+        rows = np.array([(*body.position, *body.velocity, body.angular_velocity) for body in self.bodies])
+        return Motion(rows[:, :2], rows[:, 2:4], rows[:, 4])
+
+    def watched(self):
+        """Make a step, and return it.
+
+        It moves the bodies, with what removes the overlaps of the last step, before it finds contacts.
+        """
+        self.remembered.clear()
+        before, overlap = self.motion(), max((-row[5] for row in self.contacts()), default=0.0)
+        self.space.on_collision(pre_solve=self.remember)
+        self.step()
+        self.space.on_collision(pre_solve=None)
+        inverse, after = np.array([(1.0 / body.mass, 1.0 / body.moment) for body in self.bodies]), self.motion()
+        return Step(self.dt, np.array(tuple(self.space.gravity)), inverse[:, 0], inverse[:, 1], before, after, after.x,
+                    overlap, touching(self.contacts(), 2))
+
+    def remember(self, arbiter, space, data):
+        """Note the impulses that a contact has before it is solved, where they are not applied: in its first step."""
+        if arbiter.is_first_contact:
+            kept = arbiter._arbiter
+            self.remembered[frozenset(map(id, arbiter.shapes))] = [
+                (kept.contacts[k].jnAcc, kept.contacts[k].jtAcc) for k in range(kept.count)]
+
+    def contacts(self):
+        """Return rows of all contact points: pymunk's own method reports only their sum.
+
+        Chipmunk keeps the two impulses of a point across and along its normal, which points from its first shape to its
+        second, and the two points at which they act.
+        """
+        number, rows = {body: k for k, body in enumerate(self.bodies)}, {}
+
+        def add(arbiter):
+            kept, (first, second) = arbiter._arbiter, arbiter.shapes
+            if first._shape != kept.a:
+                first, second = second, first
+            ends = [number.get(shape.body, len(self.bodies)) for shape in (first, second)]
+            n, mu = np.array((kept.n.x, kept.n.y)), first.friction * second.friction
+            for k in range(kept.count):
+                point = kept.contacts[k]
+                places = [np.array((shape.body.position.x + r.x, shape.body.position.y + r.y))
+                          for shape, r in ((first, point.r1), (second, point.r2))]
+                axes = np.array((n, (-n[1], n[0])))
+                J = np.array((point.jnAcc, point.jtAcc)) @ axes                      # on the second
+                ghosts = self.remembered.get(frozenset((id(first), id(second))), {})
+                rows[id(first), id(second), k] = (*ends[::-1], n, *places[::-1], float(n @ (places[1] - places[0])), J,
+                                                  mu, np.array(ghosts[k] if ghosts else (0.0, 0.0)) @ axes, None)
+        for body in self.bodies:
+            body.each_arbiter(add)
+        return list(rows.values())
+
+
+class Bullet:
+    """A client whose bodies are in maximal coordinates."""
+
+    def __init__(self, pb, dt, gravity):
+        self.pb, self.dt, self.gravity = pb, dt, np.array(gravity, float)
+        every = [pb.getBodyUniqueId(k) for k in range(pb.getNumBodies())]
+        about = {body: pb.getDynamicsInfo(body, -1) for body in every}
+        self.bodies = [body for body in every if about[body][0] > 0.0]
+        self.inv_mass = np.array([1.0 / about[body][0] for body in self.bodies])
+        self.moments = np.array([about[body][2] for body in self.bodies])
+        self.mu = {body: about[body][1] for body in every}
+
+    def step(self):
+        self.pb.stepSimulation()
+
+    def motion(self):
+        rows = [(*self.pb.getBasePositionAndOrientation(body), *self.pb.getBaseVelocity(body)) for body in self.bodies]
+        x, q, v, omega = (np.array(column) for column in zip(*rows))
+        return q[:, [3, 0, 1, 2]], Motion(x, v, omega)                       # w is last in pybullet
+
+    def watched(self):
+        """Make a step, and return it."""
+        q, before = self.motion()
+        self.step()
+        R = np.array([quaternion_matrix(*one) for one in q])
+        return Step(self.dt, self.gravity, self.inv_mass, (R / self.moments[:, None]) @ R.transpose(0, 2, 1), before,
+                    self.motion()[1], before.x, 0.0, touching(self.contacts(), 3))
+
+    def contacts(self):
+        """Return rows of all contact points that could push in the last step."""
+        number, rows = {body: k for k, body in enumerate(self.bodies)}, []
+        for c in self.pb.getContactPoints() or ():
+            F = c[9] * np.array(c[7]) + c[10] * np.array(c[11]) + c[12] * np.array(c[13])
+            a, b = (number.get(body, len(self.bodies)) for body in c[1:3])
+            rows.append((a, b, c[7], c[5], c[6], c[8], self.dt * F, self.mu[c[1]] * self.mu[c[2]], 0.0 * F,
+                         (c[11], c[13])))
+        return rows
