@@ -294,7 +294,7 @@ def test_where_no_kernel_stays_it_is_a_film(of, monkeypatch):
 
 def test_what_cannot_be_live_is_refused_in_one_sentence():
     scene = rope()
-    for arguments, said in ((([1],), "the scene to show live"), ((scene.network,), "the start of a live network")):
+    for arguments, said in ((([1],), "the model of a live scene"), ((scene.network,), "the start of a live network")):
         with pytest.raises(BadInput, match=said):
             live(*arguments)
     with pytest.raises(BadInput, match="the positions of a live network"):

@@ -7,6 +7,7 @@ and a Chromium (`WORKBOOK_CHROMIUM`, or one on the path, or the one that playwri
 import ast
 import base64
 import gzip
+import inspect
 import io
 import json
 import os
@@ -16,6 +17,7 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
 import zipfile
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -23,9 +25,13 @@ from pathlib import Path
 from typing import ClassVar
 
 import pytest
+import yaml
+from IPython.core.interactiveshell import ExecutionInfo, InteractiveShell
 
 from solutions.checks import BadInput
+from validate import notebook
 from validate.book import hosted, plan
+from validate.book.__main__ import book
 from validate.book.live import pyodide, site, workbook_live
 from validate.notebook import colab
 from validate.subject import generate, loading, modules
@@ -33,7 +39,8 @@ from validate.subject.modules import ROOT
 
 MOST = 40.0                  # before the first check, as a server sends it that compresses text [MB]
 TEXT = ".js", ".json", ".css", ".html", ".svg", ".ipynb", ".py", ".mjs"     # what such a server compresses
-PATIENCE = 240               # until a cell has ended, on a machine that does other things as well [s]
+LONGEST = 600_000            # until a page shows what it should, there [ms]
+PATIENCE = 900               # until a cell has ended, on a machine that does other things as well [s]
 LINK = re.compile(r'href="([^"]+)"')
 
 
@@ -81,9 +88,9 @@ def small_wheel(name):
               "pillow": "PIL/_webp.x.so", "pygments": "pygments/lexers/x.py"}
     packed, paths = io.BytesIO(), [*unused.values(), "kept/x.py"]
     with zipfile.ZipFile(packed, "w") as archive:
-        for path in paths:
-            archive.writestr(path, path)
-        archive.writestr("x.dist-info/RECORD", "".join(f"{path},,\n" for path in paths))
+        for path, text in (*zip(paths, paths, strict=True),
+                           ("x.dist-info/RECORD", "".join(f"{path},,\n" for path in paths))):
+            archive.writestr(zipfile.ZipInfo(path, pyodide.DATE), text)     # the time of day would change the bytes
     return packed.getvalue() if name.endswith(".whl") or name.startswith("openblas") else name.encode()
 
 
@@ -134,6 +141,47 @@ def test_the_lessons_can_be_downloaded_as_one_zip(tmp_path, monkeypatch):
         assert archive.read("lessons/springs.py") == b"my answer" and len(archive.namelist()) == 1
 
 
+def zipped(**files):
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name, text in files.items():
+            archive.writestr(f"lessons/{name}.py", text)
+    return packed.getvalue()
+
+
+@pytest.mark.parametrize(("name", "data"), [("lessons.zip", zipped(springs="older", other="x")),
+                                            ("springs.py", b"older")])
+def test_an_older_file_is_brought_back_and_what_it_replaces_is_kept(name, data, tmp_path):
+    lessons = tmp_path / "lessons"
+    lessons.mkdir()
+    (lessons / "springs.py").write_text("newer")
+    (lessons / "pbd.py").write_text("mine")
+    said = workbook_live.put_back(name, data, lessons, tmp_path / "older")
+    assert said.startswith("Brought back: springs.py. ")
+    assert {file.name: file.read_text() for file in lessons.iterdir()} == {"springs.py": "older", "pbd.py": "mine"}
+    kept, = (tmp_path / "older").iterdir()
+    assert f"older/{kept.name}" in said
+    with zipfile.ZipFile(kept) as archive:
+        assert archive.read("lessons/springs.py") == b"newer" and archive.read("lessons/pbd.py") == b"mine"
+
+
+@pytest.mark.parametrize(("name", "data"), [("lessons.zip", zipped(other="x")), ("notes.py", b"x"), ("a.txt", b"x")])
+def test_a_file_that_is_no_lesson_replaces_nothing(name, data, tmp_path):
+    (tmp_path / "springs.py").write_text("mine")
+    said = workbook_live.put_back(name, data, tmp_path, tmp_path / "older")
+    assert said.startswith(f"There is no file of a lesson in {name}") and not (tmp_path / "older").exists()
+
+
+def test_a_cell_that_had_not_ended_is_named_after_a_restart(tmp_path):
+    shell, mark = InteractiveShell(), tmp_path / "running"
+    workbook_live.watch(shell, mark)
+    shell.run_cell("x = 1")
+    assert not mark.exists() and workbook_live.left_over(mark) == ""
+    shell.events.trigger("pre_run_cell", ExecutionInfo("check('1.1') < 2\nx", False, False, True, "cell"))
+    assert "<code>check(&#x27;1.1&#x27;) &lt; 2</code> was still running" in workbook_live.left_over(mark)
+    assert workbook_live.left_over(mark) == ""
+
+
 def forever():
     while True:
         abs(0)
@@ -152,6 +200,16 @@ def test_an_endless_loop_ends_where_there_is_no_alarm_clock(inner, outer):
     with pytest.raises(loading.TooLong, match=r"after 0\.1 s"):
         endless(inner, outer)
     assert time.monotonic() - began < 10.0 and not sys.monitoring.get_events(loading.JUMPS)
+
+
+def test_an_attempt_that_never_ends_is_one_sentence_in_a_browser(monkeypatch):
+    """A kernel there cannot be interrupted."""
+    shown = []
+    monkeypatch.setattr(notebook, "display", lambda html: shown.append(html.data))
+    monkeypatch.setattr(notebook, "BROWSER", True)
+    monkeypatch.setattr(notebook, "LONGEST", 0.1)
+    assert notebook.attempt(forever) is None
+    assert "✗ Your code is still running after 0.1 s: look for a loop that never ends." in shown[0]
 
 
 BROWSER = """
@@ -198,6 +256,31 @@ def test_readme_and_colab_have_the_address_that_citation_gives():
     assert f'ADDRESS = "{plan.cited()}"' in "".join(cells[1]["source"])
 
 
+def test_an_address_in_the_citation_makes_the_buttons_of_both_services(tmp_path, monkeypatch):
+    """The address is made up.  Each notebook that a button opens is there, and Binder's own files are, too."""
+    (tmp_path / "CITATION.cff").write_text("title: x\nrepository-code: \"https://github.com/made-up/workbook\"\n")
+    monkeypatch.setattr(plan, "ROOT", tmp_path)
+    for path in (ROOT / "notebooks").glob("[0-9]*.ipynb"):
+        binder, on_colab = LINK.findall(hosted.buttons(path.stem, False, plan.repository()))
+        assert binder == f"https://mybinder.org/v2/gh/made-up/workbook/main?labpath=notebooks%2F{path.name}"
+        assert on_colab == "https://colab.research.google.com/github/made-up/workbook/blob/main/binder/colab.ipynb"
+    assert "made-up/workbook" in hosted.readme(plan.cited()) and hosted.WAITING not in hosted.readme(plan.cited())
+
+
+def test_binder_and_colab_install_what_the_notebooks_need():
+    """Binder makes its Python from runtime.txt and then runs postBuild in the repository."""
+    assert re.fullmatch(r"python-3\.\d+\n", (ROOT / "binder" / "runtime.txt").read_text())
+    after = ROOT / "binder" / "postBuild"
+    assert os.access(after, os.X_OK) and after.read_text().startswith("#!")
+    needed = set(tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"])
+    named = re.findall(r"\[(\w+)\]", after.read_text()) + re.findall(r"workbook\[(\w+)\]", colab.FETCH)
+    assert named == ["student", "validate"] and set(named) <= needed
+    cells = json.loads((ROOT / hosted.COLAB).read_text(encoding="utf-8"))["cells"]
+    installs = re.compile(r"!pip install .*")
+    fetched = installs.search("".join(cells[1]["source"]))[0]
+    assert fetched == installs.search(colab.FETCH)[0] and "pytest" in fetched and "anywidget" in fetched
+
+
 def test_colab_gets_every_notebook_with_its_first_cell_and_keeps_what_a_student_wrote(tmp_path):
     (tmp_path / "lessons").mkdir()
     (tmp_path / "lessons" / "springs.py").write_text("mine")
@@ -208,6 +291,49 @@ def test_colab_gets_every_notebook_with_its_first_cell_and_keeps_what_a_student_
         cells = json.loads((tmp_path / path.name).read_text(encoding="utf-8"))["cells"]
         assert "git clone -q --depth 1 https://github.com/a/b /content/workbook" in cells[1]["source"]
         assert cells[2:] == json.loads(path.read_text(encoding="utf-8"))["cells"][1:]
+
+
+WORKFLOW = ROOT / ".github" / "workflows" / "book.yml"
+
+
+def steps():
+    jobs = yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))["jobs"]
+    return [step for job in jobs.values() for step in job["steps"]]
+
+
+def test_the_workflow_that_publishes_uses_official_actions_and_the_official_pyodide():
+    jobs = yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))["jobs"]
+    assert jobs["publish"]["needs"] == "build" and jobs["publish"]["permissions"]["pages"] == "write"
+    used = [step["uses"] for step in steps() if "uses" in step]
+    assert used and all(re.fullmatch(r"actions/[\w-]+@v\d+", action) for action in used)
+    assert {"actions/upload-pages-artifact", "actions/deploy-pages"} <= {action.split("@")[0] for action in used}
+    said = "\n".join(step["run"] for step in steps() if "run" in step)
+    hosts = re.findall(r"https://[^\s\"]+", said)
+    assert hosts == ["https://github.com/pyodide/pyodide/releases/download/$version/pyodide-$version.tar.bz2"]
+    given = next(step["with"]["path"] for step in steps() if "upload-pages" in step.get("uses", ""))
+    assert Path(given) == inspect.signature(book).parameters["out"].default
+
+
+def test_the_shell_steps_of_the_workflow_run_here(tmp_path):
+    """curl, pip and the long commands are replaced: each records its arguments.  What they name must be there."""
+    bin_, log = tmp_path / "bin", tmp_path / "log"
+    bin_.mkdir()
+    real = f'[ "$1" = -c ] && exec "{sys.executable}" "$@"'
+    for name, first in (("python", real), ("curl", ""), ("validate", ""), ("pytest", "")):
+        (bin_ / name).write_text(f'#!/bin/sh\n{first}\necho {name} "$@" >> "{log}"\n')
+    for file in bin_.iterdir():
+        file.chmod(0o755)
+    environment = {**os.environ, "PATH": f"{bin_}:/usr/bin:/bin", "RUNNER_TEMP": str(tmp_path)}
+    for step in steps():
+        if "run" in step:
+            subprocess.run(["bash", "-e", "-o", "pipefail", "-c", step["run"]], cwd=ROOT, env=environment, check=True)
+    ran = log.read_text().splitlines()
+    archive = f"pyodide-{pyodide.VERSION}.tar.bz2"
+    assert any(line.startswith("curl") and line.endswith(f"/{pyodide.VERSION}/{archive}") for line in ran)
+    saved = next(re.search(r"-o (\S+)", line)[1] for line in ran if line.startswith("curl"))
+    assert f"python -m validate.book --live --pyodide {saved}" in ran
+    tests = [path for line in ran for path in re.findall(r"tests/\S+\.py", line)]
+    assert len(tests) == 2 and all((ROOT / path).is_file() for path in tests)
 
 
 # ---------------------------------------------------------------------------------------------- in a browser
@@ -285,8 +411,8 @@ class Student:
 
     def __init__(self, page, server):
         self.page, self.server, self.outside = page, server, []
-        page.on("request", self.watch)
-        page.route("**/jupyter-lite.json*", self.expose)
+        page.context.on("request", self.watch)
+        page.context.route("**/jupyter-lite.json*", self.expose)
 
     def watch(self, request):
         if not request.url.startswith((self.server, "data:", "blob:")):
@@ -299,12 +425,13 @@ class Student:
         config["jupyter-config-data"]["exposeAppInBrowser"] = True
         route.fulfill(response=answer, json=config)
 
-    def open(self, stem):
-        self.page.goto(f"{self.server}/lab/index.html?path=notebooks/{stem}.ipynb", timeout=120_000)
-        self.page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=120_000)
-        self.goes_back(stem)                     # JupyterLab shows last what was open before a reload
+    def open(self, stem, app="lab"):
+        self.page.goto(f"{self.server}/{app}/index.html?path=notebooks/{stem}.ipynb", timeout=LONGEST)
+        self.page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=LONGEST)
+        if app == "lab":
+            self.goes_back(stem)                 # JupyterLab shows last what was open before a reload
         self.page.wait_for_function("window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel",
-                                    timeout=120_000)
+                                    timeout=LONGEST)
 
     def starts(self, part):
         """Run the cell with that text; its place."""
@@ -327,13 +454,38 @@ class Student:
     def writes(self, lesson, text):
         """Open a lesson from the link of its notebook, write that text, and save the file as students do."""
         self.page.evaluate("jupyterapp.shell.currentWidget.content.scrollToItem(1)")
-        self.page.get_by_role("link", name=f"lessons/{lesson}.py").first.click()
-        editor = self.page.locator(".jp-FileEditor .cm-content")
-        editor.click()
-        self.page.keyboard.press("Control+a")
-        self.page.keyboard.insert_text(text)
-        self.page.keyboard.press("Control+s")
-        self.page.wait_for_function("!jupyterapp.shell.currentWidget.context.model.dirty")
+        self.page.get_by_role("link", name=f"lessons/{lesson}.py").first.click(timeout=LONGEST)
+        self.types(self.page, text)
+
+    def writes_on_a_phone(self, lesson, text):
+        """Do the same where the file opens in a page of its own; it saves itself."""
+        self.page.evaluate("jupyterapp.shell.currentWidget.content.scrollToItem(1)")
+        with self.page.expect_popup(timeout=LONGEST) as opened:
+            self.page.get_by_role("link", name=f"lessons/{lesson}.py").first.click(timeout=LONGEST)
+        page = opened.value
+        page.set_viewport_size(self.page.viewport_size)
+        self.types(page, text, by_key=False)
+        self.shows("phone-file", page)
+        page.close()
+
+    def types(self, page, text, by_key=True):
+        editor = page.locator(".jp-FileEditor .cm-content")
+        editor.click(timeout=LONGEST)
+        page.keyboard.press("Control+a")
+        page.keyboard.insert_text(text)
+        if by_key:
+            page.keyboard.press("Control+s")
+        page.wait_for_function("!jupyterapp.shell.currentWidget.context.model.dirty", timeout=LONGEST)
+
+    def shows(self, name, page=None):
+        """Keep a picture of the page, if a folder for pictures is given."""
+        if "WORKBOOK_PICTURES" in os.environ:
+            (page or self.page).screenshot(path=Path(os.environ["WORKBOOK_PICTURES"]) / f"{name}.png")
+
+    def waits(self, condition):
+        """Wait until a live scene meets a condition on `scene` and its numbers `data`."""
+        self.page.wait_for_function(f"""(() => {{ const scene = document.querySelector('.live-scene');
+            if (!scene) return false; const data = scene.dataset; return {condition}; }})()""", timeout=LONGEST)
 
     def goes_back(self, stem):
         self.page.get_by_role("tab", name=f"{stem}.ipynb").click()
@@ -391,7 +543,8 @@ def test_a_reload_loses_nothing_and_an_endless_loop_can_be_stopped(student):
     student.page.get_by_title(re.compile("Restart the kernel")).first.click()
     student.page.get_by_role("button", name="Confirm Kernel Restart").or_(
         student.page.locator(".jp-Dialog .jp-mod-warn")).first.click()
-    student.runs("workbook_live.start", "The workbook is ready")
+    said = student.runs("workbook_live.start", "The workbook is ready")
+    assert "the cell that begins with <code>while True:</code> was still running" in said
     student.runs("from validate.notebook import", "<canvas")
     student.runs('check("1.1")', "passed")
     student.page.evaluate(ADD, "workbook_live.download()")
@@ -401,6 +554,17 @@ def test_a_reload_loses_nothing_and_an_endless_loop_can_be_stopped(student):
     with zipfile.ZipFile(download.value.path()) as archive:
         assert archive.read("lessons/integrators.py").decode().endswith("# not saved by me\n")
         assert len(archive.namelist()) == len(modules.lesson_names()) + 1
+    student.writes("integrators", "# all is lost")
+    student.goes_back("01_integrators")
+    student.runs('check("1.1")', "not yet")
+    student.page.evaluate(ADD, "workbook_live.bring_back()")
+    student.runs("workbook_live.bring_back()", "widget-view")
+    with student.page.expect_file_chooser(timeout=LONGEST) as chooser:
+        student.page.get_by_role("button", name="Choose a file").click(timeout=LONGEST)
+    chooser.value.set_files({"name": "lessons.zip", "mimeType": "application/zip",
+                             "buffer": Path(download.value.path()).read_bytes()})
+    student.page.get_by_text("Brought back:").wait_for(timeout=LONGEST)
+    student.runs('check("1.1")', "passed")
 
 
 @pytest.mark.long
@@ -413,3 +577,59 @@ def test_a_check_of_an_endless_loop_says_so_in_the_browser(student):
     student.writes("integrators", text.replace(line, f"    while True:\n        k = 0\n{line}", 1))
     student.goes_back("01_integrators")
     student.runs('check("1.1")', "an answer within")
+
+
+@pytest.mark.long
+def test_a_live_scene_runs_in_the_page_and_follows_a_save(student):
+    """The arm of lesson 11: the pointer leads it, by the student's own method."""
+    student.open("11_kinematics")
+    student.runs("workbook_live.start", "The workbook is ready")
+    student.writes("kinematics", solved("kinematics", "11.1", "11.2"))
+    student.goes_back("11_kinematics")
+    student.runs("from validate.notebook import", "<canvas")
+    place = student.starts("live(arm_of")
+    student.page.evaluate("k => jupyterapp.shell.currentWidget.content.scrollToItem(k)", place)
+    student.waits("scene.querySelector('.say').textContent.includes('Not attempted yet: 11.11: damped_step')")
+    student.writes("kinematics", solved("kinematics", "11.1", "11.2", "11.11"))
+    student.goes_back("11_kinematics")
+    student.page.evaluate("k => jupyterapp.shell.currentWidget.content.scrollToItem(k)", place)
+    student.waits("data.t > 0.5 && data.energy < 0.05")
+    box = student.page.locator(".live-scene canvas.stage").bounding_box()
+    right, middle, high = box["x"] + 0.97 * box["width"], box["x"] + 0.4 * box["width"], box["y"] + 0.4 * box["height"]
+    student.page.mouse.move(middle, high)
+    student.page.mouse.move(right, high)                             # farther than the arm can reach
+    student.page.mouse.down()
+    student.waits("data.held === '4' && data.energy > 0.3")
+    student.page.mouse.move(middle, high, steps=5)
+    student.waits("data.held === '4' && data.energy < 0.05")
+    student.page.mouse.up()
+    student.shows("live-arm")
+    assert student.outside == []
+
+
+@pytest.mark.long
+def test_a_lesson_is_read_and_an_exercise_passed_on_a_phone(student):
+    student.page.set_viewport_size({"width": 390, "height": 844})
+    student.open("01_integrators", "notebooks")
+    student.shows("phone-first")
+    student.runs("workbook_live.start", "The workbook is ready")
+    student.runs("from validate.notebook import", "<canvas")
+    student.shows("phone-film")
+    student.writes_on_a_phone("integrators", solved("integrators", "1.1"))
+    place = student.page.evaluate(FIND, 'check("1.1")')
+    student.runs('check("1.1")', "passed")
+    student.page.evaluate("k => jupyterapp.shell.currentWidget.content.scrollToItem(k)", place)
+    student.shows("phone-check")
+    wide = "[document.documentElement, document.querySelector('.jp-WindowedPanel-outer')].map(one => one.scrollWidth)"
+    assert max(student.page.evaluate(wide)) <= 390
+    assert student.outside == []
+
+
+@pytest.mark.long
+def test_where_pybullet_cannot_run_its_recorded_runs_are_shown_and_a_sentence_says_so(student):
+    student.open("11_kinematics")
+    said = student.runs("workbook_live.start", "The workbook is ready")
+    assert "pybullet's runs are recorded ones" in said
+    student.runs("from validate.notebook import", "<canvas")
+    student.page.evaluate(ADD, "engines = measured('reach_2r', without=()); show_findings(engines)")
+    student.runs("engines = measured", "recorded")

@@ -7,9 +7,11 @@ import ast
 import json
 import os
 import re
+import sys
 import tempfile
 import uuid
 import warnings
+from contextlib import nullcontext
 from dataclasses import replace
 from html import escape
 from pathlib import Path
@@ -30,7 +32,7 @@ from ..products import PRODUCTS
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..scene import check_known
 from ..subject import copies, modules, needs
-from ..subject.loading import lacks, waiting
+from ..subject.loading import TooLong, alarm, lacks, waiting
 from . import cases, figures, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
@@ -42,6 +44,8 @@ IN_THE_DARK = "{" + ";".join(f"--workbook-{name}:{colour}" for name, colour in D
 # of JupyterLab's dark theme and of the book's; every output has it, because a page may hold any of them alone
 STYLE = (f'<style>body[data-jp-theme-light="false"],body[data-theme="dark"]{IN_THE_DARK}'
          f'@media(prefers-color-scheme:dark){{body[data-theme="auto"]{IN_THE_DARK}}}</style>')
+BROWSER = sys.platform == "emscripten"
+LONGEST = 120.0                    # of an attempt in a browser, which has no button that interrupts a kernel [s]
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
 plots.style()
@@ -147,10 +151,12 @@ def attempt(function, *arguments):
     A failure is reported at once.  What is not attempted yet is said once per cell or figure.
     """
     try:
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), alarm(LONGEST) if BROWSER else nullcontext():
             result = function(*arguments)
         drawn.append(True)
         return result
+    except TooLong as e:
+        _say_failed(f"Your code is {e}: look for a loop that never ends")
     except NotImplementedError as e:
         waiting_for[str(e).removeprefix("Exercise ").replace(":", "")] = None
     except ArithmeticError as e:

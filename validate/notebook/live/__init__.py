@@ -29,24 +29,24 @@ WITHOUT = ("<p>A live scene needs anywidget: <code>pip install anywidget</code>,
            "Here is a film of it.</p>")
 
 
-def live(scene, beside="pymunk", dt=1.0 / 120.0, sweeps=20, lesson="simulator", view=None, height=380, name="",
+def live(model, beside="pymunk", dt=1.0 / 120.0, sweeps=20, lesson="simulator", view=None, height=380, name="",
          play=True, start=None, method=""):
     """Return a live scene, which a cell shows if it is its last line; a film where nothing can be live.
 
-    scene     a Model; a SpringNetwork or a ConstraintNetwork; an Arm2D
+    model     a Model; a SpringNetwork or a ConstraintNetwork; an Arm2D
     beside    "pymunk" or None;   dt [s];   sweeps over all contacts in a step, at most
     lesson    of a Model: whose exercises the loop calls: "simulator"; "contact" and "impulses" get the rest as given
     view      (left, right, low, high) [m]; None: all bodies at the start
     height    of the canvas, at most [px];   play: begin at once
     start     positions (n, 2) of the points of a network [m]; angles (n,) of an arm [rad], or None
     method    the name of the learner's step, for a network or an arm
-    Raises BadInput for a scene that the learner's code cannot run, and for settings that cannot be.
+    Raises BadInput for a model that the learner's code cannot run, and for settings that cannot be.
     """
     check_not_negative("the height of the canvas [px]", height)
-    if isinstance(scene, Model):
-        simulation = of_model(scene, beside, dt, sweeps, lesson)
+    if isinstance(model, Model):
+        simulation = of_model(model, beside, dt, sweeps, lesson)
     else:
-        simulation = of_points(scene, start, method, dt)
+        simulation = of_points(model, start, method, dt)
     if os.environ.get(FILM_ONLY) == "film":
         return film(simulation)
     try:
@@ -75,16 +75,16 @@ def there():
     return False
 
 
-def of_points(scene, start, method, dt):
+def of_points(model, start, method, dt):
     """Return the Network or the Arm.  Raises BadInput for anything else."""
-    kind = type(scene).__name__                    # a notebook may have the record from its own copy of a lesson
+    kind = type(model).__name__                    # a notebook may have the record from its own copy of a lesson
     if kind == "Arm2D":
-        return Arm(scene, start, folder(), method)
+        return Arm(model, start, folder(), method)
     if kind in NETWORKS:
         if start is None:
             raise BadInput("the start of a live network", start, "give the positions of its points")
-        return Network(scene, start, folder(), method, dt)
-    raise BadInput("the scene to show live", kind, "give what make_model returns, a network, or an Arm2D")
+        return Network(model, start, folder(), method, dt)
+    raise BadInput("the model of a live scene", kind, "give what make_model returns, a network, or an Arm2D")
 
 
 def film(simulation, first=""):
