@@ -22,7 +22,7 @@ from ..support.arms import (
 )
 from ..support.broad_phase import Pairs, near_pairs
 from ..support.contact_points import put_back, reordered, sorted_rows, spread_order, with_gaps
-from ..support.kept_contacts import begin_ways, have_moved, moved_pairs, unknown_ways, with_kept
+from ..support.kept_contacts import begin_ways, forget_deep, have_moved, moved_pairs, unknown_ways, with_kept
 from ..support.records import check_record
 from ..support.scenes import PileState, check_overlap, checked_pile, smaller_half
 
@@ -101,6 +101,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
             gap, fastest = spread.gap, separation_speeds(spread, pile)
             arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
         found = gap
+        forget_deep(ways, spread, gap)
         for _ in range(pile.substeps):
             x, q, v, omega, J, gap, residual = _substep_2d(x, q, v, omega, J, gap, spread, arms, fastest, ways, h, pile)
     check_end(x, v, dt)
@@ -147,6 +148,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
             inv_inertia = world_inertia(turn, pile.inv_inertia)
             arms = arms_3d(x, pile.inv_mass, inv_inertia, spread)
         found = gap
+        forget_deep(ways, spread, gap)
         for _ in range(pile.substeps):
             x, q, v, omega, J, gap, residual = _substep(x, q, v, omega, J, gap, spread, arms, fastest, ways, turn,
                                                        inv_inertia, h, pile)

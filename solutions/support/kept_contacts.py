@@ -13,6 +13,7 @@ from .broad_phase import Pairs
 from .contact_points import first_of, room_for
 
 KEPT = 2e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
+DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-]
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
 
 
@@ -49,6 +50,14 @@ def begin_ways(ways, moved):
     for i in range(moved.size):
         if moved[i]:
             ways.length[i] = 0.0
+
+
+def forget_deep(ways, contacts, gap):
+    """Let the contacts of bodies that overlap deeply be found anew, in place: their normals change with a small way."""
+    for k in range(gap.size):
+        for i in (contacts.a[k], contacts.b[k]):
+            if gap[k] < -DEEP / KEPT * ways.allowed[i]:
+                ways.length[i] = np.inf
 
 
 def moved_pairs(pairs, moved):

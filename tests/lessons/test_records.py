@@ -81,7 +81,7 @@ NO_RULE = {
     "StepMatrix": "made anew per step", "Impact": "made anew per impact", "Sliding": "made anew per impact",
     "Suspects": "made anew per step", "Ways": "made at the beginning of a run",
     **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "HalfSpace", "Hinge", "Model",
-                     "Polygon", "Spring", "Weld"), "make_model checks it"),
+                     "Polygon", "Polyhedron", "Spring", "Weld"), "make_model checks it"),
     **dict.fromkeys(("Composed", "Cores", "Kit", "Loop", "Part", "Rods", "Rough", "RoundedBoxes", "Smooth"),
                     "made by compose from a checked Model"),
     "Settings": "compose checks it", "State": "a result"}

@@ -56,6 +56,7 @@ GIVEN = {"__init__", "checks", "vectors", *PACKAGES}
 ORIGINALS = "solutions"  # the package of the given modules that module sets share or copy
 CHECK, RECORDS = "check_record", "support.records"     # the check of a record, and its home
 MAKE = "make_"           # begins the names of functions that make records: they stay plain, and convert what they get
+COMPOSE = ".given.compose"       # ends the name of the module whose functions make loops of Models: they stay plain, too
 
 
 def subject_folder(of):
@@ -616,7 +617,7 @@ class CompiledModules(ModuleSet):
         """Return what a name of a compiled lesson means outside of compiled code."""
         if not hasattr(value, "py_func"):
             return value
-        if key.startswith(MAKE) and plain is not None:
+        if (key.startswith(MAKE) or value.py_func.__module__.endswith(COMPOSE)) and plain is not None:
             return plain
         check = checks_of(value.py_func.__code__.co_filename, self.digest).get(value.py_func.__name__)
         return CheckedFirst(value, check) if check else value

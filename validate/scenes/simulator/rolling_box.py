@@ -10,8 +10,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_friction
-from solutions.given.compose import Settings, compose
-from solutions.support.model import WORLD, Body, Spring, make_model
+from solutions.given.compose import Settings
+from solutions.support.model import WORLD, Body, Spring, make_model, start_of
 from solutions.support.shapes import Ball, Box, HalfSpace
 from validate.check import states
 from validate.methods import IN_COORDINATES, PARTS_OF_LOOP
@@ -34,6 +34,7 @@ FAR = 1e9                    # length of the spring that pushes [m]: its force s
 SWEEPS, SETTLED = 300, 1e-6              # of the loop [-]
 MARGIN = 0.9                 # a contact counts as the one before if it has moved less [m]: balls are 1 m apart
 GROUND, BOX = 0, 1           # numbers of bodies; the row of the box in the loop is 0
+PAIR = slice(BOX, BOX + 2)   # of bodies: the box, and the ball in a corner
 
 
 class Params(NamedTuple):
@@ -77,11 +78,17 @@ def model(p):
 
 @cache
 def start(p):
-    """Return the State of our loop, and what does not change.  Steps change none of it, so it is made once."""
+    """Return the State of the Model; None stands for what our loop needs beside its own state."""
     check_positives(p, "M", "m", "g", "grip")
     check_friction(p.mu)
     accelerations(p)
-    loop = compose(model(p), Settings(SWEEPS, SETTLED, MARGIN))
+    return start_of(model(p)), None
+
+
+@cache
+def composed(simulator, p):
+    """Return the state of our loop, and what does not change.  Steps change none of it, so it is made once."""
+    loop = simulator.compose(model(p), Settings(SWEEPS, SETTLED, MARGIN))
     return loop.state, loop.p
 
 
@@ -96,11 +103,13 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     """Run the two coordinates, or the parts of the loop that the Model needs, in their order."""
     simulator, (now, rows) = lessons.simulator, state
     if step is lessons.integrators.verlet_step:
-        y, u = lessons.integrators.advance(step, acceleration, 0.0, (now.x[:2] - PLACES[:2]) @ ALONG, now.v[:2] @ ALONG,
-                                           dt, steps, p)
         x, v = now.x.copy(), now.v.copy()
-        x[:2], v[:2] = PLACES[:2] + np.outer(y, ALONG), np.outer(u, ALONG)
-        return now._replace(x=x, v=v), rows
+        y, u = (x[PAIR] - PLACES[:2]) @ ALONG, v[PAIR] @ ALONG
+        y, u = lessons.integrators.advance(step, acceleration, 0.0, y, u, dt, steps, p)
+        x[PAIR], v[PAIR] = PLACES[:2] + np.outer(y, ALONG), np.outer(u, ALONG)
+        return now._replace(x=x, v=v), None
+    if rows is None:
+        now, rows = composed(simulator, p)
     now = simulator.advance_parts(
         step, simulator.accelerate_in_space, simulator.detect_many, simulator.separate_in_space,
         simulator.contact_impulses_in_space, simulator.move_and_turn_in_space, simulator.leave,
@@ -114,7 +123,8 @@ def seen(x, v, first):
 
 
 def observe(state, p):
-    return seen(state[0].x, state[0].v, 0)
+    now, rows = state
+    return seen(now.x, now.v, BOX if rows is None else 0)
 
 
 def read(state, p):
