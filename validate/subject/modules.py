@@ -56,7 +56,7 @@ GIVEN = {"__init__", "checks", "vectors", *PACKAGES}
 ORIGINALS = "solutions"  # the package of the given modules that module sets share or copy
 CHECK, RECORDS = "check_record", "support.records"     # the check of a record, and its home
 MAKE = "make_"           # begins the names of functions that make records: they stay plain, and convert what they get
-COMPOSE = ".given.compose"       # ends the name of the module whose functions make loops of Models: they stay plain, too
+COMPOSE = ".given.compose"   # ends the name of the module that makes loops of Models: its functions stay plain, too
 
 
 def subject_folder(of):
