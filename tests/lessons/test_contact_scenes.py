@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
+from solutions.support.kept_contacts import KEPT
 from validate.subject import modules
 
 from .test_contact import MIDDLE, G, chain, contacts_of
@@ -136,7 +137,7 @@ def test_a_mass_ratio_of_a_million_is_refused_by_sweeps_and_solved_directly(fast
 
 @pytest.mark.parametrize(("change", "said"), [
     ({"a": [1, 1]}, "two bodies"), ({"a": [1, 2]}, "whole numbers"),
-    ({"n": [(0.0, 2.0), (0.0, 1.0)]}, "unit vector"), ({"inv_mass": [0.0, 0.0]}, "above zero"),
+    ({"n": [(0.0, 2.0), (0.0, 1.0)]}, "the length must be 1"), ({"inv_mass": [0.0, 0.0]}, "above zero"),
     ({"p": [(0.0, np.nan), (0.0, 0.0)]}, "finite"), ({"p": [(0.0, 0.0)]}, "shape")])
 def test_contacts_that_cannot_be_are_refused(change, said):
     fields = {"a": [1, 1], "b": [0, 0], "p": [(0.0, 0.0), (1.0, 0.0)], "n": [(0.0, 1.0), (0.0, 1.0)],
@@ -420,5 +421,7 @@ def test_a_trajectory_ends_where_the_run_ends(fast):
     state, pile = pile_2d([(0.0, 0.55), (0.3, 1.7)], [(0.5, 0.5)] * 2, 1.0, 0.1)
     states = plain.pile_trajectory(plain.advance_pile_2d, plain.box_bounds_2d, plain.box_contacts_2d, state, DT, 10,
                                    pile)
-    end = run(plain, state, pile, 10 * DT)
-    assert len(states) == 11 and np.array_equal(states[-1].x, end.x) and np.array_equal(states[0].x, state.x)
+    end, way = run(plain, state, pile, 10 * DT), KEPT * 0.5
+    assert len(states) == 11 and np.array_equal(states[0].x, state.x)
+    # each call finds all contacts anew; kept ones are wrong in the second order of the way, over half a size
+    assert np.max(np.abs(states[-1].x - end.x)) < 4 * way**2 / 0.5
