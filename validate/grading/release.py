@@ -275,7 +275,8 @@ def read(path):
 def for_students(text, files, solved):
     """Return pyproject.toml without commands that are not in the zip; if answers are missing, pytest tests lessons/."""
     def keep(match):
-        return match[0] if match[1].replace(".", "/") + ".py" in files else ""
+        path = match[1].replace(".", "/")
+        return match[0] if {f"{path}.py", f"{path}/__init__.py"} & files.keys() else ""
     text = re.sub(r'^[\w-]+ *= *"((?:tests|validate)[\w.]*):\w+".*\n', keep, text, flags=re.M)
     return text if solved else text.replace('addopts = "', 'addopts = "--of=lessons ', 1)
 
