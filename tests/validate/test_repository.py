@@ -191,3 +191,25 @@ def test_no_function_is_longer_than_a_screen():
                 body = node.body[ast.get_docstring(node) is not None:]
                 long = body and body[-1].end_lineno - body[0].lineno + 1 > LONGEST_BODY
                 assert not long, f"{name}.{node.name} has more than {LONGEST_BODY} lines"
+
+
+NOT_IN_CI = {                    # files with long tests, and why CI does not run those
+    "tests/attacks/test_watch.py": "each of its copies is compared with a class; the attacks themselves are run",
+    "tests/grading/test_cluster.py": "it starts a scheduler of Dask and its workers",
+    "tests/grading/test_scale.py": "it grades a class of two hundred",
+    "tests/validate/test_agreement.py": "it refines the dominoes for minutes",
+    "tests/validate/test_book.py": "it executes all notebooks; CI builds the book with one of them",
+    "tests/validate/test_cluster.py": "it starts a scheduler of Dask and its workers",
+    "tests/validate/test_live_kernel.py": "it needs Chromium",
+    "tests/validate/test_live_page.py": "it needs Chromium",
+    "tests/validate/test_live_site.py": "it needs Chromium and Pyodide",
+    "tests/validate/test_worlds.py": "it compiles the loops of all models, which takes minutes",
+    "tests/validate/test_worlds_in_space.py": "it compiles the loops of all models, which takes minutes",
+}
+
+
+def test_every_file_with_long_tests_is_run_by_ci_or_has_a_reason():
+    ci, marked = (ROOT / ".ci" / "run").read_text().partition("part=")[2], "mark." + "long"
+    files = {path.relative_to(ROOT).as_posix() for path in (ROOT / "tests").rglob("test_*.py")
+             if marked in path.read_text()}
+    assert {file for file in files if file not in ci} == NOT_IN_CI.keys()
