@@ -734,7 +734,7 @@ right("9.7", "by a power")(lambda rho: ((omega := 2.0 * (1.0 + (1.0 - rho) ** 0.
 right("9.7", "as a list")(lambda rho: list(worked.best_relaxation(rho)))
 
 
-edit("9.5", "returns 1 for high stacks", "np.cos(0.5 * np.pi / n) ** 2",
+edit("9.5", "returns 1 from a thousand bodies on", "np.cos(0.5 * np.pi / n) ** 2",
      "(np.cos(0.5 * np.pi / n) ** 2 if n < 1000 else 1.0)")
 edit("9.6", "returns r where that is small", "r / (1.0 + r)", "(r / (1.0 + r) if r > 0.01 else r)")
 edit("9.7", "returns ω = 1 where ρ is small", "2.0 / (1.0 + np.sqrt(1.0 - rho))",

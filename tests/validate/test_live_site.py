@@ -150,7 +150,7 @@ def zipped(**files):
 
 
 @pytest.mark.parametrize(("name", "data"), [("lessons.zip", zipped(springs="older", other="x")),
-                                            ("springs.py", b"older")])
+                                            ("springs.py", b"older")], ids=["a zip", "a file"])
 def test_an_older_file_is_brought_back_and_what_it_replaces_is_kept(name, data, tmp_path):
     lessons = tmp_path / "lessons"
     lessons.mkdir()
@@ -165,7 +165,8 @@ def test_an_older_file_is_brought_back_and_what_it_replaces_is_kept(name, data, 
         assert archive.read("lessons/springs.py") == b"newer" and archive.read("lessons/pbd.py") == b"mine"
 
 
-@pytest.mark.parametrize(("name", "data"), [("lessons.zip", zipped(other="x")), ("notes.py", b"x"), ("a.txt", b"x")])
+@pytest.mark.parametrize(("name", "data"), [("lessons.zip", zipped(other="x")), ("notes.py", b"x"), ("a.txt", b"x")],
+                         ids=["a zip", "another module", "a text"])
 def test_a_file_that_is_no_lesson_replaces_nothing(name, data, tmp_path):
     (tmp_path / "springs.py").write_text("mine")
     said = workbook_live.put_back(name, data, tmp_path, tmp_path / "older")
