@@ -49,10 +49,17 @@ def contact_targets(gap, load, fastest, dt, pile):
     return aim, give
 
 
-def _next_contacts(find_contacts, x, turn, pairs, moved, old, J_old, pile):
-    """Given.  (contacts, J) of a step, J (m, d) [N s]: of pairs of which a body has moved they are found anew."""
+def _found_anew(find_contacts, x, turn, pairs, moved, known, gap, order, J, ways, pile):
+    """Given.  (contacts, the same in the order of sweeps, that order, J (m, d) [N s] in it) at the beginning of a step.
+
+    Contacts of pairs of which a body has moved are found anew.  The others are kept, with the gaps that they have now.
+    """
+    old, J = with_gaps(known, gap, order), put_back(J, order)
     new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
-    return with_kept(old, J_old, new, kept_impulses(new, old, J_old, pile.margin), moved)
+    contacts, J = with_kept(old, J, new, kept_impulses(new, old, J, pile.margin), moved)
+    begin_ways(ways, moved)
+    order = spread_order(contacts.a.size)
+    return contacts, reordered(contacts, order), order, sorted_rows(J, order)
 
 
 def _substep_2d(x, q, v, omega, J, gap, contacts, arms, fastest, ways, h, pile):
@@ -92,12 +99,9 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
             if has_left_margin(low, high, wide_low, wide_high):
                 wide_low, wide_high = low - pile.margin, high + pile.margin
                 pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
-            old, J = with_gaps(contacts, gap, order), put_back(J, order)
-            contacts, J = _next_contacts(find_contacts, x, turn, pairs, moved, old, J, pile)
+            contacts, spread, order, J = _found_anew(find_contacts, x, turn, pairs, moved, contacts, gap, order, J,
+                                                     ways, pile)
             allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-            begin_ways(ways, moved)
-            order = spread_order(contacts.a.size)
-            spread, J = reordered(contacts, order), sorted_rows(J, order)
             gap, fastest = spread.gap, separation_speeds(spread, pile)
             arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
         found = gap
@@ -138,12 +142,9 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
             if has_left_margin(low, high, wide_low, wide_high):
                 wide_low, wide_high = low - pile.margin, high + pile.margin
                 pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
-            old, J = with_gaps(contacts, gap, order), put_back(J, order)
-            contacts, J = _next_contacts(find_contacts, x, turn, pairs, moved, old, J, pile)
+            contacts, spread, order, J = _found_anew(find_contacts, x, turn, pairs, moved, contacts, gap, order, J,
+                                                     ways, pile)
             allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-            begin_ways(ways, moved)
-            order = spread_order(contacts.a.size)
-            spread, J = reordered(contacts, order), sorted_rows(J, order)
             gap, fastest = spread.gap, separation_speeds(spread, pile)
             inv_inertia = world_inertia(turn, pile.inv_inertia)
             arms = arms_3d(x, pile.inv_mass, inv_inertia, spread)

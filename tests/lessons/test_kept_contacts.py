@@ -85,7 +85,11 @@ def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d):
     x, q, _, _ = shifted(rng, d, state, pile)
     new, pairs, turn = found(d, x, q, pile)
     J, moved = rng.normal(size=old.p.shape), np.array([True, False, False, False])
-    c, J_c = contact._next_contacts(FIND[d][1], x, turn, pairs, moved, old, J, pile)
+    ways = kept_contacts.unknown_ways(pile.half, pile.planes.shape[0], pile.margin)
+    every = np.arange(len(old.a))
+    c, spread, order, J_c = contact._found_anew(FIND[d][1], x, turn, pairs, moved, old, old.gap, every, J, ways, pile)
+    assert np.array_equal(spread.gap, c.gap[order])
+    J_c = contact.put_back(J_c, order)
     assert np.all(np.diff(c.a) >= 0) and np.array_equal(c.first, np.searchsorted(c.a, np.arange(4)))
     ours, of_old, of_new = ((one.a == 0) | (one.b == 0) for one in (c, old, new))
     for field in ("a", "b", "n", "p", "gap"):
