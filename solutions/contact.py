@@ -150,9 +150,9 @@ def mass_ratio_contraction(r):
 def best_relaxation(rho):
     """Return (ω, ρ_ω): the relaxation that converges fastest where Gauss–Seidel contracts by ρ, and its own factor.
 
-    *Find* both.  For chains, in which each contact shares bodies with two others at most, a factor λ of the relaxed
-    sweep belongs to every ω:  (λ + ω − 1)² = λ ω² ρ  (Young).  Its larger root shrinks as ω grows from 1, until both
-    roots are equal.  Where one sweep is enough, ρ = 0, ω is 1.
+    *Find* both.  In a chain, each contact shares bodies with two others at most.  There the factors λ of a relaxed
+    sweep are the roots of  (λ + ω − 1)² = λ ω² ρ  (Young), and the larger one decides.  It shrinks as ω grows from 1,
+    until both roots are equal.  Where one sweep is enough, ρ = 0, ω is 1.
 
     For the stack √(1 − ρ) = sin(π/2n).  The number of sweeps then grows as n, and no longer as n².
     *Source:* Young 1971.

@@ -95,8 +95,8 @@ def spring_tension(length, rate, rest, k, k_d):
     """Return the tension [N] of a spring with a parallel damper; a negative tension pushes.
 
     *Find* it from three facts.  The spring pulls if it is longer than `rest`, by k [N/m] for each metre.  The damper
-    pulls if the spring is growing longer, by k_d [N s/m] for each metre per second of the `rate` of lengthening.  Both
-    carry their part of the tension.
+    pulls if the spring is growing longer, by k_d [N s/m] for each metre per second of the `rate` of lengthening.  The
+    tension is the sum of both.
 
     *Source:* first lecture deck, “Damping”, corrected.  Its (x − x_rest) k − v k_d mixes two forces: the first sign is
     that of the tension, the second one that of the force on the moving end, −(x − x_rest) k − v k_d.

@@ -53,7 +53,10 @@ def begin_ways(ways, moved):
 
 
 def forget_deep(ways, contacts, gap):
-    """Let the contacts of bodies that overlap deeply be found anew, in place: their normals change with a small way."""
+    """Mark bodies that overlap deeply, in place, so that their contacts are found anew in the next step.
+
+    There a small motion can change the normal.
+    """
     for k in range(gap.size):
         for i in (contacts.a[k], contacts.b[k]):
             if gap[k] < -DEEP / KEPT * ways.allowed[i]:

@@ -28,8 +28,7 @@ def pymunk_rules(iterations, creeps=""):
     *Source:* Chipmunk's cpArbiter.c: cpArbiterUpdate takes over the impulses of a contact that it still remembers, and
     cpArbiterApplyCachedImpulse returns at the first step of a collision.
     """
-    why = ("it remembers the impulse of a contact that opens for up to three steps, counts it as applied when the "
-           "contact comes back, and does not apply it")
+    why = "a contact that comes back within three steps reports its old impulse, which is not applied again"
     rules = ("unapplied", why), *ends_early(iterations)
     return Allowed(iterations, rules=(*rules, ("rest", creeps)) if creeps else rules)
 

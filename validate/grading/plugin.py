@@ -200,7 +200,7 @@ def is_left_out(item, config):
 
 
 def mark_compiled_as_long(items):
-    """Let the tests of a lesson with compiled answers be long, but for the first: each compiles something else."""
+    """Mark the tests of a lesson's compiled answers as long, except the first.  Each compiles something else."""
     seen = set()
     for item in items:
         if hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled":

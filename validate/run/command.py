@@ -12,7 +12,7 @@ UsageError = typer.BadParameter.__base__     # of every wrong option or command;
 def start(program, does, arguments=None, hint=None):
     """Run a program: a Typer app, or a function whose parameters are its options.
 
-    What it cannot take ends in one sentence and exit code 2, and Ctrl-C in *interrupted* and 130.
+    An option that it does not know ends in one sentence and exit code 2.  Ctrl-C ends in *interrupted* and 130.
     hint: (arguments) → what may have been meant, as the end of that sentence
     """
     arguments = sys.argv[1:] if arguments is None else arguments

@@ -35,8 +35,8 @@ class Unloadable(BadInput):
 class AsSaved(SourceFileLoader):
     """Loads a file as it is saved now.
 
-    Python keeps what it compiled in `__pycache__`, and knows it by the second and the length of the file.  Two saves
-    within a second, of files of one length, would be one to it.
+    Python keeps compiled files in `__pycache__`.  It compares only the length of a file and the second in which it was
+    saved.  So it would miss a save that follows another within a second and leaves the length as it is.
     """
 
     def get_code(self, fullname):
