@@ -8,6 +8,7 @@ import sys
 import tomllib
 from hashlib import sha256
 
+from validate.grading.plugin import part_of
 from validate.products import PRODUCTS
 from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
@@ -214,3 +215,15 @@ def test_every_file_with_long_tests_is_run_by_ci_or_has_a_reason():
     files = {path.relative_to(ROOT).as_posix() for path in (ROOT / "tests").rglob("test_*.py")
              if marked in path.read_text()}
     assert {file for file in files if file not in ci} == NOT_IN_CI.keys()
+
+
+def test_commits_in_a_row_run_all_parts_of_the_long_tests():
+    text = (ROOT / ".ci" / "run").read_text()
+    parts = int(re.search(r"^parts=(\d+)$", text, re.M)[1])
+    assert text.count('part="--part=$(git rev-list --count HEAD)/$parts"') == 1
+    run = {part_of(f"{commits}/{parts}") for commits in range(1000, 1000 + parts)}
+    assert run == {(k, parts) for k in range(parts)}
+    long = [line for line in text.splitlines() if line.startswith(".venv/bin/pytest --long")]
+    assert [line for line in long if '"$part"' not in line] == [
+        ".venv/bin/pytest --long tests/validate/test_book.py -k one_notebook",
+        ".venv/bin/pytest --long $whole -n 2 --dist loadgroup"]
