@@ -230,7 +230,8 @@ def test_an_executed_notebook_reaches_its_end(tmp_path):
 
 # ---------------------------------------------------------------------------------------------- in a terminal
 
-@pytest.mark.parametrize("kind", ["syntax", pytest.param("one beside Exception", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["syntax", "one beside Exception"])
 def test_pytest_says_it_once_and_counts_the_other_lessons(tmp_path, kind):
     broken = KINDS[kind]
     handed_out(tmp_path, integrators=broken.text, springs=example.worked("springs"))
