@@ -2,6 +2,7 @@
 
 import ast
 import contextlib
+import functools
 import io
 import re
 import sys
@@ -91,10 +92,16 @@ def modules_of(*tops):
             for parts, path in zip(names, paths, strict=True)}
 
 
+@functools.cache
+def parsed(path):
+    """The syntax tree of a file, which several tests read."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def imports_of(name, path, known):
     """The modules among the known ones that a module imports, also inside of functions."""
     package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(parsed(path)):
         if isinstance(node, ast.ImportFrom):
             base = package[:len(package) + 1 - node.level] if node.level else []
             home = ".".join([*base, *filter(None, [node.module])])
@@ -187,7 +194,7 @@ LONGEST_BODY = 40            # lines of a function, without its docstring: about
 
 def test_no_function_is_longer_than_a_screen():
     for name, path in modules_of("solutions", "validate", "tests").items():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(parsed(path)):
             if isinstance(node, ast.FunctionDef):
                 body = node.body[ast.get_docstring(node) is not None:]
                 long = body and body[-1].end_lineno - body[0].lineno + 1 > LONGEST_BODY
