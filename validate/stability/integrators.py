@@ -822,7 +822,7 @@ def walk_of_energy(dt):
     return np.sqrt(np.mean(np.sum(squares, axis=1)) / 12.0)
 
 
-@case("a-million-steps", "A million steps of a planet")
+@case("a-million-steps", "A million steps of a planet", in_quick=False)
 def a_million_steps(lesson, check):
     """Check that rounding alone changes the energy of a planet on Verlet's discrete circle, as a random walk.
 
