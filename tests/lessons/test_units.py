@@ -426,7 +426,7 @@ def has_floats(value):
 
 # ---------------------------------------------------------------------------------------------- the tests
 
-DEFAULT = "springs", "friction", "rotation", "impulses"  # lessons whose calls take little to record
+DEFAULT = "springs", "friction", "rotation"  # lessons whose calls take little to record
 
 
 def result_of(function, call):
