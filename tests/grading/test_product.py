@@ -113,9 +113,9 @@ def test_a_notebook_runs_without_an_error_and_its_checks_pass(installed, program
 
 @pytest.mark.long
 @pytest.mark.xdist_group("notebooks")
-@pytest.mark.parametrize("lesson", lesson_names())
-def test_every_method_and_every_stability_case_of_right_answers_is_judged(installed, program, tmp_path, lesson):
-    said, code = run_in(installed, program("validate"), "--of", "lessons", "--plain", "--quick", "--lesson", lesson,
+@pytest.mark.parametrize("about", lesson_names())
+def test_every_method_and_every_stability_case_of_right_answers_is_judged(installed, program, tmp_path, about):
+    said, code = run_in(installed, program("validate"), "--of", "lessons", "--plain", "--quick", "--lesson", about,
                         "--out", str(tmp_path))
     report = json.loads((tmp_path / "report.json").read_text())
     assert code == 0, said
@@ -123,7 +123,7 @@ def test_every_method_and_every_stability_case_of_right_answers_is_judged(instal
                 for case in scene["cases"].values() for curve in case["ours"]}
     assert not [place for place, verdict in verdicts.items() if verdict is Verdict.NOT_ATTEMPTED]
     assert {(case["lesson"], case["slug"]) for case in report["stability"]} == {
-        (lesson, slug) for slug, case in cases_of(lesson).items() if case.in_quick}
+        (about, slug) for slug, case in cases_of(about).items() if case.in_quick}
     assert not [finding for case in report["stability"] for finding in case["findings"] if not finding["holds"]]
     assert {scene["scene"] for scene in report["scenes"]} == {
-        name for name in modules.scene_names() if modules.bind_scene(name).lesson == lesson}
+        name for name in modules.scene_names() if modules.bind_scene(name).lesson == about}
