@@ -94,7 +94,7 @@ class Case(NamedTuple):
     lesson: str
     examine: Callable        # (lesson, check: Checks) → Picture or None
     compiled: bool           # False for short runs and for runs with an acceleration of their own
-    in_quick: bool = True    # False: only --full examines it, because it compiles for seconds
+    in_quick: bool = True    # False: only --full examines it, because it takes seconds
 
 
 class Examined(NamedTuple):

@@ -898,7 +898,7 @@ def sampled(lesson, starts, steps):
     return run[1][::steps // SLICES]
 
 
-@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False)
+@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False, in_quick=False)
 def limit_of_prediction(lesson, check):
     """Check that the motion alone decides the growth of a small error from the method, the start or rounding."""
     ts, truth, factor = true_growth()
