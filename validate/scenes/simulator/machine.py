@@ -297,7 +297,7 @@ SCENE = Scene(
     runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    slow_cases=("overlap",),
+    slow_cases=("overlap", "residual"),
     omitted_methods="the machine was not set up in pybullet: its belt and its crank are bodies without mass that carry "
                     "others along, which pybullet has only in reduced coordinates",
     sanity_checks=sanity_checks,
