@@ -194,7 +194,7 @@ class Wall(NamedTuple):
     d: float
 
 
-THROWN_DT = 0.1                                  # step of the ball in lesson 1, which is long [s]
+THROWN_DT = 0.05                                 # step of the ball in lesson 1, which is long [s]
 
 
 def thrown(use):
@@ -268,6 +268,11 @@ def rail_time(t, dt, x_0, x_1, r, R):
         return t
     reached = [z.real for z in s if abs(z.imag) < 1e-12 and 0.0 <= z.real <= 1.0]
     return t + dt * min(reached, default=np.inf)
+
+
+def looked_late(t, dt, x_0, x_1, r, R):
+    """Return the end of a step at which a ball and a rail overlap; what happens within the step is not seen."""
+    return t + dt if np.linalg.norm(x_1[1:]) < r + R else np.inf
 
 
 def floor_time(t, dt, x_0, x_1, r, wall):
@@ -364,7 +369,7 @@ def picture(use):
     return {"picture": np.array(seen)}
 
 
-TOSSED, TURNS = np.array([1.55, 0.3]), np.array([2.0, -5.0, 3.0])           # of a die [m], [rad/s]
+TOSSED, TURNS = np.array([-0.28, 0.3]), np.array([2.0, -5.0, 3.0])           # of a die [m], [rad/s]
 
 
 def die(use):
@@ -419,7 +424,7 @@ def top_drawn(R):
 
 # ---------------------------------------------------------------------------------------------- the stack
 
-SWEEPS, STACK_DT = 4, FRAME / 2                  # per step; step of the stack [s]
+SWEEPS, STACK_DT = 8, FRAME / 2                  # per step; step of the stack [s]
 
 
 def stack(use):

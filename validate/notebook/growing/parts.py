@@ -74,7 +74,7 @@ PARTS = {
     "5.10": Part(actors.die, lambda q, omega, dt: q, None, "without it: nothing turns"),
     "5.15": Part(actors.top, lambda t, q, L, top: 0.0 * L, None, "without it: no torque"),
     "6.2": Part(actors.ball, nothing, actors.floor_time, "without it: no floor"),
-    "6.4": Part(actors.ball, nothing, actors.rail_time, "without it: no rail"),
+    "6.4": Part(actors.ball, actors.looked_late, actors.rail_time, "without it: looks after each step"),
     "7.4": Part(actors.ball, dead, lively, "without it: no bounce"),
     "7.10": Part(actors.ball, None, None, "without it: no friction"),
     "8.6": Part(actors.cloth, None, shortened, "without it: springs"),

@@ -14,7 +14,7 @@ SECONDS, RATE = 3.0, 30                          # of a film [s]; pictures per s
 PICTURES = round(SECONDS * RATE) + 1
 FRAME = 1.0 / RATE                               # between two pictures [s]
 G = 9.81                                         # [m/s²]
-SIDES = (-1.9, 2.95, -0.12, 1.95)                # left, right, low and high end of every picture [m]
+SIDES = (-1.75, 2.95, -0.1, 2.45)                # left, right, low and high end of every picture [m]
 
 # ---------------------------------------------------------------------------------------------- bodies
 
@@ -38,9 +38,9 @@ def room():
         Body(x=(0.0, 0.0), shape=HalfSpace((0.0, 1.0), 0.0), mu=1.0, e=1.0),
         Body(x=(0.6, SILL_TOP - 0.03), shape=Box((SILL_END - 0.6, 0.03)), mu=1.0, e=1.0),
         Body(x=(-0.75, 1.15), shape=Ball(0.015), mu=1.0, e=1.0),
-        Body(x=(-1.45, 0.4), m=0.2, shape=Ball(0.06), v=(3.6, 4.4), mu=RUBS, e=BOUNCES),
+        Body(x=(-0.757, 0.338), m=0.2, shape=Ball(0.05), v=(0.0, 6.2), mu=RUBS, e=BOUNCES),
         Body(x=(0.1, SILL_TOP + 0.07), m=1.0, shape=Box((0.09, 0.07)), v=(2.0, 0.0), mu=RUBS),
-        Body(x=(1.3, 0.35), m=3.0, shape=Box((0.09, 0.06)), v=(3.4, 2.4), omega=-6.0, mu=RUBS),
+        Body(x=(1.6, 0.4), m=1.5, shape=Box((0.09, 0.06)), v=(2.6, 2.3), omega=-6.0, mu=RUBS),
         Body(x=hung, m=1.0, q=TILT, inertia=moment),               # no shape: it hangs flat on the wall
         *stack), (0.0, -G), joints=(Hinge(PICTURE, WORLD, NAIL),))
 
@@ -99,9 +99,9 @@ def cushion(t):
 # ---------------------------------------------------------------------------------------------- arm and top
 
 BASE, LINKS = np.array([1.2, SILL_TOP]), np.array([0.75, 0.6, 0.45])       # of the arm [m]
-REST = np.array([0.6, 1.5, 1.2])                 # its angles at the start [rad]
-ELBOW = 1.9                                      # limit of its second and third angle [rad]
-ARM = make_arm_2d(LINKS, 0.5, 0.15, (-np.inf, -np.inf, -np.inf), (np.inf, ELBOW, ELBOW), 0.0, 0.0)
+REST = np.array([0.6, 1.3, 1.4])                 # its angles at the start [rad]
+WRIST = 1.25                                     # lower limit of its last angle [rad]
+ARM = make_arm_2d(LINKS, 0.5, 0.15, (-np.inf, -np.inf, WRIST), np.inf, 0.0, 0.0)
 GRIP, DRAWN = 0.8, 2.4                           # when its hand holds the last ring, and when it stops [s]
 OPEN = 0.3                                       # spread of the rings then [-]
 
@@ -126,7 +126,7 @@ def joints(theta):
     return BASE + np.stack((z.real, z.imag), axis=1)
 
 
-FOOT, TOP_LENGTH, TOP_RADIUS = np.array([-0.7, 0.0]), 0.3, 0.14             # of the top [m]
+FOOT, TOP_LENGTH, TOP_RADIUS = np.array([1.3, 0.0]), 0.3, 0.14             # of the top [m]
 LEAN, SPIN = 0.4, 60.0                           # of its axis from the vertical [rad]; about its axis [rad/s]
 TOP_I = np.array([0.02, 0.02, 0.009])            # moments about its foot [kg m²]
 TOP_MGL = 1.0                                    # weight times the distance of its centre from the foot [N m]
