@@ -40,7 +40,7 @@ def room():
         Body(x=(-0.75, 1.15), shape=Ball(0.015), mu=1.0, e=1.0),
         Body(x=(-0.757, 0.338), m=0.2, shape=Ball(0.05), v=(0.0, 6.2), mu=RUBS, e=BOUNCES),
         Body(x=(0.1, SILL_TOP + 0.07), m=1.0, shape=Box((0.09, 0.07)), v=(2.0, 0.0), mu=RUBS),
-        Body(x=(1.6, 0.4), m=1.5, shape=Box((0.09, 0.06)), v=(2.6, 2.3), omega=-6.0, mu=RUBS),
+        Body(x=(1.6, 0.4), m=1.0, shape=Box((0.09, 0.06)), v=(2.2, 2.5), omega=-6.0, mu=RUBS),
         Body(x=hung, m=1.0, q=TILT, inertia=moment),               # no shape: it hangs flat on the wall
         *stack), (0.0, -G), joints=(Hinge(PICTURE, WORLD, NAIL),))
 
@@ -54,7 +54,7 @@ RINGS = tuple(range(0, COLS, 4))                 # points of the top row by whic
 CORNER = np.array([0.1, 1.72, 0.0])              # its upper left corner, on the pole [m]
 SPREAD = 0.8                                     # distance of its rings over that of a flat curtain [-]
 POINT, K, DAMPING = 0.01, 60.0, 0.02             # a point [kg], a thread [N/m], its damper [N s/m]
-AIR, WIND = 0.004, np.array([0.02, 0.0, 0.02])   # drag of the air on a point [N s/m], the wind on it [N]
+AIR, WIND = 0.02, np.array([0.03, 0.0, 0.0])   # drag of the air on a point [N s/m], the wind on it [N]
 CURTAIN_DT = FRAME / 8                           # [s]
 
 
