@@ -64,10 +64,10 @@ def moved(chosen, functions):
 
 
 def checked(found, like):
-    """Return what was moved.  Raises TypeError where your function has left no numbers to draw."""
+    """Return what was moved.  Raises ArithmeticError where your function has left no numbers to draw."""
     for thing, places in found.items():
         if np.shape(places) != np.shape(like[thing]) or not np.all(np.isfinite(places)):
-            raise TypeError(f"the {thing} is nowhere: your function returns something that is no place or no number")
+            raise ArithmeticError(f"the {thing} is nowhere: your function returns something that is no place or no number")
     return found
 
 

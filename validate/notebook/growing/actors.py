@@ -263,6 +263,8 @@ def bounced(use, v, omega, n, body):
 def rail_time(t, dt, x_0, x_1, r, R):
     """Given.  Return the time at which a ball on a straight way first touches a rail."""
     a, b = x_0[1:], x_1[1:]
+    if not np.all(np.isfinite(np.append(a, b))):
+        return np.inf
     s = np.roots([(b - a) @ (b - a), 2.0 * a @ (b - a), a @ a - (r + R) ** 2])
     if a @ a <= (r + R) ** 2:
         return t

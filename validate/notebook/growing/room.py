@@ -115,7 +115,8 @@ def easy(s):
 def wish(t):
     """Return where the hand should be (2,): from its rest to the last ring, and with it along the pole."""
     width = (COLS - 1) * CELL
-    ring, end = CORNER[:2] + [SPREAD * width, 0.0], CORNER[:2] + [OPEN * width, 0.0]
+    along = np.array([width, 0.0])
+    ring, end = CORNER[:2] + SPREAD * along, CORNER[:2] + OPEN * along
     rest = joints(REST)[-1]
     return rest + (ring - rest) * easy(t / GRIP) + (end - ring) * easy((t - GRIP) / (DRAWN - GRIP))
 
