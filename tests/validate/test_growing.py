@@ -1,5 +1,7 @@
 """The scene that grows: without and with a part it differs by a number that theory gives."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -37,7 +39,7 @@ def period(number):
 
 def test_every_part_is_an_exercise_and_every_lesson_has_two():
     assert PARTS.keys() <= needs.table().keys()
-    assert {lesson: sum(lesson_of(n) == lesson for n in PARTS) for lesson in range(1, 12)} == dict.fromkeys(range(1, 12), 2)
+    assert all(sum(lesson_of(number) == lesson for number in PARTS) == 2 for lesson in range(1, 12))
 
 
 def test_euler_throws_a_ball_half_v_dt_higher():
@@ -82,13 +84,13 @@ def test_the_book_stays_with_friction_and_slides_without():
 def test_the_picture_swings_with_the_period_of_its_moment(number, I):
     full = (0.25 + 0.1296) / 12.0 + 0.18**2
     longer = 1.0 + room.TILT**2 / 16.0                   # of a swing that is not small
-    for found, moment in zip(period(number), (I, full)):
+    for found, moment in zip(period(number), (I, full), strict=True):
         assert found == pytest.approx(2.0 * np.pi * np.sqrt(moment / (room.G * room.HANGS)) * longer, rel=0.01)
 
 
 def test_the_die_turns_three_times_and_the_top_goes_round():
     use = borrowed(5)
-    off, on = (PARTS["5.10"].actor({**use, "5.10": part})["die"] for part in (PARTS["5.10"].off, growing.worked()["5.10"]))
+    off, on = (actors.die({**use, "5.10": part})["die"] for part in (PARTS["5.10"].off, growing.worked()["5.10"]))
     own = lambda die: die - die.mean(axis=1, keepdims=True)
     assert np.abs(own(off) - own(off)[0]).max() < 1e-12
     turn = round(2.0 * np.pi / np.linalg.norm(actors.TURNS) / room.FRAME)
@@ -113,7 +115,7 @@ def test_the_ball_finds_rail_and_floor():
 def test_each_bounce_has_e_squared_of_the_height_of_the_last():
     off, on = (places[:, 1] - room.ROOM.bodies[room.BALL].shape.radius for places in films("7.4", "ball"))
     peaks = [on[k] for k in range(12, len(on) - 1) if on[k - 1] < on[k] >= on[k + 1]]
-    for before, after in zip(peaks[:-1], peaks[1:]):
+    for before, after in pairwise(peaks):
         assert after / before == pytest.approx(room.BOUNCES**2, abs=0.03)
     assert off[30:].max() < 1e-9
 
@@ -158,8 +160,7 @@ def test_weight_bends_the_flight_of_the_parcel():
 
 def test_the_loop_lets_nothing_fall_out_of_the_room():
     use = growing.worked()
-    off, on = ({name: places for name, places in actors.pile({**use, "10.6": part}).items()}
-               for part in (PARTS["10.6"].off, use["10.6"]))
+    off, on = (actors.pile({**use, "10.6": part}) for part in (PARTS["10.6"].off, use["10.6"]))
     assert all(places[-1, :, 1].max() < -30.0 for places in off.values())
     assert all(places[..., 1].min() > -0.02 for places in on.values())
     box = on["box"].mean(axis=1)

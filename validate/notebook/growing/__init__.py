@@ -4,7 +4,8 @@
     grow("7")            # without and with all that the scene has of lesson 7
     show(finished())     # the whole room
 
-`room.py` describes the room as a Model, `actors.py` moves what is in it, and `parts.py` says which exercise writes what.
+`room.py` describes the room as a Model, `actors.py` moves what is in it, and `parts.py` says which exercise writes
+what.
 """
 
 import json
@@ -47,7 +48,8 @@ def grow(part):
     names = {number: needs.table()[number]["function"] for number in chosen}
     lesson = mine(needs.table()[chosen[0]]["lesson"])
     without = moved(chosen, {number: PARTS[number].off for number in chosen})
-    yours = attempt(lambda: checked(moved(chosen, {number: getattr(lesson, names[number]) for number in chosen}), without))
+    functions = {number: getattr(lesson, name) for number, name in names.items()}
+    yours = attempt(lambda: checked(moved(chosen, functions), without))
     views = [(PARTS[chosen[0]].without if len(chosen) == 1 else f"without lesson {part}", OFF, without)]
     if yours is not None:
         views.append((f"with your {' and '.join(names.values())}", ON, yours))
@@ -67,7 +69,7 @@ def checked(found, like):
     """Return what was moved.  Raises ArithmeticError where your function has left no numbers to draw."""
     for thing, places in found.items():
         if np.shape(places) != np.shape(like[thing]) or not np.all(np.isfinite(places)):
-            raise ArithmeticError(f"the {thing} is nowhere: your function returns something that is no place or no number")
+            raise ArithmeticError(f"the {thing} is nowhere: your function returns what is no place or no number")
     return found
 
 
@@ -81,7 +83,7 @@ def others(lesson, shown):
 
 
 def recorded(thing):
-    """Return how the worked answers move a thing; in a copy without them, as it was stored when the copy was made."""
+    """Return how the worked answers move a thing; in a copy without them, as `release` stored it."""
     kept = stored("00")
     return kept[thing] if kept else by_worked_answers(WRITER[thing])[thing]
 

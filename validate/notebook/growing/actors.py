@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.support.contact_points import ContactSet, box_bounds_2d, box_contacts_2d
-from solutions.support.quaternions import rotate, unrotate
+from solutions.support.quaternions import rotate
 from solutions.support.scenes import PileState
-from solutions.support.shapes import outline_of
 
 from ...reference.orientation import about, quaternion
 from ...scenes.drawing import circle
@@ -21,7 +20,7 @@ from .room import FRAME, PICTURES, ROOM, G
 
 DOWN = np.array([0.0, -G])
 ROUND = 16                                       # corners of a drawn circle
-LOOP = tuple((*range(4), 0))
+LOOP = (0, 1, 2, 3, 0)
 
 
 def path(first, count, closed=True):
@@ -342,7 +341,7 @@ def book(use):
     turn = np.stack((along, n), axis=1)
     for k in range(4 * PICTURES):
         if k % 4 == 0:
-            seen.append(x + (corners(room.BOOK) + [0.0, room.BOOK[1]]) @ turn.T)
+            seen.append(x + (corners(room.BOOK) + np.array([0.0, room.BOOK[1]])) @ turn.T)
         if (x - room.LID[0]) @ along < 0.75:
             x, v = use["3.16"](lambda *_: DOWN, lid_gap, k * dt, x, v, dt, on)
     return {"book": np.array(seen)}
@@ -402,7 +401,6 @@ def top(use):
     for k in range(16 * PICTURES):
         if k % 16 == 0:
             seen.append(top_drawn(R))
-        q = quaternion(R)
         omega = R @ ((R.T @ L) / room.TOP_I)
         half = turn_by(0.5 * dt * omega) @ R
         L = L + dt * use["5.15"](k * dt, quaternion(half), L, body)
@@ -453,8 +451,8 @@ def stack(use):
 
 def stack_drawn(bodies, y):
     """Return the corners of all boxes."""
-    return np.concatenate([(bodies[0].x[0], high) + corners(np.array(body.shape.half))
-                           for high, body in zip(y, bodies)])
+    return np.concatenate([np.array([bodies[0].x[0], high]) + corners(np.array(body.shape.half))
+                           for high, body in zip(y, bodies, strict=True)])
 
 
 def contacts_of(places, gaps):

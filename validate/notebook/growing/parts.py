@@ -59,7 +59,13 @@ def shortened(x, net):
 
 
 def nothing(*_):
+    """Return a time that never comes."""
     return np.inf
+
+
+def unmoved(surface, x, w, solid):
+    """Return the points as they are."""
+    return x
 
 
 PARTS = {
@@ -78,7 +84,7 @@ PARTS = {
     "7.4": Part(actors.ball, dead, lively, "without it: no bounce"),
     "7.10": Part(actors.ball, None, None, "without it: no friction"),
     "8.6": Part(actors.cloth, None, shortened, "without it: springs"),
-    "8.11": Part(actors.cloth, lambda surface, x, w, solid: x, lambda surface, x, w, solid: x, "without it: no obstacle"),
+    "8.11": Part(actors.cloth, unmoved, unmoved, "without it: no obstacle"),
     "9.4": Part(actors.stack, lambda A, b, lam, omega: 0.0 * lam, actors.one_by_one, "without it: no contact"),
     "9.14": Part(actors.stack, lambda now, old, J, near: 0.0 * J, actors.remembered, "without it: no memory"),
     "10.1": Part(actors.parcel, lambda load, t, x, q, v, omega, dt, p: (v, omega), None, "without it: no weight"),

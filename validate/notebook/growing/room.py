@@ -83,8 +83,7 @@ def hung(spread):
     return CORNER + CELL * np.stack((spread * across, -down, depth), axis=1)
 
 
-LONG = np.full(len(THREADS), CELL)               # the threads' lengths [m]: those across a cell are as long as they hang
-LONG = np.linalg.norm(hung(SPREAD)[THREADS[:, 1]] - hung(SPREAD)[THREADS[:, 0]], axis=1)
+LONG = np.linalg.norm(hung(SPREAD)[THREADS[:, 1]] - hung(SPREAD)[THREADS[:, 0]], axis=1)      # threads [m]
 FREE = np.ones(ROWS * COLS)
 FREE[list(RINGS)] = 0.0                          # 0 at a ring
 
@@ -93,7 +92,7 @@ CUSHION = 0.17                                   # radius of a ball that comes t
 
 def cushion(t):
     """Return the centre (3,) of that ball [m]: it swings towards the viewer and back."""
-    return CORNER + [0.42, -0.5, 0.3 * np.sin(2.0 * np.pi * (t - 0.4) / 2.4) - 0.05]
+    return CORNER + np.array([0.42, -0.5, 0.3 * np.sin(2.0 * np.pi * (t - 0.4) / 2.4) - 0.05])
 
 
 # ---------------------------------------------------------------------------------------------- arm and top
