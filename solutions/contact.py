@@ -502,21 +502,21 @@ def relaxed_gap(mu, v, dt):
 
 
 def relaxed_curve_is():
-    """Return the letter "A", "B", "C" or "D" of the curve of the convex relaxation in the figure of exercise 9.21.
+    """Return the letter of the curve of the convex relaxation in the figure of exercise 9.21: "A", "B", "C" or "D".
 
     The figure shows the residual against the number of iterations for four solvers of one problem with friction:
     projected Gauss–Seidel; Newton's method; the convex relaxation of MuJoCo and Drake; all contacts at once, each with
-    more than the change that it needs.  *Say* which curve is the relaxation, and why.
+    more than the change that it needs.  Say which curve is the relaxation.
     """
     ### BEGIN SOLUTION 9.21
-    return "C"                                       # its answer is that of another law: a sliding contact opens
+    return "B"                                       # its answer is that of another law: a sliding contact opens
     ### END SOLUTION
 
 
 def fewer_sweeps(sweep, J, calls):
     """Return impulses that are closer to the answer than `calls` sweeps would be, from `calls` sweeps at most.
 
-    *Make* a method of your own.  sweep(J) returns the impulses after one sweep of some solver, such as projected
+    *Make it*: a method of your own.  sweep(J) returns the impulses after one sweep of some solver, such as projected
     Gauss–Seidel, from J; you learn nothing else of the problem.  In a stack and under a heavy body, 100 calls must
     leave at most a tenth of the residual that 100 sweeps leave.  With friction, for two boxes that are thrown, it must
     be at most a thousandth of what it is without impulses.

@@ -2310,16 +2310,16 @@ right("9.20", "by the slope of the cone's edge")(lambda mu, v, dt: np.tan(np.arc
 
 # 9.21 -----------------------------------------------------------------------------------------------------------
 edits("9.21", {
-    "takes the curve that grows for the relaxation: that solver does not converge, and the relaxation does":
-        ("return \"C\"", "return \"A\""),
-    "takes the slow curve for the relaxation: slow sweeps still end at the laws, and the relaxation does not":
-        ("return \"C\"", "return \"B\""),
-    "takes the curve that falls fastest for the relaxation: Newton's method solves the unchanged laws":
-        ("return \"C\"", "return \"D\""),
-    "gives a number, not a letter": ("return \"C\"", "return 2"),
-    "gives no letter of the four": ("return \"C\"", "return \"the third\""),
+    "chooses the curve that grows: that solver does not converge, and the relaxation does":
+        ("return \"B\"", "return \"C\""),
+    "chooses the slow curve: slow sweeps still end where the laws hold, and the relaxation does not":
+        ("return \"B\"", "return \"D\""),
+    "chooses the curve that falls fastest: Newton's method solves the laws as they are":
+        ("return \"B\"", "return \"A\""),
+    "gives a number, not a letter": ("return \"B\"", "return 2"),
+    "gives a word, not a letter": ("return \"B\"", "return \"the second\""),
 })
-right("9.21", "by its place in the alphabet")(lambda: chr(ord("A") + 2))
+right("9.21", "as a small letter")(lambda: "b")
 
 
 # 9.22 -----------------------------------------------------------------------------------------------------------

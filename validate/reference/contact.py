@@ -452,7 +452,10 @@ def newton_of(phi, J):
 
 
 def four_solvers(A, b, mu):
-    """Return {name: step, J (2m,) → J} of four solvers for a question: two that end where the laws hold, two others."""
+    """Return steps J (2m,) → J of four solvers.
+
+    All contacts at once, with too large a change; Gauss–Seidel; the convex relaxation; Newton's method.
+    """
     k = np.diag(A)
 
     def bend(x, y):
@@ -477,25 +480,24 @@ def four_solvers(A, b, mu):
             pair = slice(c, c + 2)
             J[pair] = nearest_in_cone(J[pair] - (A[pair] @ J + b[pair]) / k[pair].max(), mu[c // 2:c // 2 + 1])
         return J
-    return {"diverges": lambda J: limited(J - 1.2 * (A @ J + b) / k, mu), "sweeps": one_by_one,
-            "relaxed": cone_by_cone, "Newton": lambda J: newton_of(phi, J)}
+    return lambda J: limited(J - 1.2 * (A @ J + b) / k, mu), one_by_one, cone_by_cone, lambda J: newton_of(phi, J)
 
 
-@cache
 def four_residuals(steps=160):
-    """Return {name: residuals (steps + 1,) [m/s]} of four_solvers for discs that are thrown, from no impulses on.
+    """Return (4, steps + 1) residuals [m/s] of four_solvers for discs that are thrown, from no impulses on.
 
     The residual is the largest k |J' − J|, with the impulse J' that each contact alone would have: 0 exactly where the
     laws of Signorini and Coulomb hold.
     """
-    (A, b), mu, found = thrown_column(THROWN), np.full(THROWN, THROWN_MU), {}
-    for name, step in four_solvers(A, b, mu).items():
+    (A, b), mu = thrown_column(THROWN), np.full(THROWN, THROWN_MU)
+    k, found = np.diag(A), []
+    for step in four_solvers(A, b, mu):
         J, residuals = np.zeros(b.size), []
         for _ in range(steps + 1):
-            residuals.append(np.max(np.diag(A) * np.abs(limited(J - (A @ J + b) / np.diag(A), mu) - J)))
+            residuals.append(np.max(k * np.abs(limited(J - (A @ J + b) / k, mu) - J)))
             J = step(J)
-        found[name] = np.array(residuals)
-    return found
+        found.append(residuals)
+    return np.array(found)
 
 
 @cache
