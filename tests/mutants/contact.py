@@ -2328,7 +2328,6 @@ edits("9.22", {
     "makes a sweep more than it may": ("range(calls - 1)", "range(calls)"),
     "makes ten times as many sweeps as it may": ("range(calls - 1)", "range(10 * calls)"),
     "makes one sweep only": ("range(calls - 1)", "range(0)"),
-    "ends without a sweep": ("return sweep(J)", "return J"),
     "divides by zero where a sweep changes nothing": ("if 0.0 < size < before:", "if size <= before:"),
     "goes back along the direction": ("swept + size", "swept - size"),
     "forgets the change in the direction": ("size / before * p + change", "size / before * p"),
