@@ -3,7 +3,7 @@ and piles come to rest.
 """
 
 import itertools
-from decimal import Context, Decimal
+from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
@@ -1365,8 +1365,9 @@ def test_the_proximal_map_leaves_lawful_impulses_alone_for_every_factor(lesson, 
               given=f"A = {A}, u = {u} m/s, J = {J} N s, r = {factors} kg")
         for _ in range(3):
             A, b, J, mu, _ = lawful(draw, 5)
-            close("J after a sweep of lawful impulses [N s]",
-                  lesson.proximal_sweep(A, b, J, mu, r * draw(0.5, 2.0, 10)), J, 1e-10, given=f"r near {r} kg")
+            some = min(r, 0.5) * draw(0.5, 2.0, 10)                      # more would amplify round-off from row to row
+            close("J after a sweep of lawful impulses [N s]", lesson.proximal_sweep(A, b, J, mu, some), J, 1e-8,
+                  given=f"r = {some} kg")
 
 
 @exercise("9.17", points=0.25, hint="with r = 1/A_kk for every row it is cone_sweep: −r u takes the place of −u/k")
@@ -1406,8 +1407,9 @@ def test_the_function_of_fischer_and_burmeister_and_its_slopes(lesson, draw):
 def test_no_digit_of_a_small_complementarity_is_lost(lesson, draw):
     for little in (draw(0.1, 1.0), draw(1e-7, 1e-5), draw(1e-13, 1e-11), draw(1e-21, 1e-19)):
         large = draw(0.5, 2.0)
-        x, y = Decimal(large), Decimal(large * little)
-        expected = float((x + y - (x * x + y * y).sqrt(Context(prec=60))) / y)
+        with localcontext(prec=80):
+            x, y = Decimal(large), Decimal(large * little)
+            expected = float((x + y - (x * x + y * y).sqrt()) / y)
         for first in (True, False):
             pair = (large, large * little) if first else (large * little, large)
             close("φ over the smaller of x and y [-]", lesson.fischer_burmeister(*pair)[0] / (large * little),
@@ -1453,10 +1455,10 @@ def test_a_newton_step_from_anywhere_solves_for_the_contacts_that_seem_to_push(l
 
 
 def slid(mu, v, dt):
-    """(gap [m], slip [m/s]) of a block of 1 kg that a force of its own friction has pulled for 300 steps.  It falls first.
+    """(gap [m], slip [m/s]) of a block of 1 kg that a force of its own friction has pulled for 300 steps.
 
-    Each step takes the velocity that is nearest to the one without impulses among those that the relaxation allows:
-    u_n + gap/dt ≥ μ |u_t|.  This is what the least ½ J·A J + b·J means for the velocity.
+    It falls first.  Each step takes the velocity that is nearest to the one without impulses among those that the
+    relaxation allows: u_n + gap/dt ≥ μ |u_t|.  This is what the least ½ J·A J + b·J means for the velocity.
     """
     gap, u_n, u_t = abs(v) * dt, 0.0, v
     for _ in range(300):
