@@ -138,6 +138,15 @@ def test_where_known_mistakes_are_decided_by_round_off_an_unknown_one_has_no_nam
     assert mistakes.matching("kinematics", "11.10", traces["larger"]) == []
 
 
+def test_a_wrong_letter_of_a_choice_is_named_and_no_letter_stands_in_a_table():
+    letters = {letter: ("1.12", lambda letter=letter: letter) for letter in "ABCDE"}
+    traces = traces_of("integrators", letters)
+    found = {letter: mistakes.matching("integrators", "1.12", traces[letter]) for letter in letters}
+    assert sorted(map(len, found.values())) == [0, 0, 1, 1, 1] and not found["E"]
+    kept = [one["tests"] for one in mistakes.table("integrators")["1.12"]["wrong"]]
+    assert all(len(results[0]) == mistakes.DIGITS for tests in kept for results in tests.values())
+
+
 def test_with_secret_inputs_no_mistake_is_named(tmp_path):
     other = "w = v + acceleration(t, x, v, p) * dt\n    return w * dt + x, w"
     outcomes, said = run_of(tmp_path, "integrators", ["1.1"], {EULER: other}, "--seed=a secret")
