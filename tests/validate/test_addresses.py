@@ -65,6 +65,39 @@ def test_a_record_that_is_passed_by_its_address_keeps_no_array_alive(scaled_twic
     assert after == before
 
 
+def at_most(step, x, p):
+    """Return x, after a call of a function where x is positive."""
+    return step(x, p) if x[0] > 0.0 else x
+
+
+def promised(function):
+    """Return a function (x, p) that calls a promised one where x is positive, and the twin of that one."""
+    addresses.pass_by_address(Scaling)
+    row, record = numba.typeof(np.ones(2)), numba.typeof(Scaling(np.ones(2), 1.0))
+    inner, outer = numba.njit(no_cpython_wrapper=True)(function), numba.njit(at_most)
+    step = addresses.promise(inner, addresses.function(row, row, record))
+    return lambda x, p: outer(step, x, p), inner
+
+
+def test_a_promised_function_is_compiled_when_it_is_first_called():
+    run, inner = promised(scaled)
+    p = Scaling(np.array([2.0, 3.0]), 1.0)
+    assert run(np.zeros(2), p) == pytest.approx([0.0, 0.0], abs=0.0)
+    assert not inner.overloads
+    for _ in range(2):
+        assert run(np.ones(2), p) == pytest.approx([2.0, 3.0], rel=1e-15)
+    assert len(inner.overloads) == 1
+
+
+def test_a_promised_function_that_cannot_be_compiled_raises_at_its_first_call(monkeypatch):
+    said = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda fault: said.append(fault.exc_value))
+    run, _ = promised(lambda x, p: p.share)
+    with pytest.raises(RuntimeError, match="could not be compiled"):
+        run(np.ones(2), Scaling(np.ones(2), 1.0))
+    assert "returns float64 and not" in str(said[0])
+
+
 def test_a_function_that_returns_something_else_than_its_caller_expects_is_refused():
     row = numba.typeof(np.ones(2))
     with pytest.raises(TypeError, match="returns float64 and not"):
