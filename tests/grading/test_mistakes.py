@@ -162,7 +162,9 @@ def test_a_failure_below_is_named(tmp_path):
     assert not any(o.below for o in outcomes if o.exercise == "8.3")
 
 
-@pytest.mark.parametrize(("returned", "kind"), [("None", "None"), ("dt", "a number"), ("(x, v, t)", "3 values")])
+@pytest.mark.parametrize(("returned", "kind"), [
+    ("None", "None"), *(pytest.param(*one, marks=pytest.mark.long) for one in (("dt", "a number"),
+                                                                              ("(x, v, t)", "3 values")))])
 def test_a_result_of_another_kind_is_named(tmp_path, returned, kind):
     outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: f"return {returned}"})
     failed = [o for o in outcomes if o.status == "not yet"]
@@ -171,6 +173,7 @@ def test_a_result_of_another_kind_is_named(tmp_path, returned, kind):
     assert {o.expected.partition(" (")[0] for o in failed} == {"2 values"}
 
 
+@pytest.mark.long
 def test_an_error_where_none_was_expected_is_said(tmp_path):
     outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: "raise ValueError('too fast')"})
     failed = [o for o in outcomes if o.status == "not yet"]
@@ -178,6 +181,9 @@ def test_an_error_where_none_was_expected_is_said(tmp_path):
 
 
 # ---------------------------------------------------------------------------------------------- the tables
+
+LARGE = {"contact", "simulator"}         # lessons whose tables take seconds to search
+
 
 def test_exercises_call_those_that_their_answers_use():
     table = needs.table()
@@ -201,9 +207,9 @@ def test_the_next_exercise_is_the_first_whose_calls_pass():
     assert needs.next_of("pbd", {**states, "8.16": "not yet"}) == "8.16"
 
 
-@pytest.mark.parametrize("name", LESSONS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LARGE)) for name in LESSONS])
 def test_no_answer_can_be_read_from_a_table(name):
-    """Nothing of an answer's text is in it, and no code."""
+    """Nothing of an answer's text is in it, and no code.  `release` searches all tables of a zip in the same way."""
     path = mistakes.FOLDER / f"{name}.json"
     text = path.read_text(encoding="utf-8")
     hidden = list(release.answers_of(name))

@@ -822,7 +822,7 @@ def walk_of_energy(dt):
     return np.sqrt(np.mean(np.sum(squares, axis=1)) / 12.0)
 
 
-@case("a-million-steps", "A million steps of a planet")
+@case("a-million-steps", "A million steps of a planet", in_quick=False)
 def a_million_steps(lesson, check):
     """Check that rounding alone changes the energy of a planet on Verlet's discrete circle, as a random walk.
 
@@ -898,7 +898,7 @@ def sampled(lesson, starts, steps):
     return run[1][::steps // SLICES]
 
 
-@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False)
+@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False, in_quick=False)
 def limit_of_prediction(lesson, check):
     """Check that the motion alone decides the growth of a small error from the method, the start or rounding."""
     ts, truth, factor = true_growth()
