@@ -442,4 +442,11 @@ RULES = {tuple(rule.fields): rule for rule in (
     Rule(limits(lengths=Field("length of a link [m]", POSITIVE, ("d",))), (limits_in_order,)),
     Rule(limits(axes=Field("axis of a joint [-]", FINITE, ("d", 3)),
                 offsets=Field("offset of a joint [m]", FINITE, ("d", 3))), (unit("axes", "an axis"), limits_in_order)),
+    # lesson 12: Course, Throw
+    Rule({"gravity": GRAVITY, "n": Field("normal of a plane [-]", FINITE, ("planes", "d")),
+          "point": Field("a point of a plane [m]", FINITE, ("planes", "d")),
+          "e": Field("restitution e [-]", SHARE, ("planes",)),
+          "e_s": Field("derivative of a restitution", FINITE, ("planes", "inputs"))}, (unit("n", "a normal"),)),
+    Rule({"course": Inner("course"), "x": vector("position x [m]"), "target": vector("target [m]"),
+          "duration": number("duration of a throw [s]", NOT_NEGATIVE)}),
 )}
