@@ -30,8 +30,8 @@ from solutions.impulses import kinematic_response
 from solutions.integrators import implicit_euler_step, solve
 
 __all__ = [
-    "GRAZING", "MOST_HALVINGS", "aim", "best_step", "bounce", "bounced_curve_is", "central_difference", "checked_search",
-    "complex_step", "event_time_sensitivity", "implicit_euler_step", "kinematic_response", "predicted_horizon",
+    "GRAZING", "MOST_HALVINGS", "aim", "best_step", "bounce", "bounced_curve_is", "central_difference",
+    "checked_search", "complex_step", "event_time_sensitivity", "implicit_euler_step", "kinematic_response", "predicted_horizon",
     "remainder_orders", "saltation", "solve", "tangent_implicit_step", "tangent_step",
 ]
 
@@ -222,8 +222,8 @@ def predicted_horizon(rate, error, allowed):
 def bounced_curve_is():
     """Return "A", "B", "C" or "D": the curve of the heights after a bounce on a floor with e = 0.5.
 
-    *Find* it before you run anything.  Balls are dropped from rest at heights h from 0.9 to 1 m.  Each bounces once.  At
-    the time at which the highest ball touches the floor, how does the height of a ball depend on its h?
+    *Find* it before you run anything.  Balls are dropped from rest at heights h from 0.9 to 1 m.  Each bounces once.
+    At the time at which the highest ball touches the floor, how does the height of a ball depend on its h?
 
     The notebook draws the four curves.  bounce_curves() of given/sensitivities.py returns them, each less its first
     height.
