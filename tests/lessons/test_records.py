@@ -18,7 +18,7 @@ from solutions.given.bodies import CarriedBall, Toppled
 from solutions.support.records import RULES, Inner, check_record
 from validate.subject import modules
 
-from .started import STARTED
+from .started import STARTED, throw
 from .test_hostile_inputs import at, put
 
 integrators, springs, friction, rotation = map(modules.bind, ("integrators", "springs", "friction", "rotation"))
@@ -68,6 +68,7 @@ EXAMPLES = (
     (touching, touching),
     (simulator.RockingBlock(1.0, 0.1, 0.5, 0.09, 9.81), np.zeros(1)),
     (simulator.RodsInAngles(1.0, 1.0, 0.1, 9.81), np.zeros(2)),
+    (throw.course, throw.x), (throw, throw.x),
     (kinematics.make_arm_2d([1.0, 0.8], *settings), np.zeros(2)),
     (kinematics.make_arm_3d([up, up], np.ones((2, 3)), *settings), np.zeros(2)),
 )
@@ -148,7 +149,7 @@ def test_every_function_that_makes_a_record_checks_it_by_the_same_rule():
 # Fields whose numbers may have any sign, and those that may be infinite.
 SIGNED = {"gravity", "wind", "drive", "omega", "zeta", "point", "centre", "plane", "mgl", "floor_v", "floor_omega",
           "d", "align", "gather", "fold", "volume", "pivot", "arm_body", "p", "gap", "x", "q", "v", "J", "low", "high",
-          "rest", "offsets", "r_a", "r_b", "g", "loops"}
+          "rest", "offsets", "r_a", "r_b", "g", "loops", "e_s", "target"}
 MAY_BE_INFINITE = {"mu", "mu_s", "low", "high"}
 NOT_NEGATIVE_ALL_THE_SAME = {("ConstraintNetwork", "rest"), ("SpringNetwork", "rest"), ("RockingBlock", "g")}
 # A smaller number of rows is another valid record.
