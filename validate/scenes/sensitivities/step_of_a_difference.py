@@ -18,7 +18,7 @@ from validate.scenes._common import check_positives
 
 T = 1.0                      # so that dt is h over the stiffness
 STEPS = (10, 100, 1000, 10**4, 10**5, 10**6, 10**8, 10**10, 10**12)
-RADIUS = 1.0                 # of the circle for the power series, over the stiffness [-]
+RADIUS = 0.5                 # of the circle for the power series, over the stiffness [-]
 POWERS = np.arange(32)
 
 
@@ -112,12 +112,14 @@ def complex_limit(p, dt):
 def series_error(p, dt, signs, values):
     """All derivatives of the place with respect to k are known from values on a circle in the complex plane, so the
     series Σ c_j hʲ⁻¹ of a difference is known as well: every j ≥ 2 of a forward difference, the odd ones of a central
-    difference, and the odd ones with alternating signs of a complex step.  Only round-off remains, also of the terms.
+    difference, and the odd ones with alternating signs of a complex step.  Only round-off remains, also that of the
+    values on the circle, which are at most as large as the sum of all terms there.
     """
     h = p.k * dt
     c = power_series(lambda k: oscillation(p.t, k, p.c, p.m, p.x0), p.k, RADIUS * p.k)
     terms = (signs * c * h ** (POWERS - 1.0))[2:]
-    summed = 4.0 * ROUND_OFF * np.sum(np.abs(terms)) / abs(truth(p, T)[0])
+    largest, ratios = np.sum(np.abs(c) * (RADIUS * p.k) ** POWERS), (h / (RADIUS * p.k)) ** POWERS[2:]
+    summed = ROUND_OFF * largest * np.sum(ratios) / h / abs(truth(p, T)[0])
     return Prediction(np.array([np.sum(terms)]), rounded(p, h, values) + summed)
 
 
