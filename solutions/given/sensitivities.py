@@ -144,6 +144,23 @@ def throw_miss(s, p):
     return x - p.target, dx
 
 
+# ---------------------------------------------------------------------------------------------- examples
+
+def forward_difference(f, s, h, p):
+    """Given.  Return the derivative of f at s from two values:  (f(s + h) − f(s)) / h,  of first order in h."""
+    return (f(s + h, p) - f(s, p)) / h
+
+
+def oscillator_derivatives(t, x, v, p):
+    """Given.  Return (a_x (d, d), a_v (d, d), a_s (d, 2)) of an Oscillator of lesson 1:  a = −ω² x − 2ζω v.
+
+    The inputs are relative changes of the stiffness, k = ω² m, and of the damper, c = 2ζω m.
+    """
+    a_s = np.zeros((x.size, 2))
+    a_s[:, 0], a_s[:, 1] = -p.omega * p.omega * x, -2.0 * p.zeta * p.omega * v
+    return -p.omega * p.omega * np.eye(x.size), -2.0 * p.zeta * p.omega * np.eye(x.size), a_s
+
+
 # ---------------------------------------------------------------------------------------------- four ideas of a bounce
 
 def bounce_curves():
