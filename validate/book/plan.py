@@ -117,7 +117,7 @@ def lesson_table():
 
 def stars(chosen):
     """Return how many exercises there are of each kind: "13 ★, 4 ★★"."""
-    counts = [(kind, sum(one.stars == kind for one in chosen)) for kind in ("★", "★★")]
+    counts = [(kind, sum(one.stars == kind for one in chosen)) for kind in ("★", "★★", "★★★")]
     return ", ".join(f"{count}\N{NO-BREAK SPACE}{kind}" for kind, count in counts if count)
 
 
