@@ -89,6 +89,7 @@ OTHERWISE = {
     "universal_gravity": {"G": "m³/(kg s²)"},
     "angular_spring_forces": {"rest": "-", "k": "N m"},
     "spring_tension": {"rest": "m"},
+    "hand_force": {"target": "m", "c": "N s/m"},
     "randomised": {"u": "-"},
     "grid_pairs": {"offsets": ""},
     "apply_blocks": {"block": "N/m"},
@@ -148,7 +149,7 @@ RESULTS = {
         "-": "newton_matrix solve spectral_radius observed_order"},
     "springs": {
         "N": "universal_gravity air_force spring_tension soft_constraint_force soft_contact_force spring_forces "
-             "apply_blocks",
+             "apply_blocks hand_force",
         "N; N; N": "angular_spring_forces",
         "m/s²": "spring_network_acceleration",
         "m; m/s": "mass_spring_damper_step implicit_spring_network_step",
