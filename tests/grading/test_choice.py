@@ -12,6 +12,8 @@ from solutions.checks import BadInput
 from validate.grading import autograder, choice, example, marking, sandbox, submissions
 from validate.subject import modules
 
+LAST = len(modules.lesson_names())
+
 
 @pytest.fixture
 def in_sandbox():

@@ -318,7 +318,6 @@ NOT_SCALED = {
     "compare": "it compares two runs that the caller makes",
     "contact_trajectory": "it lists the states of advance_contact, which is in the table",
     "normal_forces": "it sums the impulses of such a list over dt",
-    "bounce_curves": "its heights are drawn in metres",
     "bounced_curve_is": "it returns a letter",
     "joint_impulses_2d": "it needs a step of joint_contact_step_2d, which is in the table",
 }
