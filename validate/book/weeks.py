@@ -129,7 +129,7 @@ WEEKS = {
         "Why does a straight arm not move towards a target on its own axis? How much damping keeps an arm calm whose "
         "target is out of reach?"),),
     "sensitivities": (Week(
-        (1, 7), (8, 0),
+        (1, 5), (6, 0),
         "Ask how much higher a ball bounces that was dropped from a little higher. Differences, and why a shorter step "
         "is not always better; the tangent of a step; the time of an event moves, too.",
         ("step_of_a_difference", "bounced_ball"),
