@@ -187,10 +187,10 @@ def checked_search(s, tolerance, most):
 def aim(miss, s, tolerance, most, p):
     """Return (s, misses): inputs (k,) with which a throw hits, by Newton's method, and the sizes |r| on the way.
 
-    *Find* it.  (r, J) = miss(s, p) is the miss r (k,) of the inputs s and its sensitivity J = ∂r/∂s (k, k).  Each
-    iteration takes the step that would make r zero if r were linear.  Where the miss does not become smaller, or is NaN
-    because a throw never arrives, this step goes too far: halve it until the miss is smaller, at most MOST_HALVINGS
-    times.
+    *Make it* arrive from far away.  (r, J) = miss(s, p) is the miss r (k,) of the inputs s and its sensitivity
+    J = ∂r/∂s (k, k).  Each iteration takes the step that would make r zero if r were linear.  Where the miss does not
+    become smaller, or is NaN because a throw never arrives, this step goes too far: halve it until the miss is smaller,
+    at most MOST_HALVINGS times.
 
     The search ends when |r| = √(r · r) is at most tolerance, after at most `most` iterations; misses (iterations + 1,)
     begins with that of the first s.  A miss within the tolerance needs no iteration.
@@ -225,8 +225,7 @@ def bounced_curve_is():
     *Find* it before you run anything.  Balls are dropped from rest at heights h from 0.9 to 1 m.  Each bounces once.
     At the time at which the highest ball touches the floor, how does the height of a ball depend on its h?
 
-    The notebook draws the four curves.  bounce_curves() of given/sensitivities.py returns them, each less its first
-    height.
+    The notebook draws the four curves, each less its first height.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 12.12: bounced_curve_is")

@@ -308,3 +308,18 @@ def implicit_spring_network_step(acceleration, t, x, v, dt, network):
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 2.13: implicit_spring_network_step")
+
+
+def hand_force(x, v, target, k, c, m, dt):
+    """Return the force [N] (d,) of a spring and a damper that pull a point to a target: the pointer in a live scene.
+
+    The force at the beginning of a step throws a light point past the target, and each step throws it further.
+    *Find* the force at the end of the step: F = −k (x⁺ − target) − c v⁺.  Both v⁺ and x⁺ are what F itself brings about
+    in this step by symplectic Euler, and no other force acts on the point.
+
+    x, v and target are (d,) arrays [m], [m/s]; the stiffness k ≥ 0 [N/m], the damping c ≥ 0 [N s/m], the mass m > 0
+    [kg] and the step dt > 0 [s] are floats.  As dt → 0 the force is that at the beginning of the step.
+    *Source:* Baraff and Witkin 1998, for one point; Catto 2011, “Soft constraints”, Game Developers Conference.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 2.14: hand_force")

@@ -19,7 +19,6 @@ from ..sensitivities import bounce
 from ..support.records import check_record
 
 MOST_BOUNCES = 1000          # of one flight [-]: a ball that needs more comes to rest
-CURVES = ((0.0, 0.0), (4.0, -3.0), (3.0, -2.0), (0.0, 1.0))      # of A to D: their parts of √(h · 1 m) and of h [-]
 
 
 class Course(NamedTuple):
@@ -159,19 +158,3 @@ def oscillator_derivatives(t, x, v, p):
     a_s = np.zeros((x.size, 2))
     a_s[:, 0], a_s[:, 1] = -p.omega * p.omega * x, -2.0 * p.zeta * p.omega * v
     return -p.omega * p.omega * np.eye(x.size), -2.0 * p.zeta * p.omega * np.eye(x.size), a_s
-
-
-# ---------------------------------------------------------------------------------------------- four ideas of a bounce
-
-def bounce_curves():
-    """Given.  Return hs (n,) and curves (4, n), in metres: A, B, C and D of exercise 12.12.
-
-    hs are the heights from which balls are dropped; a curve is an idea of how high they are at one time after their
-    bounce, less the height of the first.
-    """
-    hs = np.linspace(0.9, 1.0, 21)
-    curves = np.zeros((4, 21))
-    for k in range(4):
-        curves[k] = CURVES[k][0] * np.sqrt(hs) + CURVES[k][1] * hs
-        curves[k] -= curves[k, 0]
-    return hs, curves

@@ -7,7 +7,7 @@ import pytest
 from validate.grading import expect, points
 from validate.subject import modules
 
-COMPARISONS = "between", "close", "instance", "numbers", "raises", "truth"
+COMPARISONS = "between", "choice", "close", "instance", "numbers", "raises", "truth"
 
 
 @pytest.mark.long
@@ -28,3 +28,12 @@ def test_a_quantity_is_the_same_for_every_seed(name, monkeypatch):
         assert all(o.status == "passed" for o in points.grade(name, modules.bind(name), seed=seed))
         found.append({*quantities})
     assert found[0] and found[0] == found[1] == found[2], set.union(*found) - set.intersection(*found)
+
+
+def test_a_choice_is_a_letter_and_the_right_one_is_never_shown():
+    expect.choice("the letter", "b ", "B")
+    for got, shown in (("A", "A"), ("E", "“E”"), ("AB", "“AB”"), ("", "“”"), (None, expect.NOTHING), (2, "a number")):
+        with pytest.raises(expect.NotYet) as failed:
+            expect.choice("the letter", got, "B")
+        assert failed.value.got == shown and failed.value.expected in (
+            "another letter", "one of the letters A, B, C, D, as a text")

@@ -378,7 +378,7 @@ def comes_to_rest(lesson, draw, dt, m, k, k_d, k_v, rest, g):
 
 # ---------------------------------------------------------------------------------------------- building a network
 
-@exercise("2.10", points=1,
+@exercise("2.10", points=0.5,
           hint="loop over offsets, then rows, then columns; index r · cols + c; test r + dr and c + dc separately")
 def test_a_small_grid_has_its_threads_in_order_and_a_single_node_none(lesson, draw):
     rows = draw.whole(2, 5)
@@ -401,7 +401,7 @@ def test_a_small_grid_has_its_threads_in_order_and_a_single_node_none(lesson, dr
     close("pairs of a single node", lesson.grid_pairs(1, 1, lesson.STRUCTURAL), np.zeros((0, 2)), 0.0)
 
 
-@exercise("2.10", points=1, hint="there is no node beyond the edge: do not wrap around to the other side")
+@exercise("2.10", points=0.5, hint="there is no node beyond the edge: do not wrap around to the other side")
 def test_a_large_grid_has_every_thread_diagonal_and_bend_once(lesson, draw):
     rows, cols = draw.whole(5, 7), draw.whole(8, 11)
     pairs = np.asarray(lesson.grid_pairs(rows, cols, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND))
@@ -614,3 +614,46 @@ def reference(t, x, v, network):
 
     end = solve_ivp(slopes, (t, t + SWAYED), start.ravel(), method="DOP853", rtol=3e-14, atol=1e-14).y[:, -1]
     return end.reshape(start.shape)
+
+
+# ---------------------------------------------------------------------------------------------- the hand
+
+@exercise("2.14", points=0.5, hint="put v⁺ = v + dt F/m and x⁺ = x + dt v⁺ into the law, and solve for F")
+def test_the_force_of_the_hand_obeys_its_law_at_the_end_of_the_step(lesson, draw):
+    for d in (1, 2, 3):
+        x, v, target = draw(-1.0, 1.0, d), draw(-2.0, 2.0, d), draw(-1.0, 1.0, d)
+        k, c, m, dt = draw(50.0, 200.0), draw(2.0, 8.0), draw(0.3, 3.0), draw(0.02, 0.08)
+        kept = np.array((x, v, target))
+        F = lesson.hand_force(x, v, target, k, c, m, dt)
+        after = v + dt * F / m
+        law = -k * (x + dt * after - target) - c * after
+        close(f"force in {d} dimensions [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
+              given=f"k = {k}, c = {c}, m = {m}, dt = {dt}")
+        close("input x, v and target after the call", np.array((x, v, target)), kept, 0.0)
+    away = draw(0.2, 0.6, 2)
+    slack = lesson.hand_force(away, away, 0.0 * away, 0.0, 0.0, m, dt)
+    close("force of a slack hand: k = c = 0 [N]", slack, np.zeros(2), 0.0)
+    k, c = draw(1e8, 2e8), draw(1e3, 2e3)
+    after = away + dt * lesson.hand_force(away, away, 0.0 * away, k, c, m, dt) / m
+    # (c + dt k)/m > 1e6/s: what is left of the way is below 1e-4 of it
+    close("place after a step of an almost rigid hand: the target [m]", away + dt * after, np.zeros(2), 1e-4)
+
+
+@exercise("2.14", points=0.5,
+          hint="the force at the beginning of the step throws the point past the target: take that at its end")
+def test_the_hand_brings_a_point_to_rest_at_the_target_for_every_step(lesson, draw):
+    for rate in (draw(0.3, 0.9), draw(2.0, 20.0), draw(100.0, 1000.0)):
+        m, dt, target, u = draw(0.05, 5.0), draw(0.01, 0.05), draw(-1.0, 1.0, 2), draw(0.0, 1.0)
+        k = m * (rate / dt) ** 2                      # √(k/m) dt = rate: explicit steps end at 2
+        c = u * np.sqrt(k * m)
+        x, v = draw(-1.0, 1.0, 2), draw(-1.0, 1.0, 2)
+        energy = lambda x, v, k=k, m=m, target=target: 0.5 * m * v @ v + 0.5 * k * (x - target) @ (x - target)
+        energies = [energy(x, v)]
+        for _ in range(60):
+            v = v + dt / m * lesson.hand_force(x, v, target, k, c, m, dt)
+            x = x + dt * v
+            energies.append(energy(x, v))
+        gains = np.diff(energies) / energies[0]
+        between("largest gain of energy in a step, over the energy at the start", np.max(gains), -np.inf, 1e-14)
+        # without damping each step divides the energy by 1 + rate²: (1 / 1.09)^60 = 0.0057
+        between("energy that is left after 60 steps, over that at the start", energies[-1] / energies[0], 0.0, 0.0075)

@@ -89,6 +89,7 @@ OTHERWISE = {
     "universal_gravity": {"G": "m³/(kg s²)"},
     "angular_spring_forces": {"rest": "-", "k": "N m"},
     "spring_tension": {"rest": "m"},
+    "hand_force": {"target": "m", "c": "N s/m"},
     "randomised": {"u": "-"},
     "grid_pairs": {"offsets": ""},
     "apply_blocks": {"block": "N/m"},
@@ -148,7 +149,7 @@ RESULTS = {
         "-": "newton_matrix solve spectral_radius observed_order"},
     "springs": {
         "N": "universal_gravity air_force spring_tension soft_constraint_force soft_contact_force spring_forces "
-             "apply_blocks",
+             "apply_blocks hand_force",
         "N; N; N": "angular_spring_forces",
         "m/s²": "spring_network_acceleration",
         "m; m/s": "mass_spring_damper_step implicit_spring_network_step",
@@ -317,7 +318,6 @@ NOT_SCALED = {
     "compare": "it compares two runs that the caller makes",
     "contact_trajectory": "it lists the states of advance_contact, which is in the table",
     "normal_forces": "it sums the impulses of such a list over dt",
-    "bounce_curves": "its heights are drawn in metres",
     "bounced_curve_is": "it returns a letter",
     "joint_impulses_2d": "it needs a step of joint_contact_step_2d, which is in the table",
 }

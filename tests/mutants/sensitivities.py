@@ -380,9 +380,9 @@ edit("12.11", "returns infinity where the error is too large", "return 0.0", "re
 # 12.12 ----------------------------------------------------------------------------------------------------------
 @right("12.12", "put together")
 def bounced_curve_is():
-    return chr(ord("A") + 2)
+    return chr(ord("A") + 1)
 
 
-edit("12.12", "takes all balls to begin at the floor, so that the floor forgets the height", '"C"', '"A"')
-edit("12.12", "forgets the restitution: a mirror image has the slope −1", '"C"', '"B"')
-edit("12.12", "forgets that a ball from higher comes later: what is higher stays higher", '"C"', '"D"')
+edit("12.12", "takes all balls to begin at the floor, so that the floor forgets the height", '"B"', '"D"')
+edit("12.12", "forgets the restitution: a mirror image has the slope −1", '"B"', '"C"')
+edit("12.12", "forgets that a ball from higher comes later: what is higher stays higher", '"B"', '"A"')

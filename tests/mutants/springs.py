@@ -600,3 +600,29 @@ edit("2.13", "adds the dampers to ∂F/∂x v", "apply_blocks(v, network.i, netw
 edit("2.13", "returns v first", "return x + dt * v, v", "return v, x + dt * v")
 edit("2.13", "changes its input", "v = v + conj", "v += conj")
 edit("2.13", "omits dt beside the pull", "- dt * pull", "- pull")
+
+
+# 2.14 -----------------------------------------------------------------------------------------------------------
+HELD = "-(k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)"
+
+
+@right("2.14", "by the velocity at the end of the step")
+def hand_force(x, v, target, k, c, m, dt):
+    after = (m * v - dt * k * (x - target)) / (m + dt * c + dt * dt * k)
+    return m * (after - v) / dt
+
+
+edit("2.14", "takes the force at the beginning of the step", HELD, "-(k * (x - target) + c * v)")
+edit("2.14", "treats the damper explicitly", "(c + dt * k)", "(dt * k)")
+edit("2.14", "treats the spring explicitly", "k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)",
+     "k * (x - target) + c * v) / (1.0 + dt * c / m)")
+edit("2.14", "forgets that the point moves during the step", "x - target + dt * v", "x - target")
+edit("2.14", "pulls away from the target", "-(k * (x", "(k * (x")
+edit("2.14", "forgets the mass", "(c + dt * k) / m", "(c + dt * k)")
+edit("2.14", "multiplies by the mass in place of dividing", "(c + dt * k) / m", "(c + dt * k) * m")
+edit("2.14", "exchanges dt and dt² beside k and c", "dt * (c + dt * k)", "dt * (dt * c + k)")
+edit("2.14", "returns the velocity after the step", HELD, "v + dt / m * " + HELD)
+edit("2.14", "returns the impulse in place of the force", HELD, "dt * " + HELD)
+edit("2.14", "forgets the damper of the moving point", "+ c * v)", ")")
+edit("2.14", "pulls to the origin, not to the target", "x - target + dt", "x + dt")
+edit("2.14", "forgets that the force itself changes v⁺ and x⁺", " / (1.0 + dt * (c + dt * k) / m)", "")

@@ -38,12 +38,12 @@ class Exercise(NamedTuple):
     hints: tuple             # that its tests give when they fail
     lines: int               # of its worked answer, without comments and blank lines
     uses: tuple              # numbers of the exercises that its answer calls
-    stars: str               # ★ or ★★
+    stars: str               # ★, ★★ or ★★★
 
     @property
     def minutes(self):
         """Return an estimate of the minutes."""
-        return MINUTES_PER_EXERCISE + MINUTES_PER_LINE * self.lines + MINUTES_TO_FIND * (self.stars == "★★")
+        return MINUTES_PER_EXERCISE + MINUTES_PER_LINE * self.lines + MINUTES_TO_FIND * (self.stars != "★")
 
 
 class Head(NamedTuple):
@@ -187,7 +187,7 @@ def exercises_of(name):
         hints = tuple(dict.fromkeys(test["hint"] for test in tests))
         points = sum(test["points"] for test in tests)
         found.append(Exercise(name, number, function, points, hints, lines, uses(name, function),
-                              "★★" if calls.asks_to_find(number) else "★"))
+                              calls.stars(number)))
     return tuple(found)
 
 

@@ -32,10 +32,9 @@ def page(name, report):
         "In the week before, make the zip (*Commands*, below) and try it once yourself: unpack it, set it up, run the "
         f"first check. The hours below are those to write; the notebook takes {head.reading:g} "
         f"{'hour' if head.reading == 1.0 else 'hours'} more.", weeks.table(name, report),
-        "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. The "
-        "★★★ task *Make it* at the end of the notebook has no points. *Minutes* are an estimate. *Calls* and *called "
-        "by* name exercises. In their own copy, students cannot pass an exercise that calls one which they have left "
-        "out.",
+        "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. "
+        "★★★: many answers are right, and a test judges them. *Minutes* are an estimate. *Calls* and *called by* name "
+        "exercises. In their own copy, students cannot pass an exercise that calls one which they have left out.",
         exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
         "of the workbook catches.", hints(lesson),

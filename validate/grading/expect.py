@@ -83,6 +83,17 @@ def truth(quantity, got, expected, given=""):
         raise NotYet(quantity, str(bool(expected)), str(bool(got)), "", "the opposite", given)
 
 
+def choice(quantity, got, right, letters="ABCD"):
+    """Require got to be the right one of these letters; a small one counts, too.  The right one is not shown."""
+    letter = got.strip().upper() if isinstance(got, str) else ""
+    if len(letter) != 1 or letter not in letters:
+        allowed = f"one of the letters {', '.join(letters)}, as a text"
+        shown = NOTHING if got is None else f"“{got}”" if isinstance(got, str) else kind(got)
+        raise NotYet(quantity, allowed, shown, "", "no letter")
+    if letter != right:
+        raise NotYet(quantity, "another letter", letter, "", "another letter")
+
+
 def instance(quantity, got, wanted, given=""):
     """Require got to be of this class, such as a tuple."""
     if not isinstance(got, wanted):

@@ -13,6 +13,7 @@ With secret inputs nothing is traced.
 
 import functools
 import json
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ EVERY = 4096                 # number of calls that are kept while a table is wr
 SAME, ROUND_OFF = 1e-6, 1e-9   # two sums are the same within this part of their terms, or within this
 VISIBLE = 1e-3               # a result that is off by this part of its own terms is wrong, however small it is
 HUGE, LARGE = "huge", 1e6    # is stored in place of a sum that is above this, and about which round-off decides
-DIGITS = 8                   # of a stored sum
+DIGITS = 8                   # of a stored sum, and of the digest of a text
 GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and no two differences are the same
 MOST = 2                     # number of ideas that are named if several give the same numbers
 NOTHING = object()           # the last result where there is none
@@ -124,7 +125,12 @@ def is_kept(call):
 
 
 def summary(result, orderless=False):
-    """Return what is kept of a result: [entries, weighted sum, sum of sizes], or a word where there are no numbers."""
+    """Return what is kept of a result: [entries, weighted sum, sum of sizes], or a word where there are no numbers.
+
+    Of a text, such as the letter of a choice, it is a digest, so that no letter can be read in a table.
+    """
+    if isinstance(result, str):
+        return sha256(result.strip().upper().encode()).hexdigest()[:DIGITS]
     try:
         rows = list(result) if orderless and not np.isscalar(result) else [result]
         entries = [np.nan_to_num(np.array(list(leaves(row)), dtype=float), nan=0.7, posinf=1e9, neginf=-1e9)
@@ -142,7 +148,9 @@ def summary(result, orderless=False):
 
 
 def is_plain(result):
-    """Return whether a result has no number but 0, 1 and −1: too little to know a mistake by."""
+    """Return whether a result is no text, and has no number but 0, 1 and −1: too little to know a mistake by."""
+    if isinstance(result, str):
+        return False
     try:
         numbers = np.array(list(leaves(result)), dtype=float)
     except Exception:

@@ -29,6 +29,7 @@ from ..check import Role
 from ..measure import film
 from ..mistakes import failing_case
 from ..products import PRODUCTS
+from ..reference import choices
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..scene import check_known
 from ..subject import copies, modules, needs
@@ -199,6 +200,18 @@ def _say_waiting(*_):
 if get_ipython():
     get_ipython().events.register("post_run_cell", _say_waiting)
     figures.install(get_ipython())
+
+
+def show_choice(lesson, question):
+    """Draw the four curves of a question, with the letters that its answer names them by."""
+    found, dealt = choices.of(lesson, question)
+    _, ax = plt.subplots()
+    looks = zip(("#0072B2", "#D55E00", "#009E73", "#000000"), ("o", "s", "^", "d"), strict=True)
+    for (letter, curve), (colour, marker) in zip(dealt.items(), looks, strict=True):
+        ax.plot(found.x, curve, color=colour, marker=marker, markevery=max(1, len(found.x) // 8), lw=1.4, label=letter)
+    ax.set(title=found.title, xlabel=found.xlabel, ylabel=found.ylabel, yscale="log" if found.log else "linear")
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    show_figure()
 
 
 def fastest(lesson, trial):
@@ -387,7 +400,7 @@ class _Map:
 
     def rows(self):
         for number, one in needs.table().items():
-            yield number, "★★" if one["find"] else "★", one["lesson"], one["function"], ", ".join(one["needs"])
+            yield number, one["stars"], one["lesson"], one["function"], ", ".join(one["needs"])
 
     def __repr__(self):
         return "\n".join(f"{number:6} {stars:3} {lesson:16} {function:32} {calls}"

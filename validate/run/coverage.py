@@ -174,9 +174,14 @@ def methods_in(nodes):
 
 
 def exercises(lesson):
-    """Return [(number, function)] of the exercises that wait in lessons/, in the order of the text."""
+    """Return [(number, function)] of the exercises that wait in lessons/, in the order of the text.
+
+    A function without arguments is not among them.  It returns the letter of a choice, which nothing can run with.
+    """
     text = (modules.ROOT / "lessons" / f"{lesson}.py").read_text(encoding="utf-8")
-    return re.findall(r'raise NotImplementedError\("Exercise ([\d.]+): (\w+)"\)', text)
+    choices = {node.name for node in trees()[lesson].body if isinstance(node, ast.FunctionDef) and not node.args.args}
+    found = re.findall(r'raise NotImplementedError\("Exercise ([\d.]+): (\w+)"\)', text)
+    return [(number, function) for number, function in found if function not in choices]
 
 
 @cache

@@ -194,6 +194,26 @@ def large_step(lesson, check):
                 "state after a step: largest error [m, m/s]", steps, 1e-6)
 
 
+@case("hand", "A hand that pulls a point", compiled=False)
+def hand(lesson, check):
+    """Compare steps under the force of the hand with y⁺ = (1 − h B)⁻¹ y: implicit Euler of a damped oscillator.
+
+    B = [[0, 1], [−k/m, −c/m]] acts on the way from the target and on the velocity.  An explicit damper would be stable
+    only for h c/m < 2, and here h c/m reaches 1e6.
+    """
+    rng, worst = np.random.default_rng(27), 0.0
+    for _ in range(CASES):
+        m, h = 10.0 ** rng.uniform(-3.0, 1.0), rng.uniform(1e-3, 0.1)
+        k, c = m / h**2 * 10.0 ** rng.uniform(-2.0, 6.0), m / h * 10.0 ** rng.uniform(-2.0, 6.0)
+        x, v, target = rng.normal(size=(3, 2))
+        B = np.array(((0.0, 1.0), (-k / m, -c / m)))
+        _, truth = np.linalg.solve(np.eye(2) - h * B, (x - target, v))
+        got = v + h / m * lesson.hand_force(x, v, target, k, c, m, h)
+        worst = np.maximum(worst, np.max(np.abs(got - truth)) / (length(v) + length(x - target) / h))
+    check.agree("The hand takes one step of implicit Euler, however stiff it is.",
+                "velocity after a step: largest error over |v| + |x − target|/h [-]", worst, 5e-15)
+
+
 @case("grids", "Springs of a grid", compiled=False)
 def grids(lesson, check):
     """Count all pairs of nodes that are joined: their rows and columns differ by an offset."""

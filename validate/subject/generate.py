@@ -59,7 +59,8 @@ def lessons():
 def needs_text():
     """Return the text of needs.json."""
     rows = needs.read_from(SOLUTIONS, lesson_names(), exercises).items()
-    return "{\n" + ",\n".join(f"{json.dumps(number)}: {json.dumps(one)}" for number, one in rows) + "\n}\n"
+    lines = (f"{json.dumps(number)}: {json.dumps(one, ensure_ascii=False)}" for number, one in rows)
+    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def differing(folder=None):

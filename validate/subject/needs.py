@@ -1,6 +1,6 @@
 """Calls between exercises: read from the worked answers, or looked up if there are none.
 
-`needs.json` has {exercise: its lesson, its function, whether it is a formula to find, the exercises that it calls}.
+`needs.json` has {exercise: its lesson, its function, its stars, the exercises that it calls}.
 An exercise also calls another one through a given function, or if it passes the other one on as an argument.
 `python -m validate.subject.generate` writes it.
 """
@@ -12,7 +12,8 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 FILE = Path(__file__).with_name("needs.json")
-FIND = "*Find*"              # in the docstring of an exercise whose formula is to be found
+FIND = "*Find*"              # in the docstring of an exercise whose formula is to be found: ★★
+MAKE = "*Make it*"           # in that of an exercise to which many answers are right: ★★★
 
 
 # ---------------------------------------------------------------------------------------------- looking up
@@ -25,7 +26,12 @@ def table():
 
 def asks_to_find(exercise):
     """Return whether a formula is to be found: a ★★ exercise."""
-    return table().get(exercise, {}).get("find", False)
+    return stars(exercise) == "★★"
+
+
+def stars(exercise):
+    """Return ★ for a formula that is given, ★★ for one to be found, and ★★★ for an answer of one's own."""
+    return table().get(exercise, {}).get("stars", "★")
 
 
 def of_lesson(lesson):
@@ -115,11 +121,12 @@ def read_from(solutions, lessons, exercises):
                     waiting.append(other)
         return found
 
-    def to_find(lesson, function):
+    def stars_of(lesson, function):
         text = (solutions / f"{lesson}.py").read_text(encoding="utf-8")
         (node,) = (node for node in ast.parse(text).body if getattr(node, "name", "") == function)
-        return FIND in ast.get_docstring(node)
-    return {number: {"lesson": lesson, "function": name, "find": to_find(lesson, name),
+        doc = ast.get_docstring(node)
+        return "★★★" if MAKE in doc else "★★" if FIND in doc else "★"
+    return {number: {"lesson": lesson, "function": name, "stars": stars_of(lesson, name),
                      "needs": sorted(called((lesson, name)), key=in_order)}
             for (lesson, name), number in numbers.items()}
 
