@@ -119,6 +119,17 @@ DAMPED = Method("damped_step", "damped", 1, "kinematics", "#0072B2", "P", kinema
 CCD = Method("ccd_step", "CCD", 1, "kinematics", "#CC79A7", "v", kinematics.pointed)
 FABRIK = Method("fabrik_step", "FABRIK", 1, "kinematics", "#56B4E9", "^", kinematics.pulled)
 
+# sensitivities
+FORWARD_DIFFERENCE = Method("forward_difference", "forward difference", 1, "sensitivities", "#E69F00", "o")
+CENTRAL_DIFFERENCE = Method("central_difference", "central difference", 2, "sensitivities", "#D55E00", "D")
+COMPLEX_STEP = Method("complex_step", "complex step", 2, "sensitivities", "#009E73", "s")
+TANGENTS = Method("tangent_step", "tangents, symplectic Euler", 1, "sensitivities", "#D55E00", "D",
+                  schemes.SYMPLECTIC_EULER)
+IMPLICIT_TANGENTS = Method("tangent_implicit_step", "tangents, implicit Euler", 1, "sensitivities", "#8C6D31", "<",
+                           schemes.IMPLICIT_EULER)
+SALTATION = Method("flight", "saltation", 2, "sensitivities", "#CC79A7", "v")
+AIMING = Method("aim", "Newton's method", 2, "sensitivities", "#009E73", "s")
+
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for most quick runs
 EXPLICIT = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, BLANES_MOAN)

@@ -314,6 +314,13 @@ def axis_or_none(record, p, sizes):
         unit("axis", "the axis")(record, p, sizes)
 
 
+def velocity_is_the_input(record, p, sizes):
+    """Raise BadInput unless the restitutions of the course have one derivative for each component of the velocity."""
+    found, wanted = p.course.e_s.shape, (p.course.e.size, p.x.size)
+    if found != wanted:
+        raise WrongShape(f"derivatives of the restitutions of a {record}", found, wanted)
+
+
 def two_bodies_each(record, p, sizes):
     """Raise BadInput for a joint of a body with itself, or of two that cannot move."""
     weight = p.inv_mass[p.joints.a] + p.inv_mass[p.joints.b]
@@ -442,4 +449,11 @@ RULES = {tuple(rule.fields): rule for rule in (
     Rule(limits(lengths=Field("length of a link [m]", POSITIVE, ("d",))), (limits_in_order,)),
     Rule(limits(axes=Field("axis of a joint [-]", FINITE, ("d", 3)),
                 offsets=Field("offset of a joint [m]", FINITE, ("d", 3))), (unit("axes", "an axis"), limits_in_order)),
+    # lesson 12: Course, Throw
+    Rule({"gravity": GRAVITY, "n": Field("normal of a plane [-]", FINITE, ("planes", "d")),
+          "point": Field("a point of a plane [m]", FINITE, ("planes", "d")),
+          "e": Field("restitution e [-]", SHARE, ("planes",)),
+          "e_s": Field("derivative of a restitution", FINITE, ("planes", "inputs"))}, (unit("n", "a normal"),)),
+    Rule({"course": Inner("course"), "x": vector("position x [m]"), "target": vector("target [m]"),
+          "duration": number("duration of a throw [s]", NOT_NEGATIVE)}, (velocity_is_the_input,)),
 )}

@@ -235,6 +235,8 @@ def test_a_right_answer_is_right_in_longer_numbers():
     (np.array([2**64 - 1], np.uint64), [2.0**64]),
     (np.array([1.0, fractions.Fraction(1, 2), 3], object), [1.0, 0.5, 3.0]),
     (np.array([1j], np.complex64), [1j]),
+    (np.complex64(1.0 + 2.0j), 1.0 + 2.0j),
+    (complex(0.5, -1e-20), complex(0.5, -1e-20)),
 ])
 def test_numbers_of_any_kind_go_over_the_wire(value, expected):
     got = wire.unpack(*wire.read(io.BytesIO(wire.pack(value))))

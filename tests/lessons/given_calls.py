@@ -11,8 +11,8 @@ from .ordinary import ordinary_calls_of
 
 collisions, contact, friction, impulses, pbd = map(
     modules.bind, ("collisions", "contact", "friction", "impulses", "pbd"))
-integrators, kinematics, rotation, simulator = map(
-    modules.bind, ("integrators", "kinematics", "rotation", "simulator"))
+integrators, kinematics, rotation, sensitivities, simulator = map(
+    modules.bind, ("integrators", "kinematics", "rotation", "sensitivities", "simulator"))
 rng = np.random.default_rng(7)
 
 SHOWN = 40                   # configurations of two shapes [-]: in some of them two axes separate nearly alike
@@ -234,6 +234,16 @@ def of_kinematics():
         "fabrik_step": [(kinematics.reach_2d, scenes.bent, scenes.goal, plane_arm)]}
 
 
+def of_sensitivities():
+    x, v, dx, dv = scenes.throw.x, np.array([3.0, 2.0]), np.zeros((2, 2)), np.eye(2)
+    return {
+        "next_impact": [(x, v, 1.6, scenes.course)],
+        "fly": [(x, v, dx, dv, 1.6, scenes.course)],
+        "throw_miss": [(v, scenes.throw)],
+        "checked_search": [(v, 1e-9, 20)],
+        "checked_tangents": [(*scenes.TANGENTS[:3], *scenes.TANGENTS[3:7], scenes.oscillator)]}
+
+
 def given_calls():
     """{lesson: {function: calls}}."""
     return {
@@ -247,6 +257,7 @@ def given_calls():
         "contact": of_contact(),
         "simulator": of_simulator(),
         "kinematics": of_kinematics(),
+        "sensitivities": of_sensitivities(),
     }
 
 

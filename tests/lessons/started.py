@@ -10,8 +10,8 @@ from validate.reference.integrators import Planet
 from validate.subject import modules
 
 collisions, contact, friction, impulses = map(modules.bind, ("collisions", "contact", "friction", "impulses"))
-integrators, kinematics, rotation, simulator = map(
-    modules.bind, ("integrators", "kinematics", "rotation", "simulator"))
+integrators, kinematics, rotation, sensitivities, simulator = map(
+    modules.bind, ("integrators", "kinematics", "rotation", "sensitivities", "simulator"))
 up, still, down = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array([0.0, 0.0, -9.81])
 q, L, I_body = np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.1, 2.0, 0.2]), np.array([1.0, 2.0, 2.5])
 plane, box = collisions.Plane(up, -0.1), collisions.Box(still, np.eye(3), np.array([0.5, 0.6, 0.7]))
@@ -42,8 +42,21 @@ flat = simulator.make_bodies_2d(*boxes[:-4], 4, 0.02)
 heap = simulator.make_bodies(*balls[:-4], 4, 0.02)
 rocker = simulator.RockingBlock(1.0, 0.1, 0.5, 0.09, 9.81)
 
+course = sensitivities.Course(weight, np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([[0.0, 0.0], [4.0, 0.0]]),
+                              np.array([0.8, 0.6]), np.zeros((2, 2)))
+throw = sensitivities.Throw(course, np.array([0.0, 1.5]), np.array([2.5, 1.0]), 1.6)
+
+
+def oscillator_derivatives(t, x, v, p):
+    """Derivatives (a_x, a_v, a_s) of oscillator_acceleration; the inputs are the initial values."""
+    one = np.eye(x.size)
+    return -p.omega * p.omega * one, -2.0 * p.zeta * p.omega * one, np.zeros((x.size, x.size))
+
+
 # Arguments that follow the step of each loop.
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
+TANGENTS = (integrators.oscillator_acceleration, oscillator_derivatives, 0.0, np.ones(2), np.zeros(2), np.eye(2),
+            np.zeros((2, 2)), 0.1, 3, oscillator)
 CONTACT = (friction.falling_acceleration, friction.particle_plane_gap, 0.0, 0.1 * up, -up, 0.05, 5, on_plane)
 TURNS = (rotation.no_torque, 0.0, q, L, 0.1, 3, rotation.RigidBody(1.0, I_body))
 ROLLING = (rotation.supported_weight, 0.0, still, q, np.array([1.0, 0.2, 0.0]), still, 0.01, 5, ball)
@@ -115,4 +128,9 @@ STARTED = {
                          kinematics.make_arm_2d(*arm))],
         "solve_targets": [(kinematics.damped_step, kinematics.reach_2d, bent, np.stack((goal, -goal)), 1e-6, 30,
                            kinematics.make_arm_2d(*arm))]},
+    "sensitivities": {
+        "advance_tangents": [(sensitivities.tangent_step, *TANGENTS)],
+        "tangent_trajectory": [(sensitivities.tangent_implicit_step, *TANGENTS)],
+        "flight": [(throw.x, np.array([3.0, 2.0]), np.zeros((2, 2)), np.eye(2), 1.6, course)],
+        "aim": [(sensitivities.throw_miss, np.array([3.0, 2.0]), 1e-9, 20, throw)]},
 }

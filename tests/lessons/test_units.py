@@ -78,6 +78,14 @@ OTHERWISE = {
     "simulator": {"q": "-"},
     "kinematics": {"q": "-", "J": "m", "sigma": "m", "gain": "1/m²", "damping": "m", "tolerance": "m", "targets": "m",
                    "target": "m", "axes": "-", "low": "-", "high": "-", "rest": "-"},
+    "sensitivities": {"a": "m/s²", "a_new": "m/s²", "v_new": "m/s", "dx": "m", "dv": "m/s", "dtau": "s",
+                      "gap_x": "-", "gap_v": "s", "gap_s": "m", "R_v": "-", "R_s": "m/s", "e_s": "-"},
+    "central_difference": {"s": "m", "h": "m", "p": "-"}, "complex_step": {"s": "m", "h": "m", "p": "-"},
+    "best_step": {"value": "J", "third": "J/m³", "round_off": "-"},
+    "remainder_orders": {"s": "m", "gradient": "N", "direction": "m", "steps": "-", "p": "-"},
+    "aim": {"s": "m/s", "tolerance": "m", "p": "-"}, "checked_search": {"s": "m/s", "tolerance": "m"},
+    "throw_miss": {"s": "m/s"},
+    "predicted_horizon": {"rate": "1/s", "error": "m", "allowed": "m"},
     "universal_gravity": {"G": "m³/(kg s²)"},
     "angular_spring_forces": {"rest": "-", "k": "N m"},
     "spring_tension": {"rest": "m"},
@@ -282,6 +290,19 @@ RESULTS = {
         "1/m": "pseudo_inverse",
         "-; -": "contraction_factors",
         "record": "make_arm_2d make_arm_3d"},
+    "sensitivities": {                                                   # the inputs of most have no unit
+        "N": "central_difference complex_step",
+        "m": "best_step",
+        "m; m/s; m; m/s": "tangent_step tangent_implicit_step advance_tangents flight fly",
+        "s; m; m/s; m; m/s": "tangent_trajectory",
+        "s": "event_time_sensitivity predicted_horizon",
+        "m; m/s": "saltation checked_tangents",
+        "m/s; m; m/s": "bounce",
+        "-": "remainder_orders",
+        "m/s; m": "aim",
+        "m/s; m; -": "checked_search",
+        "s; -": "next_impact",
+        "m; s": "throw_miss"},
 }
 
 UNDERFLOW = 1e-150           # numbers that count as 0, because what is computed from them loses its digits
@@ -289,6 +310,8 @@ UNDERFLOW = 1e-150           # numbers that count as 0, because what is computed
 # Differences over the largest number that are allowed; elsewhere all digits are the same.
 ALLOWED = {
     "observed_order": 1e-15,     # logarithms: a sum in place of a product
+    "remainder_orders": 1e-13,   # logarithms, too
+    "best_step": 1e-15,          # a cube root
     "solve_lcp": 1e-14,          # rows of A beside rows of the identity matrix: elimination picks other pivots
 }
 
@@ -296,6 +319,7 @@ NOT_SCALED = {
     "compare": "it compares two runs that the caller makes",
     "contact_trajectory": "it lists the states of advance_contact, which is in the table",
     "normal_forces": "it sums the impulses of such a list over dt",
+    "bounced_curve_is": "it returns a letter",
     "joint_impulses_2d": "it needs a step of joint_contact_step_2d, which is in the table",
 }
 
@@ -305,6 +329,11 @@ IN_METRES_AND_RADIANS = {"pose"}
 # What a law that a test or a caller wrote takes and returns.  It gets its own parameters as they are.
 LAWS = {
     "acceleration": (("s", "m", "m/s"), "m/s²"),
+    "derivatives": (("s", "m", "m/s"), "1/s²; 1/s; m/s²"),
+    "f of central_difference": (("m", "-"), "J"),
+    "f of complex_step": (("m", "-"), "J"),
+    "f of remainder_orders": (("m", "-"), "J"),
+    "miss of aim": (("m/s", "-"), "m; s"),
     "torque": (("s", "-", "kg m²/s"), "N m"),
     "load": (("s", "m", "-", "m/s", "rad/s"), "N; N m"),
     "surface": (("m",), "m; -"),
@@ -370,10 +399,10 @@ def scaled(value, spec, world):
     if isinstance(value, (tuple, list)) and not all(map(np.isscalar, value)):
         return type(value)(scaled(one, spec, world) for one in value)
     array = np.asarray(value)
-    if not spec or array.dtype.kind not in "fi":
+    if not spec or array.dtype.kind not in "fic":
         return value
     result = array * factors(spec, array.shape, world)
-    return type(value)(result.tolist()) if isinstance(value, (tuple, list)) else result if array.ndim else float(result)
+    return type(value)(result.tolist()) if isinstance(value, (tuple, list)) else result if array.ndim else result.item()
 
 
 def scaled_results(results, specs, world):

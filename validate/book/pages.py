@@ -175,7 +175,7 @@ def front(paths, live=False):
     text = (HERE / "front.md").read_text(encoding="utf-8")
     about = "\n".join(f"{lesson.number} · {name} <sheets/{name}>" for name, lesson in course.lessons().items())
     here = hosted.buttons("01_integrators", live, plan.repository(), "")
-    text = text.replace("@BUTTONS@", here)
+    text = text.replace("@BUTTONS@", here).replace("@COUNT@", str(len(course.lessons())))
     for name, value in {"NOTEBOOKS": contents, "LESSONS": functions, "SHEETS": about, "COMMIT": commit()}.items():
         text = text.replace(f"@{name}@", value)
     return text

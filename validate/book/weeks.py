@@ -128,6 +128,15 @@ WEEKS = {
         "Draw an arm of two links in three postures, each with its ellipse. Which posture has no area?",
         "Why does a straight arm not move towards a target on its own axis? How much damping keeps an arm calm whose "
         "target is out of reach?"),),
+    "sensitivities": (Week(
+        (1, 5), (6, 0),
+        "Ask how much higher a ball bounces that was dropped from a little higher. Differences, and why a shorter step "
+        "is not always better; the tangent of a step; the time of an event moves, too.",
+        ("step_of_a_difference", "bounced_ball"),
+        "A ball is dropped from h on a floor with e. Derive where it is just after its bounce, and differentiate it. "
+        "Where does the −e come from?",
+        "Why has the step that pushes a ball out of the floor the derivative 0? Which input of a throw has no "
+        "derivative at all?"),),
 }
 
 

@@ -2,7 +2,8 @@
 
     frame    "WBK1", length of the tree, length of the arrays; the tree; the arrays
     tree     None, bool, int, float, str as they are;  [...] a tuple;  {"a": [dtype, shape]} the next array;
-             {"r": [name, fields, values]} a NamedTuple;  {"f": name} a function that the other side calls by that name
+             {"c": [real, imaginary]} a complex number;  {"r": [name, fields, values]} a NamedTuple;
+             {"f": name} a function that the other side calls by that name
 
 Nothing is unpickled, and every size is checked before memory is asked for.  *Left out:* dicts and objects.
 """
@@ -39,6 +40,8 @@ def pack(value, name_of=None):
             return bool(value)
         if isinstance(value, numbers.Real):  # also of NumPy, long ones and fractions: a right answer may be any
             return int(value) if isinstance(value, numbers.Integral) else float(value)
+        if isinstance(value, numbers.Complex):
+            return {"c": [float(value.real), float(value.imag)]}
         if isinstance(value, np.ndarray):
             plain = usual(np.array(value, order="C", subok=False))     # a copy without tricks
             arrays.append(plain.astype(plain.dtype.newbyteorder("<")).tobytes())
@@ -117,6 +120,11 @@ def unpack(head, body, function=None, record=None):
         (kind, content), = tree.items()
         if kind == "a":
             return array(*content)
+        if kind == "c":
+            real, imaginary = content
+            if not type(real) is type(imaginary) is float:
+                raise WireError("a complex number has a bad header")
+            return complex(real, imaginary)
         if kind == "f" and function and type(content) is str:
             return function(content)
         if kind == "r" and record:

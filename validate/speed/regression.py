@@ -23,7 +23,7 @@ from solutions.checks import BadInput
 
 from ..measure.selection import Plan, select
 from ..measure.timing import interval, time_ours
-from ..methods import BACKTRACKING, CONTINUOUS, LOOP_2D, RATTLE, RK4, RUNGE_KUTTA, SLIDING, TRIANGLES
+from ..methods import BACKTRACKING, CONTINUOUS, LOOP_2D, RATTLE, RK4, RUNGE_KUTTA, SLIDING, TANGENTS, TRIANGLES
 from ..run.command import start
 from ..run.store import full_run
 from ..subject import modules
@@ -73,6 +73,7 @@ WORK = {                     # {lesson: () → what is timed, a function without
     "contact": pile,
     "simulator": lambda: of_a_scene("moving_wedge", LOOP_2D),
     "kinematics": arm,
+    "sensitivities": lambda: of_a_scene("tangent_oscillator", TANGENTS),
 }
 
 

@@ -1,0 +1,655 @@
+"""Lesson 12 is right when differences have their errors, tangents are the derivatives of steps, events and impacts, and
+Newton's method aims.
+
+The truths are closed forms, most of them evaluated at complex inputs s + i h: the imaginary part over h is the
+derivative, up to h² = 1e-40.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput, Diverged
+from validate.grading.expect import NotYet, between, choice, close, instance, raises, truth
+from validate.reference import choices
+
+exercise = pytest.mark.exercise
+H = 1e-20                    # of the complex steps in these tests
+# Everything drawn is below 10 in its unit.  A comparison takes a few hundred operations, each rounded by 1e-16 of that.
+ROUND_OFF = 1e-11
+SOLVED = 1e-9                # of implicit_euler_step, which ends its iterations at 1e-12 of the velocity
+TINY = 1e-20                 # no law here has a scale
+SIZES = ((1, 1), (1, 3), (2, 1), (2, 2), (3, 2), (3, 3))                 # coordinates d, inputs m
+
+
+def unit(draw, d):
+    """A unit vector with no entry near 0."""
+    n = draw(0.3, 1.0, d) * np.array([2.0 * draw.whole(0, 1) - 1.0 for _ in range(d)])
+    return n / np.linalg.norm(n)
+
+
+def slopes(function, *inputs):
+    """Derivatives (…, m) of a function; an input that depends on s is a pair (value, its derivatives (…, m))."""
+    def at(k):
+        return [y[0] + 1j * H * np.asarray(y[1])[..., k] if isinstance(y, tuple) else y for y in inputs]
+    m = next(np.shape(y[1])[-1] for y in inputs if isinstance(y, tuple))
+    return np.stack([np.imag(function(*at(k))) / H for k in range(m)], axis=-1)
+
+
+# ---------------------------------------------------------------------------------------------- differences
+
+def cubic(s, p):
+    return ((p[3] * s + p[2]) * s + p[1]) * s + p[0]
+
+
+def wave(s, p):
+    return p[0] * np.exp(p[1] * s) * np.sin(p[2] * s)
+
+
+def place(s, p):
+    """Place (2,) and height above a parabola: an array that depends on one number."""
+    return p * s * s * s
+
+
+@exercise("12.1", points=0.5, hint="(f(s + h) − f(s − h)) / 2h: the distance between the two inputs is 2h")
+def test_a_central_difference_of_a_cubic_is_off_by_a_sixth_of_its_third_derivative(lesson, draw):
+    for h in (draw(0.1, 0.5), draw(1.0, 2.0)):
+        s, p = draw(0.5, 2.0), draw(0.5, 2.0, 4)
+        slope = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s
+        close("central difference of a cubic", lesson.central_difference(cubic, s, h, p), slope + h * h * p[3],
+              ROUND_OFF, given=f"s = {s}, h = {h}, coefficients {p}")
+
+
+@exercise("12.1", points=0.5, hint="f may return an array: subtract and divide it as a whole")
+def test_a_central_difference_has_the_shape_of_its_function(lesson, draw):
+    for d in (2, 1, 3):
+        s, h, p = draw(-2.0, -0.5), draw(0.1, 0.5), draw(-2.0, 2.0, d)
+        close("central difference of an array", lesson.central_difference(place, s, h, p), (3.0 * s * s + h * h) * p,
+              ROUND_OFF, given=f"s = {s}, h = {h}, factors {p}")
+
+
+@exercise("12.2", points=1, hint="set the derivative of h² |f‴|/6 + round_off |f|/h to zero: h³ = 3 round_off |f|/|f‴|")
+def test_the_best_step_is_where_the_bound_is_flat(lesson, draw):
+    for round_off in (2.2e-16, 10.0 ** draw(-9.0, -3.0)):
+        value, third = draw(0.1, 9.0), draw(0.1, 9.0)
+        h = float(lesson.best_step(value, third, round_off))
+        given = f"f = {value}, third derivative {third}, round-off {round_off}"
+        between("best step, a number above zero", h, 1e-8, 10.0, given=given)
+        close("slope of the truncation error over that of the round-off [-]",
+              (h * third / 3.0) / (round_off * value / h**2), 1.0, ROUND_OFF, given=given)
+
+
+@exercise("12.2", points=0.5, hint="only the sizes of f and of f‴ count: take np.abs of both")
+def test_the_best_step_is_the_same_for_either_sign(lesson, draw):
+    value, third, round_off = draw(0.1, 9.0), draw(0.1, 9.0), 1e-12
+    h = (3.0 * round_off * value / third) ** (1.0 / 3.0)
+    for sign, other in ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
+        close("best step over what it should be [-]", lesson.best_step(sign * value, other * third, round_off) / h, 1.0,
+              ROUND_OFF, given=f"f = {sign * value}, third derivative {other * third}, round-off {round_off}")
+
+
+@exercise("12.2", points=0.5, hint="where f‴ is 0 there is no truncation error: return np.inf")
+def test_the_best_step_of_a_parabola_is_infinite(lesson, draw):
+    for value in (draw(0.1, 9.0), -draw(0.1, 9.0)):
+        h = float(lesson.best_step(value, 0.0, 1e-15))
+        truth("the best step is infinite where the third derivative is 0", h == np.inf, True, given=f"f = {value}")
+
+
+@exercise("12.3", points=0.5, hint="np.imag(f(s + 1j * h, p)) / h: no difference, so no digits are lost")
+def test_a_complex_step_gives_all_digits(lesson, draw):
+    for h in (1e-20, 1e-100):
+        s, p = draw(0.5, 1.5), draw(0.5, 1.5, 3)
+        slope = p[0] * np.exp(p[1] * s) * (p[1] * np.sin(p[2] * s) + p[2] * np.cos(p[2] * s))
+        close("derivative by a complex step", lesson.complex_step(wave, s, h, p), slope, ROUND_OFF,
+              given=f"s = {s}, h = {h}, parameters {p}")
+
+
+@exercise("12.3", points=0.5, hint="divide the imaginary part by h; f may return an array")
+def test_a_long_complex_step_of_a_cubic_is_off_by_the_negative_of_a_difference(lesson, draw):
+    for d in (2, 1, 3):
+        s, h, p = draw(-2.0, -0.5), draw(0.1, 0.5), draw(-2.0, 2.0, d)
+        close("complex step of an array", lesson.complex_step(place, s, h, p), (3.0 * s * s - h * h) * p, ROUND_OFF,
+              given=f"s = {s}, h = {h}, factors {p}")
+
+
+# ---------------------------------------------------------------------------------------------- steps
+
+class Spring(NamedTuple):
+    """A spring and a damper that are neither linear nor symmetric, and a load that swings; all but its rate inputs."""
+    k: float                 # [1/s²]
+    c: float                 # [1/s]
+    load: np.ndarray         # (d,) [m/s²]
+    rate: float              # of the load [1/s]
+    S: np.ndarray            # (d, d) [-]
+    G: np.ndarray            # (d, d) [-]
+    k_s: np.ndarray          # (m,) derivatives of k with respect to the inputs
+    c_s: np.ndarray          # (m,) of c
+    load_s: np.ndarray       # (d, m) of the load
+
+
+def pull(t, x, v, p):
+    """Acceleration (d,) of a Spring."""
+    return p.load * np.cos(p.rate * t) - p.k * (p.S @ x + (x @ x) * x) - p.c * (p.G @ v + (v @ v) * v)
+
+
+def pull_derivatives(t, x, v, p):
+    """Derivatives (a_x, a_v, a_s) of pull."""
+    one = np.eye(x.size)
+    a_x = -p.k * (p.S + (x @ x) * one + 2.0 * np.outer(x, x))
+    a_v = -p.c * (p.G + (v @ v) * one + 2.0 * np.outer(v, v))
+    a_s = (np.cos(p.rate * t) * p.load_s - np.outer(p.S @ x + (x @ x) * x, p.k_s)
+           - np.outer(p.G @ v + (v @ v) * v, p.c_s))
+    return a_x, a_v, a_s
+
+
+def spring(draw, d, m):
+    """(p, x, v, dx, dv): a drawn Spring, and a state that depends on all inputs."""
+    near_one = [np.eye(d) + draw(-0.4, 0.4, (d, d)) for _ in range(2)]
+    p = Spring(draw(0.5, 3.0), draw(0.2, 1.0), draw(-2.0, 2.0, d), draw(1.0, 3.0), *near_one,
+               draw(-1.0, 1.0, m), draw(-1.0, 1.0, m), draw(-1.0, 1.0, (d, m)))
+    return p, draw(-1.0, 1.0, d), draw(-1.0, 1.0, d), draw(-1.0, 1.0, (d, m)), draw(-1.0, 1.0, (d, m))
+
+
+def moved(p, x, v, dx, dv, k):
+    """(p, x, v) at a complex input: an imaginary change of input k."""
+    change = 1j * H
+    return (p._replace(k=p.k + change * p.k_s[k], c=p.c + change * p.c_s[k], load=p.load + change * p.load_s[:, k]),
+            x + change * dx[:, k], v + change * dv[:, k])
+
+
+def tangents(step, t, p, x, v, dx, dv, dt):
+    """(x, v, dx, dv) after a step (t, p, x, v, dt) → (x, v), which is evaluated at complex inputs."""
+    columns = [[np.imag(y) / H for y in step(t, *moved(p, x, v, dx, dv, k), dt)] for k in range(dx.shape[1])]
+    return (*map(np.real, step(t, p, x, v, dt)), *(np.stack(y, axis=1) for y in zip(*columns, strict=True)))
+
+
+def explicit(t, p, x, v, dt):
+    """Velocity first, then position."""
+    v = v + dt * pull(t, x, v, p)
+    return x + dt * v, v
+
+
+def implicit(t, p, x, v, dt):
+    """The velocity at the end of the step by Newton's method at complex inputs, with the exact matrix."""
+    w = v + 0j
+    for _ in range(12):
+        a_x, a_v, _ = pull_derivatives(t + dt, x + dt * w, w, p)
+        residual = w - v - dt * pull(t + dt, x + dt * w, w, p)
+        w = w - np.linalg.solve(np.eye(x.size) - dt * a_v - dt * dt * a_x, residual)
+    return x + dt * w, w
+
+
+def four(result):
+    """(x, v, dx, dv) that a step returned."""
+    instance("what the step returns: (x, v, dx, dv)", result, tuple)
+    if len(result) != 4:
+        raise NotYet("what the step returns", "4 values: x, v, dx, dv", f"{len(result)} values", "")
+    return result
+
+
+def close_tangents(result, expected, tolerance, given):
+    for name, got, right in zip(("position x [m]", "velocity v [m/s]", "sensitivity dx", "sensitivity dv"),
+                                four(result), expected, strict=True):
+        close(f"{name} after a step", got, right, tolerance, given=given)
+
+
+def oscillation(t, x, v, k, c):
+    """State (2,) of ẍ = −k x − c ẋ at t, in closed form; k and c may be complex."""
+    decay = 0.5 * c
+    omega = np.sqrt(k - decay * decay + 0j)
+    b = (v + decay * x) / omega
+    cosine, sine, fade = np.cos(omega * t), np.sin(omega * t), np.exp(-decay * t)
+    y = fade * (x * cosine + b * sine)
+    return np.array([y, -decay * y + fade * omega * (b * cosine - x * sine)])
+
+
+class Linear(NamedTuple):
+    """A spring and a damper per unit of mass."""
+    k: float                 # [1/s²]
+    c: float                 # [1/s]
+    k_s: np.ndarray          # (m,)
+    c_s: np.ndarray          # (m,)
+
+
+def linear(t, x, v, p):
+    return -p.k * x - p.c * v
+
+
+def linear_derivatives(t, x, v, p):
+    one = np.eye(x.size)
+    return -p.k * one, -p.c * one, -np.outer(x, p.k_s) - np.outer(v, p.c_s)
+
+
+def damped(draw, m):
+    """(p, x, v, dx, dv): a drawn oscillator, all of which depends on the inputs."""
+    p = Linear(draw(2.0, 9.0), draw(0.2, 1.0), draw(-1.0, 1.0, m), draw(-1.0, 1.0, m))
+    return p, draw(0.5, 2.0, 1), draw(-2.0, 2.0, 1), draw(-1.0, 1.0, (1, m)), draw(-1.0, 1.0, (1, m))
+
+
+def run(step, p, x, v, dx, dv, dt, steps):
+    """(x, v, dx, dv) after so many steps of a lesson."""
+    for n in range(steps):
+        x, v, dx, dv = four(step(linear, linear_derivatives, n * dt, x, v, dx, dv, dt, p))
+    return np.asarray(x), np.asarray(v), np.asarray(dx), np.asarray(dv)
+
+
+def errors_of_tangents(step, draw):
+    """Errors of (dx, dv) at t = 1 s after 400 and after 800 steps."""
+    p, x, v, dx, dv = damped(draw, 3)
+    right = slopes(oscillation, 1.0, (x[0], dx[0]), (v[0], dv[0]), (p.k, p.k_s), (p.c, p.c_s))
+    return [np.concatenate(run(step, p, x, v, dx, dv, 1.0 / steps, steps)[2:]) - right for steps in (400, 800)]
+
+
+@exercise("12.4", points=1.5,
+          hint="differentiate both lines: dv gains dt (a_x dx + a_v dv + a_s) with the old dx and dv; dx gains dt times"
+               " the new dv")
+def test_the_tangents_are_the_derivatives_of_the_step(lesson, draw):
+    t = draw(0.3, 1.0)
+    for d, m in SIZES:
+        p, x, v, dx, dv = spring(draw, d, m)
+        dt = draw(0.1, 0.5)
+        got = lesson.tangent_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
+        close_tangents(got, tangents(explicit, t, p, x, v, dx, dv, dt), ROUND_OFF,
+                       given=f"{d} coordinates, {m} inputs, t = {t} s, dt = {dt} s")
+
+
+@exercise("12.4", points=0.5,
+          hint="the tangents of many steps approach the derivatives of the motion, with an error proportional to dt")
+def test_the_tangents_of_an_oscillator_approach_those_of_its_motion(lesson, draw):
+    """Each error is C dt + O(dt²), so the second is half of the first; terms of dt² are below 1e-2 of C dt.
+
+    With k ≤ 9, |C| is below k² = 81 in all entries.
+    """
+    once, twice = errors_of_tangents(lesson.tangent_step, draw)
+    size = np.abs(once).max()
+    between("largest error of the tangents after 400 steps", size, 0.0, 81.0 / 400.0)
+    between("error after 800 steps over that after 400 [-]", np.abs(twice).max() / size, 0.45, 0.55)
+
+
+@exercise("12.5", points=1,
+          hint="(1 − dt a_v − dt² a_x) dvₙ₊₁ = dvₙ + dt (a_x dxₙ + a_s), with derivatives at t + dt and the new x, v")
+def test_the_tangents_are_the_derivatives_of_the_implicit_step(lesson, draw):
+    t = draw(0.3, 1.0)
+    for d, m in SIZES:
+        p, x, v, dx, dv = spring(draw, d, m)
+        dt = draw(0.1, 0.4)
+        got = lesson.tangent_implicit_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
+        close_tangents(got, tangents(implicit, t, p, x, v, dx, dv, dt), SOLVED,
+                       given=f"{d} coordinates, {m} inputs, t = {t} s, dt = {dt} s")
+
+
+@exercise("12.5", points=1, hint="solve one linear system for dvₙ₊₁; then dxₙ₊₁ = dxₙ + dt dvₙ₊₁")
+def test_the_tangents_of_an_implicit_step_do_not_explode(lesson, draw):
+    """The step of a linear law is a matrix, y ← (1 − dt B)⁻¹ y, and so is that of its tangents.
+
+    ‖B‖ dt is up to 1e5, which costs as many digits of the solution.
+    """
+    for k, dt in ((draw(1.0, 4.0), 0.1), (1e6 * draw(0.5, 1.0), 0.1), (1e10 * draw(0.5, 1.0), 1.0)):
+        c = draw(0.5, 2.0)
+        p = Linear(k, c, np.zeros(2), np.zeros(2))
+        x, v, (dx, dv) = draw(0.5, 2.0, 1), draw(0.5, 2.0, 1), np.eye(2)[:, None, :]
+        A = np.linalg.matrix_power(np.linalg.inv(np.eye(2) - dt * np.array([[0.0, 1.0], [-k, -c]])), 3)
+        got = run(lesson.tangent_implicit_step, p, x, v, dx, dv, dt, 3)
+        close("(dx, dv) after three steps, for the inputs x and v", np.concatenate(got[2:]), A, 1e-6,
+              given=f"k = {k} 1/s², c = {c} 1/s, dt = {dt} s")
+    once, twice = errors_of_tangents(lesson.tangent_implicit_step, draw)
+    size = np.abs(once).max()
+    between("largest error of the tangents after 400 steps", size, 0.0, 81.0 / 400.0)
+    between("error after 800 steps over that after 400 [-]", np.abs(twice).max() / size, 0.45, 0.55)
+
+
+# ---------------------------------------------------------------------------------------------- events
+
+def fall_time(phi, u, a):
+    """First τ > 0 with φ + u τ + ½ a τ² = 0, for φ > 0 and a < 0; complex numbers allowed."""
+    return (-u - np.sqrt(u * u - 2.0 * a * phi)) / a
+
+
+def arrival(n, x, v, a, c):
+    """When such a flight reaches the plane n · x = c."""
+    return fall_time(n @ x - c, n @ v, n @ a)
+
+
+def dropped(draw, d, m):
+    """A flight at constant acceleration to an oblique plane n · x = c: (n, x, v, a, c, X, V, c_s), and its τ."""
+    n = unit(draw, d)
+    sideways = draw(-2.0, 2.0, d)
+    sideways -= (sideways @ n) * n
+    a = -draw(5.0, 9.0) * n + sideways
+    c = draw(-1.0, 1.0)
+    x, v = (c + draw(0.5, 2.0)) * n + sideways, draw(-2.0, 2.0, d)
+    X, V, c_s = draw(-1.0, 1.0, (d, m)), draw(-1.0, 1.0, (d, m)), draw(-1.0, 1.0, m)
+    return (n, x, v, a, c, X, V, c_s), arrival(n, x, v, a, c)
+
+
+@exercise("12.6", points=1,
+          hint="dtau = −(g_x dx + g_v dv + g_s)/(g_x · v + g_v · a): the change of g at a fixed time, over its rate")
+def test_the_time_of_an_impact_on_an_oblique_plane_moves_with_all_inputs(lesson, draw):
+    """In closed form: τ is the root of a quadratic equation, whose coefficients depend on the inputs."""
+    for d, m in SIZES:
+        (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
+        expected = slopes(arrival, n, (x, X), (v, V), a, (c, c_s))
+        got = lesson.event_time_sensitivity(n, 0.0 * n, -c_s, v + tau * a, a, X + tau * V, V)
+        close("dtau of an impact", got, expected, ROUND_OFF, given=f"{d} coordinates, {m} inputs, n = {n}")
+
+
+def crossing(k, x, v, level, by_x, by_v):
+    """When an oscillator first crosses the line by_x x + by_v v = level, by Newton's method on the closed form."""
+    tau = 0.5 / np.sqrt(np.real(k)) + 0j
+    for _ in range(30):
+        y, w = oscillation(tau, x, v, k, 0.0)
+        tau = tau - (by_x * y + by_v * w - level) / (by_x * w - by_v * k * y)
+    return tau
+
+
+@exercise("12.6", points=0.5, hint="an event may depend on the velocity: g_v dv in the numerator, g_v · a in the rate")
+def test_the_time_at_which_a_velocity_is_reached_moves_too(lesson, draw):
+    for m in (1, 2, 3):
+        k, x, v, level = draw(2.0, 9.0), draw(0.5, 1.0), draw(0.2, 1.0), draw(-0.2, 0.2)
+        by_x, by_v = draw(-0.3, 0.3), draw(0.5, 1.0)
+        if m == 1:                                       # the same event, with a gap that opens
+            by_x, by_v, level = -by_x, -by_v, -level
+        rates = [draw(-1.0, 1.0, m) for _ in range(4)]
+        tau = float(np.real(crossing(k, x, v, level, by_x, by_v)))
+        state = np.real(oscillation(tau, x, v, k, 0.0))
+        inputs = [*zip((k, x, v, level), rates, strict=True)]
+        dx, dv = slopes(oscillation, tau, inputs[1], inputs[2], inputs[0], 0.0)
+        got = lesson.event_time_sensitivity(np.array([by_x]), np.array([by_v]), -rates[3], state[1:], -k * state[:1],
+                                            dx[None], dv[None])
+        close("dtau of an event in position and velocity", got, slopes(crossing, *inputs, by_x, by_v), 1e-9,
+              given=f"g = {by_x} x + {by_v} v − {level}, {m} inputs")
+
+
+@exercise("12.6", points=0.5,
+          hint="if |rate| ≤ GRAZING (|g_x| · |v| + |g_v| · |a|), raise BadInput: a comparison of sizes, at any scale")
+def test_an_event_that_only_grazes_is_refused(lesson, draw):
+    for d in (2, 3):
+        n, a, still, dx = unit(draw, d), draw(-5.0, 5.0, d), np.zeros(d), draw(-1.0, 1.0, (d, 2))
+        along = draw(0.5, 2.0, d)
+        along -= (along @ n) * n
+        arguments = n, still, np.zeros(2)
+        for size in (1.0, 1e6, TINY):
+            raises("an event whose rate is zero but for round-off", BadInput, lesson.event_time_sensitivity, *arguments,
+                   size * along, size * a, dx, dx)
+            for slow in (1e-9, 1e-3):
+                v = size * (along - slow * n)
+                got = np.asarray(lesson.event_time_sensitivity(*arguments, v, size * a, dx, dx))
+                rate = n @ v
+                close("dtau of a slow event times its rate", got * rate, -n @ dx, 1e-5, given=f"v = {v} m/s, n = {n}")
+        raises("an event in which nothing moves", BadInput, lesson.event_time_sensitivity, *arguments, still, a, dx, dx)
+        raises("an event in the velocity without acceleration along it", BadInput, lesson.event_time_sensitivity,
+               still, n, np.zeros(2), draw(-1.0, 1.0, d), along, dx, dx)
+
+
+# ---------------------------------------------------------------------------------------------- impacts
+
+def behind(time, n, x, v, a, c, a_new, R):
+    """State (2, d) at a fixed time: a flight to the plane n · x = c, the jump v⁺ = R v⁻, and a flight with a_new."""
+    tau = arrival(n, x, v, a, c)
+    left = time - tau
+    place, speed = x + tau * v + 0.5 * tau * tau * a, R @ (v + tau * a)
+    return np.array([place + left * speed + 0.5 * left * left * a_new, speed + left * a_new])
+
+
+@exercise("12.7", points=1,
+          hint="dx⁺ = dx⁻ + (v⁻ − v⁺) dtauᵀ;  dv⁺ = R_v (dv⁻ + a⁻ dtauᵀ) + R_s − a⁺ dtauᵀ, with np.outer for y dtauᵀ")
+def test_behind_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw):
+    """The jump v⁺ = R v⁻ is any matrix that depends on the inputs, and the acceleration changes at the impact, too."""
+    for d, m in SIZES:
+        (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
+        R, R_by, a_new = draw(-1.0, 1.0, (d, d)), draw(-1.0, 1.0, (d, d, m)), draw(-9.0, 9.0, d)
+        expected = slopes(behind, tau, n, (x, X), (v, V), a, (c, c_s), a_new, (R, R_by))
+        dtau = slopes(arrival, n, (x, X), (v, V), a, (c, c_s))
+        v_old = v + tau * a
+        R_s = np.einsum("ijk,j->ik", R_by, v_old)
+        dx, dv = lesson.saltation(dtau, X + tau * V, V, v_old, a, R @ v_old, a_new, R, R_s)
+        given = f"{d} coordinates, {m} inputs, dtau = {dtau}"
+        close("dx behind the impact", dx, expected[0], 1e-10, given=given)
+        close("dv behind the impact", dv, expected[1], 1e-10, given=given)
+
+
+@exercise("12.7", points=1,
+          hint="a ball from higher meets the floor later: dx⁺ gains (v⁻ − v⁺) dtau, which makes −e of 1")
+def test_a_ball_that_is_dropped_from_higher_is_lower_just_behind_its_bounce(lesson, draw):
+    """With τ = √(2h/g):  x(t) = e g τ (t − τ) − ½ g (t − τ)²;  inputs are h and e."""
+    for e in (0.0, 1.0, draw(0.3, 0.9)):
+        h, g = draw(0.5, 2.0), 9.81
+        tau = np.sqrt(2.0 * h / g)
+        v, a = np.array([-g * tau]), np.array([-g])
+        dx, dv = lesson.saltation(np.array([1.0 / (g * tau), 0.0]), np.array([[1.0, 0.0]]), np.zeros((1, 2)), v, a,
+                                  -e * v, a, np.array([[-e]]), np.array([[0.0, g * tau]]))
+        given = f"h = {h} m, e = {e}"
+        close("∂x/∂h and ∂x/∂e just behind the bounce", dx, [[-e, 0.0]], ROUND_OFF, given=given)
+        close("∂v/∂h and ∂v/∂e just behind the bounce", dv, [[(1.0 + e) / tau, g * tau]], ROUND_OFF, given=given)
+
+
+def reflected(n, e):
+    """The matrix of an impact on a plane: 1 − (1 + e) n nᵀ."""
+    return np.eye(n.size) - (1.0 + e) * np.outer(n, n)
+
+
+@exercise("12.8", points=1,
+          hint="v − (1 + e)(v · n) n; then dtau with gap_x = n, and saltation with R_v, R_s and a before and after")
+def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, draw):
+    for d, m in SIZES:
+        (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
+        e, e_s = draw(0.2, 0.9), draw(-1.0, 1.0, m)
+        R = reflected(n, e), -np.multiply.outer(np.outer(n, n), e_s)
+        expected = slopes(behind, tau, n, (x, X), (v, V), a, (c, c_s), a, R)
+        v_old = v + tau * a
+        got_v, dx, dv = lesson.bounce(v_old, a, X + tau * V, V, n, e, -c_s, e_s)
+        given = f"{d} coordinates, {m} inputs, n = {n}, e = {e}"
+        close("velocity behind the bounce [m/s]", got_v, reflected(n, e) @ v_old, ROUND_OFF, given=given)
+        close("dx behind the bounce", dx, expected[0], 1e-10, given=given)
+        close("dv behind the bounce", dv, expected[1], 1e-10, given=given)
+
+
+@exercise("12.8", points=0.5, hint="e_s moves only the velocity: R_s = −(v · n) n e_sᵀ; 0 ≤ e ≤ 1")
+def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
+    for d in (1, 2, 3):
+        for e in (0.0, 1.0):
+            n, v, a = unit(draw, d), draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
+            v -= (v @ n + draw(1.0, 3.0)) * n
+            still, e_s = np.zeros((d, 2)), np.array([0.0, draw(0.5, 2.0)])
+            _, dx, dv = lesson.bounce(v, a, still, still, n, e, np.zeros(2), e_s)
+            given = f"v = {v} m/s, n = {n}, e = {e}"
+            close("dx behind the bounce, for the input e", dx, still, 0.0, given=given)
+            close("dv behind the bounce, for the input e", dv, -(v @ n) * np.outer(n, e_s), ROUND_OFF, given=given)
+
+
+@exercise("12.8", points=0.5, hint="call event_time_sensitivity: it refuses a ball that only slides along the plane")
+def test_a_ball_that_grazes_a_plane_has_no_sensitivities(lesson, draw):
+    for d in (2, 3):
+        n, v, a, dx = unit(draw, d), draw(0.5, 1.0, d), draw(-9.0, 9.0, d), draw(-1.0, 1.0, (d, 2))
+        v -= (v @ n) * n
+        raises("a ball that moves along the plane", BadInput, lesson.bounce, v, a, dx, dx, n, draw(0.2, 0.9),
+               np.zeros(2), np.zeros(2))
+        v_new, _, _ = lesson.bounce(v - n, a, dx, dx, n, 1.0, np.zeros(2), np.zeros(2))
+        close("velocity behind the bounce of a ball that comes down [m/s]", v_new, v + n, ROUND_OFF, given=f"n = {n}")
+
+
+# ---------------------------------------------------------------------------------------------- what they are for
+
+def hills(s, p):
+    """A sum of cubics of the inputs; p (4, m) are their coefficients."""
+    return np.sum(p[0] + (p[1] + (p[2] + p[3] * s) * s) * s)
+
+
+@exercise("12.9", points=1.5,
+          hint="remainder |f(s + h y) − f(s) − h g · y| of each h; then log of its ratio over log of that of the steps")
+def test_taylors_test_tells_a_right_gradient_from_a_wrong_one(lesson, draw):
+    """The remainder of a cubic is h δ + h² b + h³ c in closed form, with δ from the error of the gradient.
+
+    It is above 1e-5, and f below 100 in units of which 1e-16 is lost: 1e-9 of it.
+    """
+    for m, off in ((1, 0.0), (3, 0.0), (2, 0.5), (3, -0.5), (2, 1e-3)):
+        s, y, p = draw(0.5, 1.0, m), draw(0.5, 1.0, m), draw(0.5, 1.5, (4, m))
+        steps = np.array([draw(0.3, 0.4), draw(0.1, 0.2), draw(0.04, 0.05), draw(0.01, 0.02), draw(0.5, 0.6)])
+        gradient = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s + off
+        second, third = (p[2] + 3.0 * p[3] * s) @ y**2, p[3] @ y**3
+        left = np.abs(-off * np.sum(y) * steps + second * steps**2 + third * steps**3)
+        expected = np.log(left[1:] / left[:-1]) / np.log(steps[1:] / steps[:-1])
+        got = lesson.remainder_orders(hills, gradient, s, y, steps, p)
+        close("observed orders of the remainder [-]", got, expected, 1e-5,
+              given=f"{m} inputs, steps {steps}, the gradient is off by {off}")
+
+
+@exercise("12.9", points=0.5, hint='call check_positive("remainder of a step", …) for every remainder')
+def test_taylors_test_refuses_a_function_without_a_remainder(lesson, draw):
+    """A linear function of whole numbers, with steps that are powers of two, has no round-off."""
+    for m in (1, 2):
+        s, y = (np.array([float(draw.whole(1, 9)) for _ in range(m)]) for _ in range(2))
+        p = np.zeros((4, m))
+        p[1] = [float(draw.whole(1, 9)) for _ in range(m)]
+        raises("a function that is linear", BadInput, lesson.remainder_orders, hills, p[1], s, y,
+               np.array([0.5, 0.25]), p)
+        orders = lesson.remainder_orders(hills, p[1] + 1.0, s, y, np.array([0.5, 0.25, 0.125]), p)
+        close("observed orders for a wrong gradient [-]", orders, [1.0, 1.0], ROUND_OFF)
+
+
+# The throws of these tests.  Each returns the miss and its derivatives.
+
+def by_speed_and_angle(s, p):
+    """A throw with speed s[0] and angle s[1]; p = (duration, g, the target)."""
+    T, g, x, y = p[0], p[1], p[2], p[3]
+    along, up = np.cos(s[1]), np.sin(s[1])
+    r = np.array([T * s[0] * along - x, T * s[0] * up - 0.5 * g * T * T - y])
+    return r, np.array([[T * along, -T * s[0] * up], [T * up, T * s[0] * along]])
+
+
+def square(s, p):
+    """s² = p[0]."""
+    return np.array([s[0] * s[0] - p[0]]), np.array([[2.0 * s[0]]])
+
+
+def ring(s, p):
+    """s_i + 0.3 s_i+1² = p_i, around."""
+    J, r = np.eye(s.size), s - p
+    for i in range(s.size):
+        j = (i + 1) % s.size
+        r[i] += 0.3 * s[j] ** 2
+        J[i, j] += 0.6 * s[j]
+    return r, J
+
+
+def bend(s, p):
+    """arctan((s − p[0])/p[1]): from far away, Newton's step goes much too far."""
+    y = (s - p[0]) / p[1]
+    return np.arctan(y), np.array([[1.0 / (p[1] * (1.0 + y[0] * y[0]))]])
+
+
+def logarithm(s, p):
+    """log(s/p[0]); what is not above zero never arrives."""
+    if s[0] <= 0.0:
+        return np.full(1, np.nan), np.full((1, 1), np.nan)
+    return np.log(s / p[0]), np.array([[1.0 / s[0]]])
+
+
+def pit(s, p):
+    """s² + p[0] > 0: no s hits."""
+    return np.array([s[0] * s[0] + p[0]]), np.array([[2.0 * s[0]]])
+
+
+@exercise("12.10", points=0.75, hint="step = solve(J, r), s ← s − step, until √(r · r) ≤ tolerance; keep every |r|")
+def test_newtons_method_hits_what_it_aims_at(lesson, draw):
+    T, g, x, y = draw(0.8, 1.2), 9.81, draw(2.0, 4.0), draw(0.5, 1.5)
+    p = np.array([T, g, x, y])
+    along, up = x / T, (y + 0.5 * g * T * T) / T
+    right = np.array([np.hypot(along, up), np.arctan2(up, along)])
+    start = right * [draw(0.8, 1.2), draw(0.8, 1.2)]
+    s, misses = lesson.aim(by_speed_and_angle, start, 1e-10, 20, p)
+    given = f"from speed and angle {start}, target ({x}, {y}) m after {T} s"
+    close("speed [m/s] and angle [rad] of a throw that hits", s, right, 1e-8, given=given)
+    first = np.linalg.norm(by_speed_and_angle(start, p)[0])
+    close("first miss [m]", np.asarray(misses)[0], first, ROUND_OFF, given=given)
+    between("last miss [m]", np.asarray(misses)[-1], 0.0, 1e-10, given=given)
+    for k in (1, 3):
+        right = draw(0.2, 0.8, k)
+        s, misses = lesson.aim(ring, np.zeros(k), 1e-12, 20, right + 0.3 * np.roll(right, -1) ** 2)
+        close("inputs that hit, of equations with a known solution", s, right, ROUND_OFF, given=f"{k} inputs")
+        between("number of iterations", len(misses) - 1, 1, 8, given=f"{k} inputs")
+
+
+@exercise("12.10", points=0.25, hint="misses has one entry for the first throw, and one per iteration")
+def test_the_misses_are_those_of_newtons_method(lesson, draw):
+    """For s² = a Newton's method is s ← ½ (s + a/s), which misses by less each time if it begins above the root."""
+    a, start = draw(2.0, 5.0), draw(3.0, 5.0)
+    for most in (0, 5):
+        found, misses = lesson.aim(square, np.array([start]), 100.0, most, np.array([a]))
+        close("inputs that hit before the first iteration", found, [start], 0.0, given=f"s = {start}")
+        close("misses without an iteration", misses, [start * start - a], ROUND_OFF, given=f"s² = {a}, s = {start}")
+    for tolerance in (1e-2, 1e-9):
+        s, expected = start, [start * start - a]
+        while expected[-1] > tolerance:
+            s = 0.5 * (s + a / s)
+            expected.append(abs(s * s - a))
+        found, misses = lesson.aim(square, np.array([start]), tolerance, len(expected) - 1, np.array([a]))
+        given = f"s² = {a}, from {start}, tolerance {tolerance}"
+        close("root of s² = a", found, [s], ROUND_OFF, given=given)
+        close("misses", misses, expected, ROUND_OFF, given=given)
+
+
+@exercise("12.10", points=0.5, hint="while the new miss is not smaller, halve the step; write not (new < old) for NaN")
+def test_a_step_that_goes_too_far_is_halved(lesson, draw):
+    """Newton's method alone diverges for the arctangent from beyond 1.39 widths, and leaves the logarithm's range."""
+    middle, width = draw(-2.0, 2.0), draw(0.5, 2.0)
+    for side in (-1.0, 1.0):
+        start = middle + side * draw(5.0, 20.0) * width
+        s, misses = lesson.aim(bend, np.array([start]), 1e-12, 40, np.array([middle, width]))
+        given = f"arctan((s − {middle})/{width}) from {start}"
+        close("root of an arctangent", s, [middle], ROUND_OFF, given=given)
+        truth("every miss is smaller than the one before", bool(np.all(np.diff(misses) < 0.0)), True, given=given)
+    root, far = draw(1.0, 3.0), draw(5.0, 50.0)
+    s, _ = lesson.aim(logarithm, np.array([far * root]), 1e-12, 40, np.array([root]))
+    close("root of a logarithm, where throws beyond zero never arrive", s, [root], ROUND_OFF,
+          given=f"root {root}, from {far * root}")
+
+
+@exercise("12.10", points=0.5, hint="raise Diverged with the last miss; begin with checked_search")
+def test_a_search_that_does_not_arrive_says_so(lesson, draw):
+    a, start = draw(2.0, 5.0), draw(3.0, 5.0)
+    once = 0.5 * (start + a / start)
+    raises("too few iterations", Diverged, lesson.aim, square, np.array([start]), 1e-12, 1, np.array([a]),
+           naming=[once * once - a])
+    raises("no iteration at all", Diverged, lesson.aim, square, np.array([start]), 1e-12, 0, np.array([a]),
+           naming=[start * start - a])
+    raises("a target that no throw hits", Diverged, lesson.aim, pit, np.array([start]), 1e-6, 100, np.array([a]))
+    raises("inputs that are not finite", BadInput, lesson.aim, square, np.array([np.nan]), 1e-6, 10, np.array([a]))
+    raises("a negative tolerance", BadInput, lesson.aim, square, np.array([start]), -1e-6, 10, np.array([a]))
+    raises("a negative number of iterations", BadInput, lesson.aim, square, np.array([start]), 1e-6, -1, np.array([a]))
+
+
+# ---------------------------------------------------------------------------------------------- how long they help
+
+@exercise("12.11", points=0.75, hint="the error grows by cosh(rate t): e^(rate t) and e^(−rate t) have half of it each")
+def test_the_error_of_a_pencil_has_grown_to_what_is_allowed(lesson, draw):
+    for error, growth in ((draw(1e-3, 1e-2), draw(2.0, 9.0)), (1e-9, 1e8), (draw(0.1, 1.0), 1.05)):
+        rate = draw(1.0, 6.0)
+        t = float(lesson.predicted_horizon(rate, error, growth * error))
+        given = f"rate {rate} 1/s, error {error} m, allowed {growth * error} m"
+        between("time, a number from zero to 50 s", t, 0.0, 50.0, given=given)
+        close("error at that time over the allowed one [-]",
+              0.5 * (np.exp(rate * t) + np.exp(-rate * t)) / growth, 1.0, ROUND_OFF, given=given)
+
+
+@exercise("12.11", points=0.25, hint="where the error is as large as allowed from the start, the time is 0")
+def test_an_error_that_is_too_large_from_the_start_helps_for_no_time(lesson, draw):
+    error = draw(0.1, 1.0)
+    for share in (1.0, *draw.within()):
+        close("time for which the start is known well enough [s]", lesson.predicted_horizon(3.0, error, share * error),
+              0.0, 0.0, given=f"error {error} m, allowed {share * error} m")
+
+
+def bounced_once(heights, x):
+    """Whether these balls fell from rest, came back up with half their speed, and are seen at one time."""
+    tau = np.sqrt(2.0 * heights / 9.81)
+    left = tau[-1] - tau
+    right = 0.5 * 9.81 * tau * left - 0.5 * 9.81 * left**2
+    return np.abs(x - (right - right[0])).max() < ROUND_OFF
+
+
+@exercise("12.12", points=1, hint="just behind the bounce, ∂x/∂h is −e: see 12.7")
+def test_the_curve_is_that_of_balls_that_bounce_once(lesson):
+    choice("letter of the curve of balls that bounce once", lesson.bounced_curve_is(),
+           choices.where("sensitivities", "bounced_curve_is", bounced_once))

@@ -1,0 +1,388 @@
+"""Lesson 12: differences and tangents with a wrong factor, time, place or sign; impacts whose time does not move."""
+
+import numpy as np
+
+from solutions import sensitivities as worked
+from solutions.checks import BadInput, Diverged, check_positive
+
+from . import collection, of_variants, variants
+
+wrong, right, edit, MUTANTS = collection(worked)
+wrongs, alike = of_variants(wrong)
+
+
+# 12.1 -----------------------------------------------------------------------------------------------------------
+@right("12.1", "as the mean of a difference ahead and one behind")
+def central_difference(f, s, h, p):
+    here = f(s, p)
+    return 0.5 * ((f(s + h, p) - here) / h + (here - f(s - h, p)) / h)
+
+
+edit("12.1", "divides by h, not by 2h", "(2.0 * h)", "h")
+edit("12.1", "takes a forward difference", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)", "(f(s + h, p) - f(s, p)) / h")
+edit("12.1", "takes a backward difference", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)", "(f(s, p) - f(s - h, p)) / h")
+edit("12.1", "subtracts the value ahead from the one behind", "f(s + h, p) - f(s - h, p)", "f(s - h, p) - f(s + h, p)")
+edit("12.1", "divides half a difference by 2h", "f(s + h, p) - f(s - h, p)", "f(s + h, p) - f(s, p)")
+edit("12.1", "multiplies by 2h", "/ (2.0 * h)", "* (2.0 * h)")
+edit("12.1", "divides by 2 and multiplies by h", "(2.0 * h)", "2.0 * h")
+edit("12.1", "takes half of the step", "f(s + h, p) - f(s - h, p)", "f(s + 0.5 * h, p) - f(s - 0.5 * h, p)")
+edit("12.1", "adds the two values", "f(s + h, p) - f(s - h, p)", "f(s + h, p) + f(s - h, p)")
+edit("12.1", "makes the step relative to s", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
+     "(f(s + h * s, p) - f(s - h * s, p)) / (2.0 * h * s)")
+edit("12.1", "returns one number for an array", "(f(s + h, p) - f(s - h, p))", "np.sum(f(s + h, p) - f(s - h, p))")
+edit("12.1", "always takes a very short step", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
+     "(f(s + 1e-6, p) - f(s - 1e-6, p)) / 2e-6")
+
+
+# 12.2 -----------------------------------------------------------------------------------------------------------
+@right("12.2", "by logarithms")
+def best_step(value, third, round_off):
+    if third == 0.0:
+        return np.inf
+    return np.exp((np.log(3.0) + np.log(round_off) + np.log(abs(value)) - np.log(abs(third))) / 3.0)
+
+
+edit("12.2", "makes both errors equal, not their sum small", "3.0 * round_off", "6.0 * round_off")
+edit("12.2", "takes the square root, as for a forward difference", "(1.0 / 3.0)", "(1.0 / 2.0)")
+edit("12.2", "forgets the factor 3", "3.0 * round_off", "round_off")
+edit("12.2", "exchanges f and its third derivative", "np.abs(value) / np.abs(third)", "np.abs(third) / np.abs(value)")
+edit("12.2", "forgets the size of f", "* np.abs(value)", "")
+edit("12.2", "forgets the third derivative", " / np.abs(third)", "")
+edit("12.2", "forgets the sixth in the truncation error", "3.0 * round_off", "0.5 * round_off")
+edit("12.2", "takes the truncation error as h² f‴/3", "3.0 * round_off", "1.5 * round_off")
+edit("12.2", "takes no root", "** (1.0 / 3.0)", "")
+edit("12.2", "needs a positive f", "np.abs(value)", "max(value, 0.0)")
+edit("12.2", "needs a positive third derivative", "/ np.abs(third)", "/ max(third, 1e-30)")
+edit("12.2", "returns 0 where the third derivative is 0", "return np.inf", "return 0.0")
+edit("12.2", "returns 1 where the third derivative is 0", "return np.inf", "return 1.0")
+edit("12.2", "always uses the round-off of floats", "3.0 * round_off", "3.0 * 2.2e-16")
+edit("12.2", "takes the root of the round-off only",
+     "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)", "np.cbrt(round_off)")
+
+
+# 12.3 -----------------------------------------------------------------------------------------------------------
+@right("12.3", "by the attribute imag")
+def complex_step(f, s, h, p):
+    return np.asarray(f(complex(s, h), p)).imag / h
+
+
+edit("12.3", "takes the real part", "np.imag", "np.real")
+edit("12.3", "forgets to divide by h", " / h", "")
+edit("12.3", "divides by 2h", " / h", " / (2.0 * h)")
+edit("12.3", "subtracts i h", "s + 1j * h", "s - 1j * h")
+edit("12.3", "multiplies s by i h", "s + 1j * h", "s * 1j * h")
+edit("12.3", "takes the absolute value", "np.imag(f(s + 1j * h, p))", "np.abs(f(s + 1j * h, p))")
+edit("12.3", "takes the real difference ahead", "np.imag(f(s + 1j * h, p))", "(f(s + h, p) - f(s, p))")
+edit("12.3", "subtracts f(s) and takes the absolute value", "np.imag(f(s + 1j * h, p))",
+     "np.abs(f(s + 1j * h, p) - f(s, p))")
+edit("12.3", "takes the angle of the complex number", "np.imag(f(s + 1j * h, p))", "np.angle(f(s + 1j * h, p))")
+edit("12.3", "gives h no unit i: takes a step of (1 + i) h", "s + 1j * h", "s + (1.0 + 1j) * h")
+edit("12.3", "always takes the step 1e-20", "np.imag(f(s + 1j * h, p)) / h", "np.imag(f(s + 1e-20j, p)) / 1e-20")
+edit("12.3", "returns one number for an array", "np.imag(f(s + 1j * h, p))",
+     "np.sum(np.imag(f(s + 1j * h, p)))")
+
+
+# 12.4 -----------------------------------------------------------------------------------------------------------
+@right("12.4", "with the matrices of the whole step")
+def tangent_step(acceleration, derivatives, t, x, v, dx, dv, dt, p):
+    a_x, a_v, a_s = derivatives(t, x, v, p)
+    one = np.eye(x.size)
+    v = v + dt * acceleration(t, x, v, p)
+    A = np.block([[one + dt * dt * a_x, dt * (one + dt * a_v)], [dt * a_x, one + dt * a_v]])
+    y = A @ np.vstack((dx, dv)) + np.vstack((dt * dt * a_s, dt * a_s))
+    return x + dt * v, v, y[:x.size], y[x.size:]
+
+
+edit("12.4", "moves dx with the old dv", "dx + dt * dv_new, dv_new", "dx + dt * dv, dv_new")
+edit("12.4", "leaves out the inputs on which the law itself depends", " + a_s)", ")")
+edit("12.4", "leaves out the derivative with respect to v", " + a_v @ dv", "")
+edit("12.4", "leaves out the derivative with respect to x", "a_x @ dx + ", "")
+edit("12.4", "takes the derivatives at the new state", "v_new = v + dt * acceleration(t, x, v, p)",
+     "v_new = v + dt * acceleration(t, x, v, p); a_x, a_v, a_s = derivatives(t, x + dt * v_new, v_new, p)")
+edit("12.4", "takes the derivatives at the time t + dt", "derivatives(t, x, v, p)", "derivatives(t + dt, x, v, p)")
+edit("12.4", "transposes a_x", "a_x @ dx", "a_x.T @ dx")
+edit("12.4", "transposes a_v", "a_v @ dv", "a_v.T @ dv")
+edit("12.4", "exchanges dx and dv", "a_x @ dx + a_v @ dv", "a_x @ dv + a_v @ dx")
+edit("12.4", "multiplies entry by entry", "a_x @ dx", "np.diag(a_x)[:, None] * dx")
+edit("12.4", "forgets dt in dv", "dv + dt * (a_x", "dv + (a_x")
+edit("12.4", "subtracts the change of dv", "dv + dt * (a_x", "dv - dt * (a_x")
+edit("12.4", "multiplies a_s by dt once more", " + a_s)", " + dt * a_s)")
+edit("12.4", "returns only the change of dv", "dv_new = dv + dt", "dv_new = dt")
+edit("12.4", "returns the sensitivities first", "return x + dt * v_new, v_new, dx + dt * dv_new, dv_new",
+     "return dx + dt * dv_new, dv_new, x + dt * v_new, v_new")
+edit("12.4", "moves x with the old velocity", "return x + dt * v_new, v_new", "return x + dt * v, v_new")
+edit("12.4", "differentiates explicit Euler", "dv + dt * (a_x @ dx + a_v @ dv + a_s)",
+     "dv + dt * (a_x @ dx + a_v @ dv + a_s); dx = dx - dt * dt * (a_x @ dx + a_v @ dv + a_s)")
+
+
+# 12.5 -----------------------------------------------------------------------------------------------------------
+@right("12.5", "as one system for dx and dv")
+def tangent_implicit_step(acceleration, derivatives, t, x, v, dx, dv, dt, p):
+    d, (x_new, v_new) = x.size, worked.implicit_euler_step(acceleration, t, x, v, dt, p)
+    a_x, a_v, a_s = derivatives(t + dt, x_new, v_new, p)
+    B = np.block([[np.zeros((d, d)), np.eye(d)], [a_x, a_v]])
+    y = np.linalg.solve(np.eye(2 * d) - dt * B, np.vstack((dx, dv + dt * a_s)))
+    return x_new, v_new, y[:d], y[d:]
+
+
+MATRIX = "np.eye(x.size) - dt * a_v - dt * dt * a_x"
+edit("12.5", "differentiates an explicit step", f"solve({MATRIX}, dv + dt * (a_x @ dx + a_s))",
+     "dv + dt * (a_x @ dx + a_v @ dv + a_s)")
+edit("12.5", "takes the derivatives at the old state", "derivatives(t + dt, x_new, v_new, p)",
+     "derivatives(t + dt, x, v, p)")
+edit("12.5", "takes the derivatives at the old time", "derivatives(t + dt,", "derivatives(t,")
+edit("12.5", "forgets that the new position depends on the new velocity", " - dt * dt * a_x", "")
+edit("12.5", "forgets the derivative with respect to v", " - dt * a_v", "")
+edit("12.5", "takes dt, not dt², with a_x", "dt * dt * a_x", "dt * a_x")
+edit("12.5", "adds dt² a_x", " - dt * dt * a_x", " + dt * dt * a_x")
+edit("12.5", "adds dt a_v", " - dt * a_v", " + dt * a_v")
+edit("12.5", "leaves out the inputs on which the law itself depends", " + a_s))", "))")
+edit("12.5", "leaves dx out of the right-hand side", "(a_x @ dx + a_s)", "a_s")
+edit("12.5", "transposes the matrix", f"solve({MATRIX},", f"solve(({MATRIX}).T,")
+edit("12.5", "multiplies by the matrix", f"solve({MATRIX}, dv + dt * (a_x @ dx + a_s))",
+     f"({MATRIX}) @ (dv + dt * (a_x @ dx + a_s))")
+edit("12.5", "moves dx with the old dv", "dx + dt * dv_new, dv_new", "dx + dt * dv, dv_new")
+edit("12.5", "forgets dv on the right-hand side", "dv + dt * (a_x", "dt * (a_x")
+edit("12.5", "counts a_v twice, on both sides", "(a_x @ dx + a_s)", "(a_x @ dx + a_v @ dv + a_s)")
+edit("12.5", "divides entry by entry", f"solve({MATRIX}, dv + dt * (a_x @ dx + a_s))",
+     f"(dv + dt * (a_x @ dx + a_s)) / np.diag({MATRIX})[:, None]")
+edit("12.5", "moves the state by an explicit step", "implicit_euler_step(acceleration, t, x, v, dt, p)",
+     "x + dt * v, v + dt * acceleration(t, x, v, p)")
+
+
+# 12.6 -----------------------------------------------------------------------------------------------------------
+@right("12.6", "one input after the other")
+def event_time_sensitivity(gap_x, gap_v, gap_s, v, a, dx, dv):
+    terms = np.append(gap_x * v, gap_v * a)
+    if abs(terms.sum()) <= 1e-12 * np.abs(terms).sum():
+        raise BadInput("rate of the event", terms.sum(), "it only grazes")
+    return np.array([-(gap_x @ dx[:, k] + gap_v @ dv[:, k] + gap_s[k]) / terms.sum() for k in range(gap_s.size)])
+
+
+edit("12.6", "returns the opposite sign: an event that comes later", "return -(gap_x", "return (gap_x")
+edit("12.6", "forgets that the event itself depends on the inputs", " + gap_s) / rate", ") / rate")
+edit("12.6", "forgets the velocity in the event", " + gap_v @ dv", "")
+edit("12.6", "forgets the position in the event", "gap_x @ dx + ", "")
+edit("12.6", "forgets the acceleration in the rate", "rate = gap_x @ v + gap_v @ a", "rate = gap_x @ v")
+edit("12.6", "forgets the velocity in the rate", "rate = gap_x @ v + gap_v @ a", "rate = gap_v @ a")
+edit("12.6", "multiplies by the rate", ") / rate", ") * rate")
+edit("12.6", "does not divide by the rate", ") / rate", ")")
+edit("12.6", "divides by the speed, not by the rate of the event", ") / rate", ") / np.sqrt(v @ v)")
+edit("12.6", "divides by the size of the rate", ") / rate", ") / np.abs(rate)")
+edit("12.6", "subtracts the explicit dependence", " + gap_s) / rate", " - gap_s) / rate")
+edit("12.6", "returns infinity where an event grazes",
+     'raise BadInput("rate of the event", rate, "an event that only grazes has no sensitivity: change the inputs")',
+     "return np.full(gap_s.size, np.inf)")
+edit("12.6", "returns zero where an event grazes",
+     'raise BadInput("rate of the event", rate, "an event that only grazes has no sensitivity: change the inputs")',
+     "return np.zeros(gap_s.size)")
+SIZES = "GRAZING * (np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))"
+edit("12.6", "refuses only a rate of exactly 0", f"np.abs(rate) <= {SIZES}", "rate == 0.0")
+edit("12.6", "compares the rate with a fixed number", f"np.abs(rate) <= {SIZES}", "np.abs(rate) <= 1e-12")
+edit("12.6", "refuses slow events, too", SIZES, f"1e10 * {SIZES}")
+edit("12.6", "compares the rate with its sign", "np.abs(rate) <=", "rate <=")
+edit("12.6", "refuses only a rate below the limit, not zero", f"np.abs(rate) <= {SIZES}", f"np.abs(rate) < {SIZES}")
+
+
+# 12.7 -----------------------------------------------------------------------------------------------------------
+@right("12.7", "one input after the other")
+def saltation(dtau, dx, dv, v, a, v_new, a_new, R_v, R_s):
+    dx, dv = dx.copy(), dv.copy()
+    for k, later in enumerate(dtau):
+        dx[:, k] += later * (v - v_new)
+        dv[:, k] = R_v @ (dv[:, k] + later * a) + R_s[:, k] - later * a_new
+    return dx, dv
+
+
+PLACE = "dx + np.outer(v - v_new, dtau)"
+edit("12.7", "leaves dx as it is before the impact", PLACE, "dx")
+edit("12.7", "forgets that the time of the impact moves", "at_impact = dv + np.outer(a, dtau)",
+     "dtau = 0.0 * dtau; at_impact = dv")
+edit("12.7", "applies the jump to dx, too", PLACE, "R_v @ dx")
+edit("12.7", "takes v⁺ − v⁻", "v - v_new", "v_new - v")
+edit("12.7", "takes the sum of both velocities", "v - v_new", "v + v_new")
+edit("12.7", "forgets the velocity behind the impact", "v - v_new", "v")
+edit("12.7", "forgets the velocity before the impact", "v - v_new", "-v_new")
+edit("12.7", "returns dx = 0, as if every ball began at the floor", PLACE, "0.0 * dx")
+edit("12.7", "returns dv = R_v dv, as if the time of the impact were fixed",
+     "R_v @ at_impact + R_s - np.outer(a_new, dtau)", "R_v @ dv")
+edit("12.7", "leaves out the inputs on which the jump itself depends", "at_impact + R_s", "at_impact")
+edit("12.7", "subtracts the dependence of the jump on the inputs", "at_impact + R_s", "at_impact - R_s")
+edit("12.7", "forgets the acceleration before the impact", "dv + np.outer(a, dtau)", "dv")
+edit("12.7", "forgets the acceleration behind the impact", " - np.outer(a_new, dtau)", "")
+edit("12.7", "takes the acceleration before the impact on both sides", "np.outer(a_new, dtau)", "np.outer(a, dtau)")
+edit("12.7", "takes the acceleration behind the impact on both sides", "np.outer(a, dtau)", "np.outer(a_new, dtau)")
+edit("12.7", "adds the acceleration behind the impact", " - np.outer(a_new, dtau)", " + np.outer(a_new, dtau)")
+edit("12.7", "does not apply the jump to the velocity at the impact", "R_v @ at_impact", "at_impact")
+edit("12.7", "applies the jump to dv only, not to the change at the impact", "R_v @ at_impact",
+     "R_v @ dv + np.outer(a, dtau)")
+edit("12.7", "transposes R_v", "R_v @ at_impact", "R_v.T @ at_impact")
+edit("12.7", "returns dv first", "return dx + np.outer(v - v_new, dtau), R_v @ at_impact + R_s - np.outer(a_new, dtau)",
+     "return R_v @ at_impact + R_s - np.outer(a_new, dtau), dx + np.outer(v - v_new, dtau)")
+edit("12.7", "exchanges rows and columns of the outer product", "np.outer(v - v_new, dtau)",
+     "np.resize(np.outer(dtau, v - v_new), dx.shape)")
+edit("12.7", "takes the state at the impact, not at a fixed time", PLACE, "dx + np.outer(v, dtau)")
+
+
+# 12.8 -----------------------------------------------------------------------------------------------------------
+@right("12.8", "written out along and across the normal")
+def bounce(v, a, dx, dv, n, e, gap_s, e_s):
+    v_n = v @ n
+    worked.event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)         # refuses what grazes
+    dtau = -(n @ dx + gap_s) / v_n
+    kick = (1.0 + e) * (n @ dv + a @ n * dtau) + v_n * e_s
+    return v - (1.0 + e) * v_n * n, dx + (1.0 + e) * v_n * np.outer(n, dtau), dv - np.outer(n, kick)
+
+
+edit("12.8", "forgets the part along the plane: R_v = −e 1", "np.eye(v.size) - (1.0 + e) * np.outer(n, n)",
+     "-e * np.eye(v.size)")
+edit("12.8", "takes e in place of 1 + e in R_v", "(1.0 + e) * np.outer(n, n)", "e * np.outer(n, n)")
+edit("12.8", "takes 1 − e in place of 1 + e in R_v", "(1.0 + e) * np.outer(n, n)", "(1.0 - e) * np.outer(n, n)")
+edit("12.8", "mirrors without restitution in R_v", "(1.0 + e) * np.outer(n, n)", "2.0 * np.outer(n, n)")
+edit("12.8", "forgets that e may be an input", "-(v @ n) * np.outer(n, e_s)", "0.0 * np.outer(n, e_s)")
+edit("12.8", "takes R_s with the wrong sign", "-(v @ n) * np.outer(n, e_s)", "(v @ n) * np.outer(n, e_s)")
+edit("12.8", "moves the whole velocity with e, not only its normal part", "-(v @ n) * np.outer(n, e_s)",
+     "-np.outer(v, e_s)")
+edit("12.8", "takes R_s with the velocity behind the impact", "-(v @ n)", "-(v_new @ n)")
+edit("12.8", "forgets that the plane may move with an input", "0.0 * n, gap_s, v, a", "0.0 * n, 0.0 * gap_s, v, a")
+edit("12.8", "takes the time of the event from the velocity behind it", "gap_s, v, a, dx, dv)",
+     "gap_s, v_new, a, dx, dv)")
+edit("12.8", "forgets that the time of the impact moves", "saltation(dtau,", "saltation(0.0 * dtau,")
+edit("12.8", "exchanges both velocities", "dx, dv, v, a, v_new, a, R_v", "dx, dv, v_new, a, v, a, R_v")
+edit("12.8", "forgets the acceleration behind the impact", "v_new, a, R_v, R_s)", "v_new, 0.0 * a, R_v, R_s)")
+edit("12.8", "reflects the acceleration, too", "v_new, a, R_v, R_s)", "v_new, R_v @ a, R_v, R_s)")
+edit("12.8", "returns the velocity before the impact", "return v_new, dx, dv", "return v, dx, dv")
+edit("12.8", "bounces without loss", "kinematic_response(v, n, e)", "kinematic_response(v, n, 1.0)")
+edit("12.8", "takes the normal for the event in the velocity, too", "(n, 0.0 * n, gap_s", "(n, n, gap_s")
+edit("12.8", "computes where a ball grazes",
+     "event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)", "-(n @ dx + gap_s) / (v @ n - 1e-300)")
+
+
+# 12.9 -----------------------------------------------------------------------------------------------------------
+@variants
+def orders(slope=np.dot, here=True, size=abs, ratio=lambda a, b: np.log(a / b), check=check_positive,
+           result=lambda ks: ks):
+    def remainder_orders(f, gradient, s, direction, steps, p):
+        rs = [size(f(s + h * direction, p) - f(s, p) * here - h * slope(gradient, direction)) for h in steps]
+        for r in rs:
+            check("remainder of a step", r)
+        return result(np.array([ratio(rs[i], rs[i + 1]) / ratio(steps[i], steps[i + 1]) for i in range(len(rs) - 1)]))
+    return remainder_orders
+
+
+right("12.9", "one order after the other")(orders())
+wrongs("12.9", orders, {
+    "leaves the gradient out, which gives the order 1": {"slope": lambda g, y: 0.0},
+    "takes the sum of the gradient, not its product with the direction": {"slope": lambda g, y: np.sum(g)},
+    "takes the length of the gradient": {"slope": lambda g, y: np.linalg.norm(g)},
+    "takes the derivative along a unit vector": {"slope": lambda g, y: g @ y / np.linalg.norm(y)},
+    "does not subtract f(s)": {"here": False},
+    "divides without logarithms": {"ratio": lambda a, b: a / b},
+    "takes the difference, not the ratio": {"ratio": lambda a, b: a - b},
+    "returns one number, the mean": {"result": np.mean},
+    "returns the last order only": {"result": lambda ks: ks[-1]},
+    "returns the orders with the opposite sign": {"result": lambda ks: -ks},
+    "returns whole numbers": {"result": np.round},
+    "accepts a remainder of 0": {"check": lambda *_: None},
+})
+edit("12.9", "takes a second difference", "f(s + h * direction, p) - f(s, p) - h * (gradient @ direction)",
+     "f(s + h * direction, p) - 2.0 * f(s, p) + f(s - h * direction, p)")
+edit("12.9", "adds the term of the gradient", " - h * (gradient", " + h * (gradient")
+edit("12.9", "forgets h at the gradient", "h * (gradient @ direction)", "(gradient @ direction)")
+edit("12.9", "goes along the gradient", "f(s + h * direction, p)", "f(s + h * gradient, p)")
+edit("12.9", "does not take the size of the remainder", "np.abs(", "(")
+edit("12.9", "divides the remainder by h", "remainder = np.abs(", "remainder = 1.0 / h * np.abs(")
+edit("12.9", "takes the logarithm of the step for every second one only", "(np.log(steps[1:]) - np.log(steps[:-1]))",
+     "np.log(2.0)")
+edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.log(steps[:-1]))", "np.log(steps[1:])")
+
+
+# 12.10 ----------------------------------------------------------------------------------------------------------
+@variants
+def aiming(step=np.linalg.solve, sign=-1.0, halves=True, smaller=lambda new, old: new < old, size=np.linalg.norm,
+           gives_up=True, check=worked.checked_search, first=True, enough=lambda miss, tolerance: miss <= tolerance,
+           before=False):
+    """Newton's method that throws again until a halved step is better."""
+    def aim(miss, s, tolerance, most, p):
+        s, tolerance, most = check(s, tolerance, most)
+        r, J = miss(s, p)
+        misses = [size(r)]
+        for _ in range(most):
+            if enough(misses[-1], tolerance) and not before:
+                break
+            change, s_old, J_old = step(J, r), s, J
+            for _ in range(41 if halves else 1):
+                s = s_old + sign * change
+                r, J = miss(s, p)
+                if not halves or smaller(size(r), misses[-1]):
+                    break
+                change = 0.5 * change
+            else:
+                raise Diverged("miss of the last throw", misses[-1], "begin elsewhere")
+            misses.append(size(r))
+            if enough(misses[-1], tolerance) and before:
+                break
+            J = J_old if J is None else J
+        if not misses[-1] <= tolerance and gives_up:
+            raise Diverged("miss of the last throw", misses[-1], "begin elsewhere")
+        return s, np.array(misses if first else misses[1:])
+    return aim
+
+
+right("12.10", "with a list of misses")(aiming())
+wrongs("12.10", aiming, {
+    "adds the step": {"sign": 1.0},
+    "never halves a step": {"halves": False},
+    "goes along −r, without the Jacobian": {"step": lambda J, r: r},
+    "goes along the transpose of the Jacobian": {"step": lambda J, r: J.T @ r},
+    "transposes the Jacobian": {"step": lambda J, r: np.linalg.solve(J.T, r)},
+    "multiplies by the Jacobian": {"step": lambda J, r: J @ r},
+    "divides by the diagonal of the Jacobian only": {"step": lambda J, r: r / np.diag(J)},
+    "takes half of Newton's step": {"step": lambda J, r: 0.5 * np.linalg.solve(J, r)},
+    "measures the miss by its largest entry": {"size": lambda r: np.max(np.abs(r))},
+    "measures the miss by its square": {"size": lambda r: r @ r},
+    "returns what it has when the iterations are used up": {"gives_up": False},
+    "omits the first miss": {"first": False},
+    "takes a step before it looks": {"before": True},
+    "halves the step where a throw misses by as much as before or more, but accepts NaN":
+        {"smaller": lambda new, old: not new >= old},
+    "checks nothing": {"check": lambda s, tolerance, most: (s, tolerance, max(most, 0))},
+    "stops within ten times the tolerance": {"enough": lambda miss, tolerance: miss <= 10.0 * tolerance},
+})
+edit("12.10", "keeps the Jacobian of the first throw", "step = solve(J, r)",
+     "step = solve(miss(s, p)[1] if i == 0 else first, r); first = miss(s, p)[1] if i == 0 else first")
+
+
+# 12.11 ----------------------------------------------------------------------------------------------------------
+@right("12.11", "by a logarithm of the growth and its square root")
+def predicted_horizon(rate, error, allowed):
+    growth = max(allowed / error, 1.0)
+    return np.log(growth + np.sqrt(growth - 1.0) * np.sqrt(growth + 1.0)) / rate
+
+
+edit("12.11", "lets the whole error grow as e^(rate t)", "np.arccosh(allowed / error)", "np.log(allowed / error)")
+edit("12.11", "takes half of the error, and forgets the part that decays", "np.arccosh(allowed / error)",
+     "np.log(2.0 * allowed / error)")
+edit("12.11", "takes the sinh, which is the growth of an error of the velocity", "np.arccosh(", "np.arcsinh(")
+edit("12.11", "takes the cosine of an oscillation", "np.arccosh(allowed / error)", "np.arccos(error / allowed)")
+edit("12.11", "multiplies by the rate", " / rate", " * rate")
+edit("12.11", "divides by the square root of the rate", " / rate", " / np.sqrt(rate)")
+edit("12.11", "forgets the rate", " / rate", "")
+edit("12.11", "lets the error grow in proportion to the time", "np.arccosh(allowed / error)", "(allowed / error)")
+edit("12.11", "exchanges both errors", "np.arccosh(allowed / error)", "-np.log(error / allowed)")
+edit("12.11", "takes the constant acceleration at the start", "np.arccosh(allowed / error)",
+     "np.sqrt(2.0 * (allowed / error - 1.0))")
+edit("12.11", "returns a negative time where the error is too large", "return 0.0",
+     "return np.log(allowed / error) / rate - 1e-9")
+edit("12.11", "returns infinity where the error is too large", "return 0.0", "return 1e300")
+
+
+# 12.12 ----------------------------------------------------------------------------------------------------------
+@right("12.12", "put together")
+def bounced_curve_is():
+    return chr(ord("A") + 1)
+
+
+edit("12.12", "takes all balls to begin at the floor, so that the floor forgets the height", '"B"', '"D"')
+edit("12.12", "forgets the restitution: a mirror image has the slope −1", '"B"', '"C"')
+edit("12.12", "forgets that a ball from higher comes later: what is higher stays higher", '"B"', '"A"')
