@@ -47,3 +47,6 @@ wrong_answer(answers.NEGATIVE_INDEX)
 wrong_answer(answers.ONE_REST)
 wrong_answer(answers.ONE_DAMPER)
 fault("randomised", "2.0 * u - 1.0", "u", "what is drawn is above its value only")
+fault("hand_force", "dt * (c + dt * k) / m", "dt * (0.99 * c + dt * k) / m", "the hand's own damper is 1 % too weak")
+fault("hand_force", "x - target + dt * v", "x - target + 0.5 * dt * v",
+      "the hand sees the place in the middle of the step")

@@ -7,7 +7,7 @@ import numpy as np
 from validate.subject import modules
 
 from . import started as scenes
-from .ordinary import ordinary_calls
+from .ordinary import ordinary_calls_of
 
 collisions, contact, friction, impulses, pbd = map(
     modules.bind, ("collisions", "contact", "friction", "impulses", "pbd"))
@@ -250,12 +250,17 @@ def given_calls():
     }
 
 
-@functools.cache
 def calls_of_all():
-    """{(lesson, function): (function, calls)} of every public function: recorded ones, and those written by hand."""
-    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls().items()}
-    for lesson, name, calls in ((lesson, name, calls) for written in (scenes.STARTED, given_calls())
-                                for lesson, functions in written.items() for name, calls in functions.items()):
-        function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
-        found[lesson, name] = function, [*recorded, *calls]
+    """{(lesson, function): (function, calls)} of every public function of all lessons."""
+    return {key: found for lesson in modules.lesson_names() for key, found in calls_of(lesson).items()}
+
+
+@functools.cache
+def calls_of(lesson):
+    """The same for the functions of a lesson: recorded calls, and those written by hand."""
+    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls_of(lesson).items()}
+    for written in (scenes.STARTED, given_calls()):
+        for name, calls in written.get(lesson, {}).items():
+            function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
+            found[lesson, name] = function, [*recorded, *calls]
     return found

@@ -95,6 +95,27 @@ def test_a_light_point_never_gets_faster_than_a_spring_of_that_length_allows_and
     assert (fastest(explicit) > 1e6) == (dt > 2.0 * m / (felt * 2.0 * rate))
 
 
+def pulled_by(folder, force):
+    """Where a node of the net is after a learner's hand has pulled it aside for two seconds (2,) [m]."""
+    text = (SOLUTIONS / "springs.py").read_text()
+    start = text.index("    ### BEGIN SOLUTION 2.14")
+    (folder / "integrators.py").write_text((SOLUTIONS / "integrators.py").read_text())
+    (folder / "springs.py").write_text(text[:start] + f"    {force}\n")
+    scene = net(folder)
+    k = int(np.flatnonzero(scene.free)[0])
+    scene.grab(k, (0.0, 0.0), scene.now().x[k] + (0.02, 0.01))
+    return ran(scene, round(2.0 / scene.tuning.dt)).now().x[k]
+
+
+def test_the_hand_of_a_net_is_the_learners_and_a_given_one_until_it_is_written(tmp_path):
+    calm = pulled_by(tmp_path, "return -(k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)")
+    assert np.allclose(pulled_by(tmp_path, "raise NotImplementedError('2.14')"), calm, rtol=0.0, atol=1e-9)
+    with np.errstate(all="ignore"), pytest.raises(ArithmeticError, match="not finite"):
+        pulled_by(tmp_path, "return -(k * (x - target) + c * v)")
+    with pytest.raises(TypeError, match="force of the hand"):
+        pulled_by(tmp_path, "return np.zeros(3)")
+
+
 def test_a_fixed_point_goes_to_the_pointer_no_faster_than_the_hand_may_and_stays():
     scene = rope()
     scene.grab(0, (0.0, 0.0), (1.0, 0.2))

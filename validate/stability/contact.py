@@ -747,7 +747,7 @@ def refusals(lesson, check):
                 "such calls end in a sentence that names the value.")
 
 
-@case("extremes-in-space", "Extremes in space", compiled=False)
+@case("extremes-in-space", "Extremes in space", compiled=False, in_quick=False)
 def extremes_in_space(lesson, check):
     """Check the same in space: deep overlaps, friction 0 and ∞ on a slope, a wedge, sizes of 1 : 100.
 

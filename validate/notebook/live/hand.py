@@ -56,16 +56,20 @@ def pulled(grip, dt, x, q, v, omega, inv_mass, inv_inertia):
     return v_new, omega_new, float(work)
 
 
-def pulled_point(target, dt, x, v, m, felt):
+def point_force(x, v, target, k, c, m, dt):
+    """Return F (2,) [N] of the hand on a point, by the way to the target and the velocity at the end of the step."""
+    _, v_new = np.linalg.solve(((1.0, -dt), (dt * k / m, 1.0 + dt * c / m)), (x - target, v))
+    F = m / dt * (v_new - v)
+    size, most = np.hypot(*F), STRONGEST * WEIGHT * m
+    return F * (most / size) if size > most else F
+
+
+def pulled_point(target, dt, x, v, m, felt, force=point_force):
     """Return (v, W) of a point of mass m after the hand alone has acted for dt; W [J] is its work, exactly.
 
-    felt is the mass of all that hangs on the point, so that the hand can lift it [kg].
+    felt is the mass of all that hangs on the point, so that the hand can lift it [kg].  The force may be the learner's.
     """
     rate = 2.0 * np.pi * HERTZ
-    k, c = felt * rate * rate, 2.0 * ZETA * felt * rate
-    F = -(k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)
-    size, most = np.hypot(*F), STRONGEST * WEIGHT * m
-    if size > most:
-        F = F * (most / size)
+    F = force(x, v, target, felt * rate * rate, 2.0 * ZETA * felt * rate, m, dt)
     v_new = v + dt / m * F
     return v_new, float(dt * 0.5 * F @ (v + v_new))

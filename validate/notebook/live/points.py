@@ -9,7 +9,7 @@ from solutions.checks import check_shape, finite_array, finite_number, positive_
 
 from ...subject.loading import part
 from .canvas import arm_drawn, network_drawn
-from .hand import pulled_point
+from .hand import point_force, pulled_point
 from .running import Running, Seen, check_found
 
 FASTEST = 4.0                # of a fixed point that the hand moves [m/s]
@@ -53,7 +53,10 @@ class Reach(NamedTuple):
 # ---------------------------------------------------------------------------------------------- networks
 
 class Network(Running):
-    """Points that the learner's springs or projections hold together.  The hand pulls a point, or moves a fixed one."""
+    """Points that the learner's springs or projections hold together.  The hand pulls a point, or moves a fixed one.
+
+    In a net of springs the hand is the learner's 2.14.
+    """
 
     def __init__(self, network, x, folder, method="", dt=1.0 / 120.0):
         self.lesson, usual = NETWORKS[type(network).__name__]
@@ -74,6 +77,18 @@ class Network(Running):
         step = part(module, self.method)
         law = module.spring_network_acceleration if self.lesson == "springs" else falling
         self.one_step = step if self.method in ALONE else partial(step, law)
+        self.hand = self.or_given(module.hand_force) if self.lesson == "springs" else point_force
+
+    def or_given(self, force):
+        """Return the learner's force of the hand; the given one stands in for it while it is not written."""
+        def of_the_hand(x, *settings):
+            try:
+                found = force(x, *settings)
+            except NotImplementedError:
+                return point_force(x, *settings)
+            check_found("the force of the hand: component", found, x, self.t)
+            return found
+        return of_the_hand
 
     def set(self, **changes):
         """Change the tuning; the points stay where they are."""
@@ -112,7 +127,8 @@ class Network(Running):
         if self.grip is not None:
             k, target = self.grip.body, np.array(self.grip.target)
             if self.free[k]:
-                v[k], work = pulled_point(target, self.tuning.dt, self.state.x[k], v[k], self.mass[k], self.mass.sum())
+                v[k], work = pulled_point(target, self.tuning.dt, self.state.x[k], v[k], self.mass[k], self.mass.sum(),
+                                          self.hand)
             else:
                 v[k] = (target - self.state.x[k]) / self.tuning.dt
                 v[k] *= min(1.0, FASTEST / max(np.hypot(*v[k]), 1e-9))
