@@ -967,7 +967,7 @@ def predicted_tunnelling(lesson, check):
     for _ in range(200):
         reach, move = rng.uniform(0.05, 0.2), rng.uniform(0.25, 2.0)
         w = rng.uniform(0.01, 0.09)
-        ends = phases * move                                  # in front of the middle, in the first step that ends past it
+        ends = phases * move                                  # of the last step in front of the middle
         caught = np.mean(ends < reach)
         worst = np.maximum(worst, abs(lesson.share_past(reach - 0.5 * w, w, move / 0.01, 0.01) - (1.0 - caught)))
     check.agree("The discrete test lets the predicted share past.", "share that gets past: largest error [-]", worst,

@@ -978,5 +978,5 @@ def stored_slip(lesson, check):
             v_new, omega_new = v + J / m, omega + np.cross(r, J) / inertia
             before, after = (0.5 * m * a @ a + 0.5 * inertia * b @ b for a, b in ((v, omega), (v_new, omega_new)))
             worst = np.maximum(worst, after / before - 1.0)
-    check.agree("Returned slip brings no energy.", "gain of energy over the energy: largest [-]", np.maximum(0.0, worst),
-                ROUND_OFF)
+    check.agree("Returned slip brings no energy.", "gain of energy over the energy: largest [-]",
+                np.maximum(0.0, worst), ROUND_OFF)

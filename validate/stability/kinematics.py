@@ -682,5 +682,5 @@ def distance_left(lesson, check):
         nearest = np.clip(away, inner, outer)
         worst = np.maximum(worst, abs(lesson.remaining_distance(lengths, target, rng.uniform(0.1, 3.0))
                                       - abs(away - nearest)))
-    check.agree("The damping leaves nothing of the way to the nearest place.", "distance left: largest error [m]", worst,
-                1e-12)
+    check.agree("The damping leaves nothing of the way to the nearest place.", "distance left: largest error [m]",
+                worst, 1e-12)
