@@ -121,10 +121,7 @@ def unpack(head, body, function=None, record=None):
         if kind == "a":
             return array(*content)
         if kind == "c":
-            real, imaginary = content
-            if not type(real) is type(imaginary) is float:
-                raise WireError("a complex number has a bad header")
-            return complex(real, imaginary)
+            return complex_of(*content)
         if kind == "f" and function and type(content) is str:
             return function(content)
         if kind == "r" and record:
@@ -141,6 +138,13 @@ def unpack(head, body, function=None, record=None):
         raise
     except Exception as e:  # ValueError, TypeError, RecursionError, MemoryError …
         raise WireError(f"malformed data ({type(e).__name__})") from None
+
+
+def complex_of(real, imaginary):
+    """Return the complex number of two floats.  Raises WireError for anything else."""
+    if not type(real) is type(imaginary) is float:
+        raise WireError("a complex number of other things than two floats")
+    return complex(real, imaginary)
 
 
 def arrays_in(value):
