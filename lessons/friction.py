@@ -19,11 +19,11 @@ from solutions.checks import check_friction
 
 __all__ = [
     "Block", "ParticleInBowl", "ParticleOnPlane", "advance_to_event", "breakaway_time", "cone_radius",
-    "contact_step", "driven_acceleration", "falling_acceleration", "friction_impulse",
+    "contact_step", "driven_acceleration", "dry_friction_is", "falling_acceleration", "friction_impulse",
     "friction_position_correction", "incline_acceleration", "kinetic_friction", "kinetic_friction_step",
-    "normal_force", "particle_bowl_gap", "particle_contact_impulse", "particle_plane_gap",
-    "position_friction_step", "pyramid_impulse", "sliding_step", "slip_direction", "static_friction",
-    "stopping_time", "tangential",
+    "my_friction", "normal_force", "particle_bowl_gap", "particle_contact_impulse", "particle_plane_gap",
+    "position_friction_step", "pyramid_impulse", "sliding_distance", "sliding_step", "slip_direction",
+    "static_friction", "stopping_time", "tangential",
 ]
 
 HALVINGS = 60                # of an interval of time: 2⁻⁶⁰ of a step is below the spacing of floats
@@ -327,3 +327,42 @@ def position_friction_step(acceleration, surface, t, x, v, dt, p):
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 3.16: position_friction_step")
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def sliding_distance(v, width, mu_near, mu_far, g):
+    """Return how far [m] a block slides on level ground, which begins with a strip of another material.
+
+    *Find* it before you run anything.  The block enters the strip with the speed v ≥ 0 [m/s].  The strip is `width` [m]
+    wide and has the kinetic friction mu_near > 0; the ground behind it has mu_far > 0.  Friction is all that takes
+    energy from the block.
+
+    The distance is counted from the edge at which the block enters.  A slow block stops on the strip.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 3.17: sliding_distance")
+
+
+def dry_friction_is():
+    """Return the letter of Coulomb's friction in the figure of the notebook: "A", "B", "C" or "D".
+
+    A block rests on a table.  A hand pulls it sideways with a force that grows slowly from zero.  The curves show four
+    ideas of the force of friction on the block, over the force of the hand.  The normal force is 10 N, the static
+    friction 0.6 and the kinetic friction 0.4.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 3.18: dry_friction_is")
+
+
+def my_friction(v_t, m, j_n, mu):
+    """Return the impulse (2,) [N s] of a floor of your own, on a block of mass m that slides with velocity v_t (2,).
+
+    *Make it*: j_n ≥ 0 is the normal impulse of this step, and μ the friction.  Many laws are right.  The judge demands:
+
+    - It never adds energy: the block is not faster after the impulse, whatever its velocity.
+    - A block that is thrown at 3 m/s in any direction over a floor with μ ≥ 0.3 is at rest after 4 s, and stays.
+    - It is neither friction_impulse nor pyramid_impulse along x and y.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 3.19: my_friction")

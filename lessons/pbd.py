@@ -27,11 +27,11 @@ from solutions.vectors import cross, distance_between, dot, move_apart
 
 __all__ = [
     "NEWTON_LIMIT", "REGULARISATION", "ConstraintNetwork", "Obstacle", "angular_acceleration",
-    "apply_positional_impulse", "ball_gap", "compliant_multiplier", "compliant_sweep", "composed_rope_step",
-    "constraint_correction", "constraint_projection_step", "constraints", "distance_constraint",
-    "distance_sweep", "effective_inverse_mass_at", "floor_gap", "fold_constraint", "keep_outside",
-    "newton_correction", "pbd_sag", "pbd_step", "predict", "rope_step", "shared_edges", "turning_rate",
-    "volume_gradient", "xpbd_step",
+    "apply_positional_impulse", "ball_gap", "circling_speed", "compliant_multiplier", "compliant_sweep",
+    "composed_rope_step", "constraint_correction", "constraint_projection_step", "constraints", "distance_constraint",
+    "distance_sweep", "effective_inverse_mass_at", "floor_gap", "fold_constraint", "keep_outside", "my_thing",
+    "newton_correction", "pbd_sag", "pbd_step", "predict", "rope_step", "shared_edges", "substeps_are",
+    "turning_rate", "volume_gradient", "xpbd_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]; Newton squares it, so only round-off remains
@@ -353,3 +353,45 @@ def volume_gradient(x, faces):
 
 
 # ---------------------------------------------------------------------------------------------- building
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def circling_speed(v, length, dt, t):
+    """Return the speed [m/s] that pbd_step leaves a weight that circles on a string, without gravity and friction.
+
+    It begins with v > 0 [m/s] on a string of this length [m], and t ≥ 0 [s] later its speed should be v.  *Find* what
+    is left, for steps dt > 0 [s] with v dt much shorter than the string.  Along which line does predict move the
+    weight, and to which place does the projection move it?
+
+    Any number of sweeps gives the same: for one string the first sweep is exact.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 8.19: circling_speed")
+
+
+def substeps_are():
+    """Return the letter of the substeps: "A", "B", "C" or "D".
+
+    The figure of the notebook shows how much too low the end of a chain hangs, against the number n of visits to each
+    link per frame.  One curve is for n substeps of one sweep each, and one for a single step with n sweeps.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 8.20: substeps_are")
+
+
+def my_thing():
+    """Return (x, network, frames) of a thing of points and links that holds together.
+
+    *Make it*: x (n, 2) or (n, 3) [m] are the points at the start, at rest, of a ConstraintNetwork for frames of 1/60 s.
+    Many things are right: a bridge, a net, a puppet.  The judge runs it by XPBD, four substeps per frame with
+    network.sweeps sweeps each, and demands:
+
+    - It has 6 to 60 points, of which three or more are free, and the links join all of them.  At least half of the
+      links are rigid (alpha = 0).  It runs for 60 to 300 frames, with at most 10 sweeps.
+    - Rigid links are always within 5 % of their rest length.
+    - Some point moves by a tenth of the size of the thing, or more.
+    - The energy never exceeds that at the start.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 8.21: my_thing")

@@ -378,3 +378,26 @@ def advance_rocking(step, t, x, v, dt, steps, block):
             raise Toppled(x[0])
     check_end(x, v, dt)
     return x, v
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def stopping_depth(speed, gap, margin, dt):
+    """Return the depth [m] below the floor at which the loop stops a body that comes straight at it; 0 on its surface.
+
+    The body has the speed > 0 [m/s], no gravity acts, and at the start it is at a gap > 0 [m] above a plane.  Each step
+    of dt > 0 [s] looks for contacts before it moves the body.  A contact is found where the gap is below the margin
+    ≥ 0 [m], and then the body may move to the surface, but no further.  The loop never pushes bodies out.
+    *Find* the depth before you run anything.  Which step finds the contact, and how much of the gap is left then?
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 10.17: stopping_depth")
+
+
+def may_be_extrapolated():
+    """Return the letter of the result that may be extrapolated by 2 t(dt/2) − t(dt): "A", "B", "C" or "D".
+
+    The figure of the notebook shows the time of an event as four loops compute it, against the step dt.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 10.18: may_be_extrapolated")

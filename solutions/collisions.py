@@ -23,12 +23,13 @@ from .support.trees import Tree, as_pairs, boxes_touch, check_boxes, half_perime
 from .vectors import cross, dot
 
 __all__ = [
-    "DEGENERATE_AREA", "EDGE_PREFERENCE", "MAX_GJK_STEPS", "NEVER", "Box", "Contact", "Plane", "Tree",
-    "all_pairs", "ball_box", "ball_contact", "box_corners", "box_separation", "boxes_touch", "candidate_axis",
+    "DEGENERATE_AREA", "EDGE_PREFERENCE", "MAX_GJK_STEPS", "NEVER", "Box", "Contact", "Plane", "Tree", "all_pairs",
+    "ball_box", "ball_contact", "barrier_is", "box_corners", "box_separation", "boxes_touch", "candidate_axis",
     "check_boxes", "check_hulls", "clip", "closest_on_segment", "closest_on_triangle", "cylinder_contact",
     "cylinder_impact_time", "edge_axis_distance", "far_enough", "find_intersections", "gjk", "half_perimeter",
-    "half_width", "nearer", "nearest_subsimplex", "outward", "plane_distance", "plane_impact_time", "repulsion",
-    "separating_edge", "steer", "support", "swept_box", "touching_items", "triangle_cylinder_gap",
+    "half_width", "my_rule", "nearer", "nearest_subsimplex", "outward", "plane_distance", "plane_impact_time",
+    "repulsion", "separating_edge", "share_past", "steer", "support", "swept_box", "touching_items",
+    "triangle_cylinder_gap",
 ]
 
 NEVER = np.inf               # time of an event that does not occur in this step [s]
@@ -472,4 +473,52 @@ def steer(x, v, centre, radius, ahead):
         return 0.0 * v
     aside = -y / offset if offset > 0.0 else np.array([-e[1], e[0]])
     return 2.0 * (radius - offset) / tau**2 * aside
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def share_past(r, w, v, dt):
+    """Return the share [-] of all balls that get past a wall although ball_box tests them after every step.
+
+    Balls of radius r [m] fly straight at a wall of thickness w [m] with the speed v > 0 [m/s], in steps of dt > 0 [s].
+    Every place of the first step near the wall is equally likely.  A ball that overlaps the wall leaves it through the
+    face that is nearest to its centre.
+    *Find* the share before you run anything: where must a step end for a ball to be sent back?
+    """
+    ### BEGIN SOLUTION 6.18
+    # A step must end within r + w/2 in front of the middle of the wall, and it ends somewhere in a stretch of v dt.
+    return np.maximum(0.0, 1.0 - (r + 0.5 * w) / (v * dt))
+    ### END SOLUTION
+
+
+def barrier_is():
+    """Return the letter of the force that stops a body of any speed: "A", "B", "C" or "D".
+
+    The figure of the notebook has four forces that push a body away from a wall, against the gap.  Time is continuous:
+    no step skips a force.
+    """
+    ### BEGIN SOLUTION 6.19
+    return "B"
+    ### END SOLUTION
+
+
+def my_rule(i, x, v, goals):
+    """Return the acceleration (2,) [m/s²] of person i of a crowd that crosses a circle of 4 m.
+
+    *Make it*: a rule by which twelve people, evenly spread over the circle and at rest, go to the opposite places.
+    x, v and goals (n, 2) are the places [m], velocities [m/s] and goals [m] of all.  Many rules are right.  The judge
+    walks the crowd for 20 s by symplectic Euler with steps of 0.1 s, and demands:
+
+    - Two people, of a radius of 0.25 m each, never touch.
+    - In the end each is within 0.3 m of the goal.
+    - No acceleration exceeds 5 m/s².
+    """
+    ### BEGIN SOLUTION 6.20
+    # A roundabout: all go round the middle to the same side, and leave it where the goal is near.
+    away, distance = goals[i] - x[i], np.sqrt(x[i] @ x[i])
+    size = np.sqrt(goals[i] @ goals[i])
+    around = np.array([-x[i, 1], x[i, 0]]) / distance + (size - distance) / size * x[i]
+    way = around if away @ away > 1.0 else away
+    return 2.0 * (1.2 * way - v[i])
     ### END SOLUTION

@@ -418,3 +418,126 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
         apply_impulse(v, omega, a, r_a, change, inv_mass, inv_inertia)
         apply_impulse(v, omega, b, r_b, scaled(-1.0, change), inv_mass, inv_inertia)
     return v, omega, J
+
+
+# ---------------------------------------------------------------------- other solvers for the same laws
+
+def proximal_sweep(A, b, J, mu, r):
+    """Return the impulses (2m,) after a sweep of the proximal map with the factors r (2m,) [kg]: J_n, then J_t.
+
+    Each impulse J_k has limits: 0 and ∞ for J_n, ∓μ J_n for J_t (0 where J_n = 0).  Its law is  u_k (J' − J_k) ≥ 0  for
+    every J' within the limits: u_k is 0 between them, at least 0 at the lower one, at most 0 at the upper one.
+    *Find* what a visit does to J_k: a map of J_k and u_k that leaves J_k alone exactly if this law holds, whatever
+    r_k > 0 is.  Far from all limits it changes J_k by −r_k u_k.
+
+    Each u comes from the newest J, and the limit from the new J_n.  Layout and μ are those of cone_residual.  With
+    r = 1/diagonal of A this is cone_sweep.  Returns a new array.
+    *Source:* Moreau 1965; Alart and Curnier 1991; Erleben 2017.
+    """
+    ### BEGIN SOLUTION 9.17
+    # The proximal map, here a projection: J ← the point within the limits that is nearest to J − r u.
+    J = float_copy(J)
+    for n in range(0, J.size, 2):
+        t = n + 1
+        J[n] = np.maximum(0.0, J[n] - r[n] * (A[n] @ J + b[n]))
+        limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0
+        J[t] = np.minimum(np.maximum(J[t] - r[t] * (A[t] @ J + b[t]), -limit), limit)
+    return J
+    ### END SOLUTION
+
+
+def fischer_burmeister(x, y):
+    """Return (φ, ∂φ/∂x, ∂φ/∂y) of Fischer's and Burmeister's function of two numbers, at (x, y).
+
+    φ is the sum of the legs x and y of a right triangle less its hypotenuse.  φ = 0 exactly if  0 ≤ x ⊥ y ≥ 0.
+    *Find* its derivatives, and a form of φ that loses no digits where x and y are above zero, however different they
+    are.  At (0, 0) there is no derivative; return 1 − 1/√2 for both, which is their value along x = y.
+    *Source:* Fischer 1992.
+    """
+    ### BEGIN SOLUTION 9.18
+    # φ = x + y − h.  With h² = x² + y² it is 2xy/(x + y + h), which subtracts nothing where x and y are above zero.
+    h = np.hypot(x, y)
+    if h == 0.0:
+        return 0.0, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5)
+    phi = 2.0 * x * (y / (x + y + h)) if x > 0.0 and y > 0.0 else x + y - h
+    return phi, 1.0 - x / h, 1.0 - y / h
+    ### END SOLUTION
+
+
+def minimum_map_step(A, b, lam):
+    """Return λ (m,) after one step of Newton's method for  min(A_kk λ_k, u_k) = 0  at all contacts, u = A λ + b.
+
+    *Find* it.  At each contact the smaller one of A_kk λ_k and u_k is a linear function of all impulses.  Newton's step
+    takes these functions, as they are at the given λ, and solves for the λ at which all of them are 0.  The result
+    may pull.  Where both are equal, take either one.  Use solve of lesson 1.
+
+    Once it is known which contacts push, one step gives the answer.  From elsewhere the steps may repeat for ever.
+    *Source:* Pang 1990; Hintermüller, Ito and Kunisch 2003.
+    """
+    ### BEGIN SOLUTION 9.19
+    # u_k = 0 at contacts with u_k < A_kk λ_k, and λ_k = 0 at all others.
+    u, matrix, right = A @ lam + b, np.eye(b.size), np.zeros(b.size)
+    for k in range(b.size):
+        if u[k] < A[k, k] * lam[k]:
+            matrix[k], right[k] = A[k], -b[k]
+    return solve(matrix, right)
+    ### END SOLUTION
+
+
+def relaxed_gap(mu, v, dt):
+    """Return the gap [m] above its support at which a block slides at the velocity v, where an engine relaxes friction.
+
+    Many programs (MuJoCo, Drake) take the impulses with the least  ½ J·A J + b·J  within the cones |J_t| ≤ μ J_n,
+    because this is a convex problem.  Its solution slides as Coulomb says, against the slip and with |J_t| = μ J_n,
+    but it obeys another law along the normal:
+        J_n (u_n + gap/dt) + J_t u_t = 0
+    *Find* the gap before you run anything.  The block slides steadily: J_n > 0, it neither rises nor sinks, and
+    u_t = v in every step, by a force that pulls it.  μ [-], v [m/s] of either sign, dt [s].
+    *Source:* Anitescu 2006; Todorov 2014; Castro, Permenter and Han 2022.
+    """
+    ### BEGIN SOLUTION 9.20
+    # J_t = −μ J_n sign(v) and u_n = 0:  J_n gap/dt = μ J_n |v|.
+    return mu * np.abs(v) * dt
+    ### END SOLUTION
+
+
+def relaxed_curve_is():
+    """Return the letter of the curve of the convex relaxation in the figure of exercise 9.21: "A", "B", "C" or "D".
+
+    The figure shows the residual against the number of iterations for four solvers of one problem with friction:
+    projected Gauss–Seidel; Newton's method; the convex relaxation of MuJoCo and Drake; all contacts at once, each with
+    more than the change that it needs.  Say which curve is the relaxation.
+    """
+    ### BEGIN SOLUTION 9.21
+    return "B"                                       # its answer is that of another law: a sliding contact opens
+    ### END SOLUTION
+
+
+def fewer_sweeps(sweep, J, calls):
+    """Return impulses that are closer to the answer than `calls` sweeps would be, from `calls` sweeps at most.
+
+    *Make it*: a method of your own.  sweep(J) returns the impulses after one sweep of some solver, such as projected
+    Gauss–Seidel, from J; you learn nothing else of the problem.  In a stack and under a heavy body, 100 calls must
+    leave at most a tenth of the residual that 100 sweeps leave.  With friction, for two boxes that are thrown, it must
+    be at most a thousandth of what it is without impulses.
+    Impulses that a sweep does not change are the answer; return them.  Nothing may pull: end with a sweep.
+    calls is at least 1; do not change J.
+    Ideas: extrapolate from the last sweeps (Aitken, Anderson); keep a momentum, and forget it where it leads astray
+    (Nesterov); nonsmooth nonlinear conjugate gradients, in which the change of a sweep takes the place of the gradient.
+    *Source:* Silcowitz, Niebe and Erleben 2010.
+    """
+    ### BEGIN SOLUTION 9.22
+    # Conjugate gradients after Fletcher and Reeves: p ← β p + change, β the ratio of its squared sizes.  Where a change
+    # is larger than the one before, the set of pushing contacts has changed: forget p.
+    J, p, before = float_copy(J), np.zeros(J.size), np.inf
+    for _ in range(calls - 1):
+        swept = sweep(J)
+        change = swept - J
+        size = change @ change
+        if 0.0 < size < before:
+            J, p = swept + size / before * p, size / before * p + change
+        else:
+            J, p = swept, np.zeros(J.size)
+        before = size
+    return sweep(J)
+    ### END SOLUTION

@@ -40,11 +40,10 @@ __all__ = [
     "CONVERGED", "MAX_IMPACTS", "MAX_SWEEPS", "BodyState2D", "BodyState3D", "BouncingBall", "angular_momenta",
     "apply_impulse", "apply_impulse_2d", "backtracking_step", "bouncing_time", "check_contact", "check_impacts",
     "check_inverse_mass", "cone_impulse", "contact_matrix", "effective_inverse_mass", "effective_inverse_mass_2d",
-    "energy_change", "falling_acceleration", "free_flight", "gap", "gap_multiplier", "impact_time",
-    "impulse_size", "kinematic_response", "largest_speed", "most_dissipative_impact", "penalty_force",
-    "position_projection_step", "relative_velocity", "relative_velocity_2d", "settle_impacts", "slide_on_plane",
-    "solve_impacts",
-    "symplectic_euler_step", "times",
+    "elastic_rest_time", "energy_change", "falling_acceleration", "free_flight", "gap", "gap_multiplier",
+    "impact_time", "impulse_size", "kinematic_response", "largest_speed", "most_dissipative_impact", "my_impulse",
+    "penalty_force", "position_projection_step", "relative_velocity", "relative_velocity_2d", "settle_impacts",
+    "slide_on_plane", "smooth_rod_is", "solve_impacts", "symplectic_euler_step", "times",
 ]
 
 MAX_IMPACTS = 10_000         # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
@@ -469,4 +468,49 @@ def solve_impacts(body, r, n, e, mu):
         if residual <= CONVERGED * speed:
             return after, residual
     return settle_impacts(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def elastic_rest_time(h, g, dt):
+    """Return the time [s] after which position_projection_step lets a perfectly elastic ball lie still.
+
+    The ball, e = 1, falls from rest at the height h > 0 [m] under g > 0 [m/s²].  Its energy should stay for ever.
+    *Find* the time before you run anything, for a step dt > 0 [s] that is short compared with the fall.  By how much
+    does the height of a flight fall from one impact to the next, on average over the phases of a step?  And how long
+    is a flight?
+    """
+    ### BEGIN SOLUTION 7.18
+    # Between impacts ½ v² + g x − ½ g dt v is constant.  An impact at the speed w makes v = w of −w, which takes g dt w
+    # away, and lifts the ball by w dt/2 on average.  So w²/2 falls by g dt w/2: w by g dt/2 per flight of 2 w/g.
+    return 4.0 * h / (g * dt)
+    ### END SOLUTION
+
+
+def smooth_rod_is():
+    """Return the letter of the impact without friction: "A", "B", "C" or "D".
+
+    The figure of the notebook has the energy that four impacts of a leaning rod leave, against the restitution e.  In
+    three of them the tip sticks, with different slips before the impact.
+    """
+    ### BEGIN SOLUTION 7.19
+    return "D"
+    ### END SOLUTION
+
+
+def my_impulse(u, n, K):
+    """Return the impulse J (3,) [N s] on a ball that stores its slip and returns it.
+
+    *Make it*.  u (3,) [m/s] is the velocity of the ball's contact point, with n · u < 0, n (3,) is the unit normal, and
+    K (3, 3) [1/kg] the response of the ball to an impulse at this point.  Many laws are right.  The judge demands:
+
+    - The point separates: n · u⁺ is at least a tenth of the speed of approach, where u⁺ = u + K J.
+    - The slip turns round: along its old direction it is then at most −3/10 of what it was.
+    - No impact gains energy.
+    - A ball that is thrown under a table comes back: after three impacts it moves against its first velocity.
+    """
+    ### BEGIN SOLUTION 7.20
+    # u⁺ = −u: the work J · (u + u⁺)/2 is zero.  K is symmetric, so its rows are its columns.
+    return solve3(K[0], K[1], K[2], -2.0 * u)
     ### END SOLUTION

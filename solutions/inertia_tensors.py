@@ -26,8 +26,8 @@ from .vectors import cross, dot, inverse
 __all__ = [
     "MOMENT_ROUND_OFF", "MassProperties", "angular_momentum", "box_inertia", "capsule_inertia",
     "centre_of_mass", "check_closed", "check_inertia", "combine", "cylinder_inertia",
-    "linear_momentum", "mesh_body", "mesh_integrals", "parallel_axes", "point_mass_inertia",
-    "principal_axes", "sphere_inertia", "world_inertia", "world_inverse_inertia",
+    "linear_momentum", "mesh_body", "mesh_integrals", "my_mesh", "parallel_axes", "point_mass_inertia",
+    "principal_axes", "rolling_time", "solid_cylinder_is", "sphere_inertia", "world_inertia", "world_inverse_inertia",
 ]
 
 MOMENT_ROUND_OFF = 1e-14     # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
@@ -374,4 +374,48 @@ def mesh_body(density, x, faces):
     covariance = second - volume * np.outer(centre, centre)
     tensor = density * (np.trace(covariance) * np.eye(3) - covariance)
     return MassProperties(density * volume, x[0] + centre, tensor)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def rolling_time(I, m, radius, way, slope, g):
+    """Return the time [s] in which a round body rolls down a slope from rest, without slipping.
+
+    *Find* it before you run anything.  The body has the mass m [kg], the radius [m] and the moment I [kg m²] about its
+    axis.  It rolls `way` [m] down a slope of the angle `slope` [rad].  What share of its energy goes into its rotation?
+    """
+    ### BEGIN SOLUTION 4.18
+    # ½ (m + I/R²) v² = m g s sin θ, so the acceleration is that of a block without friction over 1 + I/(m R²).
+    a = g * np.sin(slope) / (1.0 + I / (m * radius * radius))
+    return np.sqrt(2.0 * way / a)
+    ### END SOLUTION
+
+
+def solid_cylinder_is():
+    """Return the letter of the solid cylinder in the figure of the notebook: "A", "B", "C" or "D".
+
+    A solid ball, a hollow ball, a solid cylinder and a hoop roll down the same slope without slipping.  The curves are
+    their ways over time.
+    """
+    ### BEGIN SOLUTION 4.19
+    return "D"
+    ### END SOLUTION
+
+
+def my_mesh(volume):
+    """Return the corners x (n, 3) [m] and the faces (k, 3) of a body of your own, a closed mesh.
+
+    *Make it*: each face has the numbers of three corners, counter-clockwise as seen from outside.  Many bodies are
+    right.  The judge demands:
+
+    - The mesh is closed, and its volume is `volume` [m³] to 1 %.
+    - All three principal moments are equal to 1 %, as those of a ball and of a cube are.
+    - They are at least 1.3 times those of a ball of the same mass and volume; a cube has 1.08 times.
+    """
+    ### BEGIN SOLUTION 4.20
+    # a regular tetrahedron: four corners of a cube, of which it fills a third
+    a = (3.0 * volume) ** (1.0 / 3.0)
+    x = 0.5 * a * np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
+    return x, np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
     ### END SOLUTION

@@ -31,8 +31,8 @@ from .support.records import check_record
 __all__ = [
     "MOST_ADAPTED_STEPS", "NEWTON_LIMIT", "ROUND_OFF", "Oscillator", "advance", "advance_adaptive",
     "amplification_matrix", "average_velocity_step", "blanes_moan_step", "difference_step", "euler_step",
-    "implicit_euler_step",
-    "implicit_midpoint_step", "inner_product", "midpoint_step", "newton_matrix", "observed_order",
+    "explicit_euler_is", "growth_per_period", "implicit_euler_step",
+    "implicit_midpoint_step", "inner_product", "midpoint_step", "my_step", "newton_matrix", "observed_order",
     "oscillator_acceleration", "rk4_step", "solve", "spectral_radius", "symplectic_euler_step",
     "trajectory", "velocity_round_off", "verlet_step",
 ]
@@ -422,4 +422,49 @@ def observed_order(dts, errors):
     xi = np.log(dts) - np.mean(np.log(dts))
     eta = np.log(errors) - np.mean(np.log(errors))
     return np.sum(xi * eta) / np.sum(xi * xi)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def growth_per_period(steps):
+    """Return the factor [-] by which Euler's method enlarges the amplitude of an undamped oscillator in one period.
+
+    *Find* it before you run anything: a period 2π/ω is divided into `steps` equal steps.  The motion is a turn in the
+    plane of ω x and v.  Which right triangle does one step of Euler make there?
+
+    The amplitude is √(x² + (v/ω)²).  The factor does not depend on ω, nor on the start.
+    """
+    ### BEGIN SOLUTION 1.11
+    # One leg is the radius.  The other leg, ω dt times as long, is at right angles to it.
+    angle = 2.0 * np.pi / steps
+    return (1.0 + angle * angle) ** (0.5 * steps)
+    ### END SOLUTION
+
+
+def explicit_euler_is():
+    """Return the letter of explicit Euler's curve in the figure of the notebook: "A", "B", "C" or "D".
+
+    Each curve is the energy of the same undamped oscillator, by another method with the same step.  Read the growth
+    per step off the figure, and compare it with the growth that one step of Euler must have.
+    """
+    ### BEGIN SOLUTION 1.12
+    return "A"
+    ### END SOLUTION
+
+
+def my_step(acceleration, t, x, v, dt, p):
+    """Advance one step by a method of your own, of second order or more, that keeps the energy of an oscillator.
+
+    *Make it*, for accelerations a(t, x, v, p) that do not depend on v.  Many methods are right.  The judge demands:
+
+    - Where the step is halved, the error on driven pendula falls at least to a quarter.
+    - After 1,000 steps of ω dt = 0.2, the energy of an undamped oscillator is within 2 % of that at the start.
+    - It is none of the other methods of this lesson: its steps end elsewhere.
+    """
+    ### BEGIN SOLUTION 1.13
+    # Drift, kick, drift: of second order, symplectic like Verlet, and with a single call
+    x_mid = x + 0.5 * dt * v
+    v_new = v + dt * acceleration(t + 0.5 * dt, x_mid, v, p)
+    return x_mid + 0.5 * dt * v_new, v_new
     ### END SOLUTION

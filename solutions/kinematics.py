@@ -24,10 +24,10 @@ from .support.tuples import across, minus, plus, put, row, scaled
 __all__ = [
     "EDGE", "SINGULAR", "Arm2D", "Arm3D", "advance_reach", "angles_of", "ccd_step", "contraction_factors",
     "damped_step", "end_pose", "fabrik_step", "fabrik_sweep", "jacobian_2d", "jacobian_3d", "joint_frames",
-    "joint_positions", "limited_step", "make_arm_2d", "make_arm_3d", "null_space_step", "point_at", "pose_2d",
-    "pose_3d", "pseudo_inverse", "pseudo_inverse_step", "reach_2d", "reach_3d", "reach_trajectory", "rotation_error",
-    "row_products", "solve_2r", "solve_3r", "solve_reach", "solve_symmetric", "solve_targets", "sum_of_rows",
-    "transpose_step", "velocity_ellipse", "wrapped",
+    "joint_positions", "limited_step", "make_arm_2d", "make_arm_3d", "my_writing", "newton_is", "null_space_step",
+    "point_at", "pose_2d", "pose_3d", "pseudo_inverse", "pseudo_inverse_step", "reach_2d", "reach_3d",
+    "reach_trajectory", "remaining_distance", "rotation_error", "row_products", "solve_2r", "solve_3r", "solve_reach",
+    "solve_symmetric", "solve_targets", "sum_of_rows", "transpose_step", "velocity_ellipse", "wrapped",
 ]
 
 SINGULAR = 1e-10             # singular values below this part of the largest count as zero [-]: far above round-off
@@ -474,3 +474,55 @@ def solve_targets(step, task, theta, targets, tolerance, most, arm):
     for i in range(m):
         thetas[i], errors[i], counts[i] = solve_reach(step, task, theta, targets[i], tolerance, most, arm)
     return thetas, errors, counts
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def remaining_distance(lengths, target, damping):
+    """Return the distance [m] from the end of a planar arm to a target (2,), after many damped steps from a bent start.
+
+    lengths (n,) are the links [m], the base is at (0, 0), and the damping λ [m] is large enough for the steps to come
+    to rest.  *Find* what is left before you run anything.  Where does a step end that does not move the arm?  Which
+    places can the end of the arm not reach?  0 for a target within reach.
+    """
+    ### BEGIN SOLUTION 11.17
+    # At rest Jᵀ e = 0, whatever λ is: the end is at the nearest place of its reach, from what the longest link leaves
+    # over to the sum of all links.
+    reach, away = np.sum(lengths), np.sqrt(target @ target)
+    hole = 2.0 * np.max(lengths) - reach
+    return np.maximum(0.0, np.maximum(away - reach, hole - away))
+    ### END SOLUTION
+
+
+def newton_is():
+    """Return the letter of the step with the pseudo-inverse: "A", "B", "C" or "D".
+
+    The figure of the notebook has the error of four ways to a target within reach, far from where the arm is straight,
+    after each iteration: the pseudo-inverse, the transpose with two gains, and a damped step.
+    """
+    ### BEGIN SOLUTION 11.18
+    return "A"
+    ### END SOLUTION
+
+
+def my_writing():
+    """Return (lengths (n,) [m], points (m, 2) [m], seconds): an arm, and what it writes.
+
+    *Make it*: the hand passes the points at equal times, and the base is at (0, 0).  Many drawings are right.  The
+    judge lets the arm follow by four damped steps per picture, with 25 pictures per second and λ a tenth of the reach
+    Σ lengths, and demands:
+
+    - It has two to six links.  It takes 2 s to 20 s.  The path is at least as long as the reach, and is no line: across
+      its main direction it is at least a twentieth of the reach wide.
+    - The hand is always within a hundredth of the reach of where it should be.
+    - No joint turns faster than 2 rad/s, and σ₂ of the Jacobian never falls below a twentieth of the reach.
+    """
+    ### BEGIN SOLUTION 11.19
+    # A flower of five petals
+    t = np.linspace(0.0, 2.0 * np.pi, 101)
+    r = 0.35 + 0.12 * np.cos(5.0 * t)
+    points = np.zeros((t.size, 2))
+    points[:, 0] = 1.1 + r * np.cos(t)
+    points[:, 1] = 0.5 + r * np.sin(t)
+    return np.array([1.0, 0.8, 0.5]), points, 10.0
+    ### END SOLUTION

@@ -28,9 +28,9 @@ from .vectors import distance_between, move_apart, product_between
 
 __all__ = [
     "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "SpringNetwork", "StepMatrix",
-    "air_force", "angular_spring_forces", "apply_step_matrix", "conjugate_gradients", "grid_pairs",
-    "implicit_spring_network_step", "inverse_masses", "make_spring_network",
-    "mass_spring_damper_step", "measured_links", "randomised", "soft_constraint_force",
+    "air_force", "angular_spring_forces", "apply_step_matrix", "chain_sag", "conjugate_gradients", "grid_pairs",
+    "implicit_spring_network_step", "inverse_masses", "longest_step_is", "make_spring_network",
+    "mass_spring_damper_step", "measured_links", "my_body", "randomised", "soft_constraint_force",
     "soft_contact_force", "spring_forces", "spring_network_acceleration", "spring_stiffness",
     "spring_tension", "universal_gravity",
 ]
@@ -415,4 +415,50 @@ def hand_force(x, v, target, k, c, m, dt):
     ### BEGIN SOLUTION 2.14
     # x⁺ − target = x − target + dt v⁺ and v⁺ = v + dt F/m: F stands on both sides, and (1 + dt (c + dt k)/m) F is known
     return -(k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def chain_sag(n, m, k, g):
+    """Return how far [m] the lowest point of a hanging chain lies below its place without gravity.
+
+    *Find* it before you run anything.  n equal points of mass m [kg] hang below each other from a nail: a spring of
+    stiffness k [N/m] above each of them, and none below the last one.  What does each spring carry?
+    """
+    ### BEGIN SOLUTION 2.15
+    # The spring above point i, counted from below, carries i points: Σ i m g/k from 1 to n.
+    return 0.5 * n * (n + 1.0) * m * g / k
+    ### END SOLUTION
+
+
+def longest_step_is():
+    """Return the letter of the right curve in the figure of the notebook: "A", "B", "C" or "D".
+
+    The curves are four ideas of the longest stable step of symplectic Euler, over the stiffness k of a spring network
+    without dampers.  All of them agree at the softest springs.
+    """
+    ### BEGIN SOLUTION 2.16
+    return "D"
+    ### END SOLUTION
+
+
+def my_body(size):
+    """Return (x (n, 2) [m], pairs (s, 2), stiffness k [N/m]) of a soft body of your own; each point has 20 g.
+
+    *Make it*: place some points, and join them by springs.  Many bodies are right.  The judge demands:
+
+    - At least five points, all with heights x[:, 1] above 0.  The larger of width and height is `size` [m] to 10 %.
+    - The springs hold the shape: every motion but that of a rigid body stretches or compresses some spring.
+    - It carries its own weight: its slowest vibration has an angular frequency above √(2 g/size).
+    - Symplectic Euler can run it: its fastest vibration is stable at dt = 1/1000 s.
+    """
+    ### BEGIN SOLUTION 2.17
+    # a bridge: a ladder of two rows of four points, with both diagonals in each field
+    spacing = size / 3.0
+    x = np.zeros((8, 2))
+    for k in range(8):
+        x[k, 0] = spacing * (k % 4)
+        x[k, 1] = spacing * (1.0 + k // 4)
+    return x, grid_pairs(2, 4, STRUCTURAL + SHEAR), 300.0
     ### END SOLUTION

@@ -36,7 +36,7 @@ from ..support.model import (
 )
 from ..support.scenes import PileState
 from ..support.shapes import Ball, Box, HalfSpace, Polyhedron
-from .dividing import advance_parts, divided_step, whole_step
+from .dividing import advance_parts, divided_step, first_touch, whole_step
 from .parts import (
     accelerate,
     accelerate_half,
@@ -87,6 +87,7 @@ class Loop(NamedTuple):
     """A loop for one model."""
     parts: tuple             # of Part, in their order
     step: Part               # how they make a step: whole_step or divided_step
+    touch: object            # (bounds, narrow, before, after, dt, p) → share of a step at which fast bodies touch
     load: object             # (t, x, q, v, omega, p) → (F, tau)
     bounds: object           # (x, q, half) → (low, high, turn)
     narrow: object           # (x, turn, half, planes, pairs, reach) → ContactSet
@@ -149,7 +150,8 @@ def compose(model, settings=SETTINGS):
     bounds, narrow = shapes_of_loop(model)
     joint_of = tuple(k for k, joint in enumerate(model.joints) for _ in points_of(model, joint))
     joint_of += tuple(rods_in(model))
-    return Loop(parts_of(model, kit_of(model)), step_of(model), load_of(model), bounds, narrow, state, p, row, joint_of)
+    return Loop(parts_of(model, kit_of(model)), step_of(model), first_touch, load_of(model), bounds, narrow, state, p,
+                row, joint_of)
 
 
 def parts_of(model, kit):
@@ -258,5 +260,5 @@ def padded(loop):
 def run_parts(loop, t, state, dt, steps):
     """Return the PileState after so many steps of a Loop."""
     steps = whole_number("number of steps", steps, 0)
-    functions = loop.step.step, *padded(loop), loop.load, loop.bounds, loop.narrow
+    functions = loop.step.step, *padded(loop), loop.touch, loop.load, loop.bounds, loop.narrow
     return advance_parts(*functions, t, state, dt, steps, loop.p)

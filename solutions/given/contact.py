@@ -1,10 +1,19 @@
-"""Given with lesson 9.  Piles over many steps."""
+"""Given with lesson 9.  Piles over many steps, and other solvers for the same laws."""
 
 import numpy as np
 
 from ..checks import check_end, float_copy
 from ..contact import *  # noqa: F403    one import has a lesson and its given functions
-from ..contact import has_left_margin, kept_impulses, soft_contact, velocity_sweep, velocity_sweep_2d
+from ..contact import (
+    fischer_burmeister,
+    gauss_seidel_sweep,
+    has_left_margin,
+    kept_impulses,
+    soft_contact,
+    velocity_sweep,
+    velocity_sweep_2d,
+)
+from ..integrators import solve
 from ..support.arms import (
     apply_impulses,
     apply_impulses_2d,
@@ -164,3 +173,87 @@ def pile_trajectory(advance, bounds, find_contacts, state, dt, steps, pile):
     for _ in range(steps):
         states.append(advance(bounds, find_contacts, states[-1], dt, 1, pile))
     return states
+
+
+# ---------------------------------------------------------------------- other solvers, for impulses J (2m,)
+
+def jacobi_step(A, b, J, mu, r):
+    """Given.  Return J after all contacts apply the proximal map at once, with the factors r (2m,) [kg].
+
+    All u come from the given J, and the limits from the new J_n.  It converges for small r only.
+    """
+    free, new = J - r * (A @ J + b), np.empty(J.size)
+    for n in range(0, J.size, 2):
+        new[n] = np.maximum(0.0, free[n])
+        limit = mu[n // 2] * new[n] if new[n] > 0.0 else 0.0
+        new[n + 1] = np.minimum(np.maximum(free[n + 1], -limit), limit)
+    return new
+
+
+def normals_first_sweep(A, b, J, mu):
+    """Given.  Return J after projected Gauss–Seidel over all normals, then over all tangents, as Bullet visits them."""
+    J = float_copy(J)
+    A_n, b_n = np.ascontiguousarray(A[::2, ::2]), b[::2] + np.ascontiguousarray(A[::2, 1::2]) @ J[1::2].copy()
+    J[::2] = gauss_seidel_sweep(A_n, b_n, J[::2].copy(), 1.0)
+    for t in range(1, J.size, 2):
+        limit = mu[t // 2] * J[t - 1] if J[t - 1] > 0.0 else 0.0
+        J[t] = np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)
+    return J
+
+
+def minimum_map_step_with_friction(A, b, J, mu):
+    """Given.  Return J after one step of Newton's method for the residual of cone_residual: minimum_map_step, and J_t.
+
+    Friction that would leave its limit ±μ J_n is set to it, with the J_n of the same step.
+    """
+    u, matrix, right = A @ J + b, np.eye(b.size), np.zeros(b.size)
+    for n in range(0, b.size, 2):
+        t = n + 1
+        if u[n] >= A[n, n] * J[n]:                                       # it opens, and then nothing rubs
+            continue
+        matrix[n], right[n] = A[n], -b[n]
+        free, limit = J[t] - u[t] / A[t, t], mu[n // 2] * J[n] if J[n] > 0.0 else 0.0
+        if np.abs(free) <= limit:
+            matrix[t], right[t] = A[t], -b[t]
+        else:
+            matrix[t, n] = -mu[n // 2] if free > 0.0 else mu[n // 2]
+    return solve(matrix, right)
+
+
+def fischer_burmeister_step(A, b, J, mu):
+    """Given.  Return J after one step of Newton's method for φ = 0 at all contacts, φ from fischer_burmeister; μ < ∞.
+
+    Normal:  φ(k_n J_n, u_n).  Friction, which has two limits:  φ(k_t (J_t + μ J_n), −φ(k_t (μ J_n − J_t), −u_t)).
+    *Source:* Billups 1995 for two limits.
+    """
+    u, matrix, phi = A @ J + b, np.empty(A.shape), np.empty(b.size)
+    for n in range(0, b.size, 2):
+        t, limit, k_t = n + 1, mu[n // 2] * J[n], A[n + 1, n + 1]
+        phi[n], by_J, by_u = fischer_burmeister(A[n, n] * J[n], u[n])
+        matrix[n] = by_u * A[n]
+        matrix[n, n] += by_J * A[n, n]
+        upper, by_room, by_slip = fischer_burmeister(k_t * (limit - J[t]), -u[t])
+        phi[t], by_lower, by_upper = fischer_burmeister(k_t * (limit + J[t]), -upper)
+        matrix[t] = by_upper * by_slip * A[t]
+        matrix[t, n] += (by_lower - by_upper * by_room) * k_t * mu[n // 2]
+        matrix[t, t] += (by_lower + by_upper * by_room) * k_t
+    return J - solve(matrix, phi)
+
+
+def relaxed_sweep(A, b, J, mu):
+    """Given.  Return J after a sweep for the convex relaxation: the least  ½ J·A J + b·J  with all J in their cones.
+
+    Each contact moves by −u/k, with k its larger diagonal entry plus the coupling, and then to the nearest point of the
+    cone |J_t| ≤ μ J_n; μ < ∞.  The order is that of cone_sweep.
+    *Source:* Anitescu and Tasora 2010.
+    """
+    J = float_copy(J)
+    for n in range(0, J.size, 2):
+        t, m = n + 1, mu[n // 2]
+        k = np.maximum(A[n, n], A[t, t]) + np.abs(A[n, t])
+        J_n, J_t = J[n] - (A[n] @ J + b[n]) / k, J[t] - (A[t] @ J + b[t]) / k
+        if J_n < 0.0 or np.abs(J_t) > m * J_n:                           # outside: to the edge, or to its tip
+            along = np.maximum(0.0, J_n + m * np.abs(J_t)) / (1.0 + m * m)
+            J_n, J_t = along, m * along * np.sign(J_t)
+        J[n], J[t] = J_n, J_t
+    return J

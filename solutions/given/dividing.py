@@ -57,8 +57,6 @@ def first_touch(bounds, narrow, before, after, dt, p):
     Too deep is more than half of the smallest half size beyond the overlap at the beginning.
     """
     shapes = p.half
-    if not may_pass(before, after, dt, shapes.half):
-        return 1.0
     boxes, boxes_new = bounds(before.x, before.q, shapes), bounds(after.x, after.q, shapes)
     suspects = find_suspects(before, after, boxes, boxes_new, dt, Rough(shapes.half, p.inv_mass, p.planes, p.joints))
     if suspects.way.size == 0:
@@ -91,7 +89,7 @@ def touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s
 
 # ---------------------------------------------------------------------------------------------- steps
 
-def whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, p):
+def whole_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t, state, dt, p):
     """Return the PileState after the six parts of a step; `leave` stands where there is none."""
     state = first(load, bounds, narrow, t, state, dt, p)
     state = second(load, bounds, narrow, t, state, dt, p)
@@ -101,29 +99,36 @@ def whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow,
     return sixth(load, bounds, narrow, t, state, dt, p)
 
 
-def divided_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, p):
-    """Return the same, but divided where bodies touch that would go too deep into each other or pass each other."""
-    left, after = dt, state
-    for number in range(MOST_PARTS):
-        now = t + dt - left
-        after = whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, now, state, left, p)
-        share = first_touch(bounds, narrow, state, after, left, p)
-        if share == 1.0 or share * left < SHORTEST * dt or number == MOST_PARTS - 1:
-            break
-        part = share * left
-        after = whole_step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, now, state, part, p)
-        state, left = after, left - part
-        if left < SHORTEST * dt:
-            break
-    return after
+def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t, state, dt, p):
+    """Return the same, but divided where bodies touch that would go too deep into each other or pass each other.
+
+    touch: first_touch, of which only fast bodies have need
+    """
+    left, part, divisions = dt, dt, 0
+    while True:
+        after = whole_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + dt - left,
+                           state, part, p)
+        if part < left:                                                  # it ends where they touch
+            state, left, divisions = after, left - part, divisions + 1
+            if left < SHORTEST * dt:
+                return state
+            part = left
+        elif divisions < MOST_PARTS - 1 and may_pass(state, after, left, p.half.half):
+            share = touch(bounds, narrow, state, after, left, p)
+            if share == 1.0 or share * left < SHORTEST * dt:
+                return after
+            part = share * left
+        else:
+            return after
 
 
-def advance_parts(step, first, second, third, fourth, fifth, sixth, load, bounds, narrow, t, state, dt, steps, p):
+def advance_parts(step, first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t, state, dt, steps,
+                  p):
     """Return the PileState after so many steps of a loop with six parts; step: whole_step or divided_step.
 
     All are arguments of their own, so that compiled code is kept on disk for each set of parts.
     """
     check_record(p, state)
     for n in range(steps):
-        state = step(first, second, third, fourth, fifth, sixth, load, bounds, narrow, t + n * dt, state, dt, p)
+        state = step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + n * dt, state, dt, p)
     return state

@@ -116,7 +116,10 @@ def parting_aims(u_n, contacts, dt, p):
     TRUE_IMPACT steps; a slower one rests.  A fast contact with e > 0 that is still open is not stopped in this step,
     because it has to close before it bounces.
     """
-    aim, rests = np.empty(contacts.a.size), TRUE_IMPACT * dt * np.sqrt(np.sum(p.gravity * p.gravity))
+    aim, squared = np.empty(contacts.a.size), 0.0
+    for c in range(p.gravity.size):
+        squared += p.gravity[c] * p.gravity[c]
+    rests = TRUE_IMPACT * dt * np.sqrt(squared)
     for k in range(aim.size):
         e, gap = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k]
         bounces = e > 0.0 and u_n[k] < -rests
@@ -141,6 +144,14 @@ def pushing_aims(contacts, dt, p):
         deep = -contacts.gap[k] - p.slop
         aim[k] = PUSH_OUT * deep / dt if deep > 0.0 else -max(contacts.gap[k], 0.0) / dt
     return aim
+
+
+def all_shallow(contacts, p):
+    """Return whether no overlap is deeper than p.slop.  This runs in each step and makes no array."""
+    for k in range(contacts.gap.size):
+        if not contacts.gap[k] >= -p.slop:                               # a NaN is not shallow
+            return False
+    return True
 
 
 def sweep_alike_2d(v, omega, J, aim, contacts, arms, inv_inertia, p):
@@ -198,13 +209,17 @@ def begun(state, dt, p):
 def is_settled(J, before, p):
     """Return whether a sweep has changed no impulse by more than p.settled times the largest one.
 
-    This runs after each sweep and makes no array.
+    This runs after each sweep, makes no array, and ends at the first change that is too large.
     """
-    change, largest = 0.0, 0.0
+    largest = 0.0
+    for k in range(J.shape[0] if p.settled > 0.0 else 0):
+        for c in range(J.shape[1]):
+            largest = max(largest, abs(J[k, c]))
     for k in range(J.shape[0]):
         for c in range(J.shape[1]):
-            change, largest = max(change, abs(J[k, c] - before[k, c])), max(largest, abs(J[k, c]))
-    return change <= p.settled * largest
+            if abs(J[k, c] - before[k, c]) > p.settled * largest:
+                return False
+    return True
 
 
 def swept(begin, sweep, state, dt, p):
@@ -274,14 +289,14 @@ def separate(load, bounds, narrow, t, state, dt, p):
     *Source:* split impulses, as in Bullet.
     """
     x, q, v, omega, contacts, J = state
-    if contacts.a.size == 0 or np.min(contacts.gap) >= -p.slop:
+    if all_shallow(contacts, p):
         return state
     aim, arms = pushing_aims(contacts, dt, p), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
-    push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
+    push, spin, J_push, give = np.zeros(v.shape), np.zeros(omega.shape), np.zeros(J.shape), np.zeros(aim.size)
     smooth = Smooth(p.inv_mass, p.inv_inertia, 0.0)
     for _ in range(p.sweeps):
         before = J_push
-        push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, np.zeros(aim.size), contacts, arms, smooth)
+        push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)
         if is_settled(J_push, before, p):
             break
     gap = contacts.gap + dt * normal_velocities_2d(push, spin, contacts, arms)

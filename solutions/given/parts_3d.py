@@ -28,7 +28,7 @@ from .joints import (
     spatial_inertia,
     turn_on,
 )
-from .parts import forget_bounces, is_settled, parting_aims, pushing_aims, swept, swept_and_closed
+from .parts import all_shallow, forget_bounces, is_settled, parting_aims, pushing_aims, swept, swept_and_closed
 from .rods import close_links
 
 # ---------------------------------------------------------------------------------------------- forces
@@ -144,7 +144,7 @@ def separate_in_space(load, bounds, narrow, t, state, dt, p):
     A body that is turned for it takes its angular velocity along, so that its kinetic energy stays.
     """
     x, q, v, omega, contacts, J = state
-    if contacts.a.size == 0 or np.min(contacts.gap) >= -p.slop:
+    if all_shallow(contacts, p):
         return state
     inv_inertia = spatial_inertia(q, p.inv_inertia)
     aim, arms, give = pushing_aims(contacts, dt, p), arms_3d(x, p.inv_mass, inv_inertia, contacts), 0.0 * contacts.gap

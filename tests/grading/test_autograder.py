@@ -227,6 +227,7 @@ def test_the_reporter_gets_the_result_of_every_step(manifest):
     assert reporter["env"] == {f"{name.upper()}_RESULTS": f"${{{{ steps.{name}.outputs.result }}}}" for name in ids}
 
 
+@pytest.mark.long
 def test_a_step_passes_a_right_answer_and_fails_an_empty_one(manifest, tmp_path, monkeypatch):
     command = next(step["with"]["command"] for step in job_of(manifest)["steps"] if step.get("id") == "exercise-1-2")
     worked = (ROOT / "solutions" / "integrators.py").read_text()

@@ -15,16 +15,18 @@ from validate.subject.modules import ROOT
 from ..mutants.traces import mutants_of, traces_of
 
 LESSONS = sorted({needs.table()[number]["lesson"] for number in cases.pictures()})
+EACH = 4                     # the default run draws one of so many pictured exercises of a lesson; --long all [-]
 
 
-@pytest.mark.parametrize("name", LESSONS)
-def test_a_wrong_answer_is_drawn_and_a_right_one_is_not(name, monkeypatch):
+@pytest.mark.parametrize(("name", "each"), [
+    *((name, EACH) for name in LESSONS), *(pytest.param(name, 1, marks=pytest.mark.long) for name in LESSONS)])
+def test_a_wrong_answer_is_drawn_and_a_right_one_is_not(name, each, monkeypatch):
     monkeypatch.setattr(cases, "DOTS_PER_INCH", 20)                  # nobody looks at them
     module, functions = modules.bind(name), {n: one["function"] for n, one in needs.table().items()}
-    numbers = [n for n in cases.pictures() if needs.table()[n]["lesson"] == name]
+    numbers = [n for n in cases.pictures() if needs.table()[n]["lesson"] == name][::each]
     first = {m.exercise: m for m in reversed(mutants_of(name)) if not m.right}
     answers = {("wrong", n): (n, first[n].function) for n in numbers}
-    answers |= {("right", n): (n, getattr(module, functions[n])) for n in numbers[:3]}
+    answers |= {("right", n): (n, getattr(module, functions[n])) for n in numbers[:3 if each == 1 else 1]}
     kept = points.FailingCases()
     traces_of(name, answers, cases=kept)
     assert {subject for subject, _ in kept.found} == {str(("wrong", n)) for n in numbers}

@@ -138,6 +138,15 @@ def test_where_known_mistakes_are_decided_by_round_off_an_unknown_one_has_no_nam
     assert mistakes.matching("kinematics", "11.10", traces["larger"]) == []
 
 
+def test_a_wrong_letter_of_a_choice_is_named_and_no_letter_stands_in_a_table():
+    letters = {letter: ("1.12", lambda letter=letter: letter) for letter in "ABCDE"}
+    traces = traces_of("integrators", letters)
+    found = {letter: mistakes.matching("integrators", "1.12", traces[letter]) for letter in letters}
+    assert sorted(map(len, found.values())) == [0, 0, 1, 1, 1] and not found["E"]
+    kept = [one["tests"] for one in mistakes.table("integrators")["1.12"]["wrong"]]
+    assert all(len(results[0]) == mistakes.DIGITS for tests in kept for results in tests.values())
+
+
 def test_with_secret_inputs_no_mistake_is_named(tmp_path):
     other = "w = v + acceleration(t, x, v, p) * dt\n    return w * dt + x, w"
     outcomes, said = run_of(tmp_path, "integrators", ["1.1"], {EULER: other}, "--seed=a secret")
@@ -162,7 +171,9 @@ def test_a_failure_below_is_named(tmp_path):
     assert not any(o.below for o in outcomes if o.exercise == "8.3")
 
 
-@pytest.mark.parametrize(("returned", "kind"), [("None", "None"), ("dt", "a number"), ("(x, v, t)", "3 values")])
+@pytest.mark.parametrize(("returned", "kind"), [
+    ("None", "None"), *(pytest.param(*one, marks=pytest.mark.long) for one in (("dt", "a number"),
+                                                                              ("(x, v, t)", "3 values")))])
 def test_a_result_of_another_kind_is_named(tmp_path, returned, kind):
     outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: f"return {returned}"})
     failed = [o for o in outcomes if o.status == "not yet"]
@@ -171,6 +182,7 @@ def test_a_result_of_another_kind_is_named(tmp_path, returned, kind):
     assert {o.expected.partition(" (")[0] for o in failed} == {"2 values"}
 
 
+@pytest.mark.long
 def test_an_error_where_none_was_expected_is_said(tmp_path):
     outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: "raise ValueError('too fast')"})
     failed = [o for o in outcomes if o.status == "not yet"]
@@ -178,6 +190,9 @@ def test_an_error_where_none_was_expected_is_said(tmp_path):
 
 
 # ---------------------------------------------------------------------------------------------- the tables
+
+LARGE = {"contact", "simulator"}         # lessons whose tables take seconds to search
+
 
 def test_exercises_call_those_that_their_answers_use():
     table = needs.table()
@@ -201,9 +216,9 @@ def test_the_next_exercise_is_the_first_whose_calls_pass():
     assert needs.next_of("pbd", {**states, "8.16": "not yet"}) == "8.16"
 
 
-@pytest.mark.parametrize("name", LESSONS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LARGE)) for name in LESSONS])
 def test_no_answer_can_be_read_from_a_table(name):
-    """Nothing of an answer's text is in it, and no code."""
+    """Nothing of an answer's text is in it, and no code.  `release` searches all tables of a zip in the same way."""
     path = mistakes.FOLDER / f"{name}.json"
     text = path.read_text(encoding="utf-8")
     hidden = list(release.answers_of(name))

@@ -43,6 +43,7 @@ def test_the_summary_counts_those_of_pytest_xdist_once():
     assert run.returncode == 0 and len(LEFT_OUT.findall(run.stdout)) == 1, run.stdout + run.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("options", [["--long"], ["--exercise=1.2"]], ids=" ".join)
 def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
     assert not LEFT_OUT.search(collected(*options))
@@ -98,6 +99,7 @@ def test_after_a_loop_without_end_a_test_that_ends_passes(short):
     assert limits_of(["1.1"], euler_step=first_call_never_ends) == {"1.1": ["1 s", "passed"]}
 
 
+@pytest.mark.long
 def test_what_calls_a_loop_without_end_has_less_time_from_its_first_test_on(short):
     found = limits_of(["1.7", "1.8"], implicit_euler_step=endless, implicit_midpoint_step=endless)
     assert sorted(found["1.7"]) == ["0.25 s"] * 4 + ["1 s"]

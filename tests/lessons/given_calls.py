@@ -7,7 +7,7 @@ import numpy as np
 from validate.subject import modules
 
 from . import started as scenes
-from .ordinary import ordinary_calls
+from .ordinary import ordinary_calls_of
 
 collisions, contact, friction, impulses, pbd = map(
     modules.bind, ("collisions", "contact", "friction", "impulses", "pbd"))
@@ -191,7 +191,12 @@ def of_contact():
     pile = contact.make_pile_2d(*scenes.boxes)
     _, *begin, _, p_boxes = scenes.STARTED["simulator"]["advance_contact"][0]
     touching = simulator.contact_step_2d(*begin, p_boxes).contacts
+    A, b, mu = np.diag(rng.uniform(1.0, 2.0, 4)) + 0.1, rng.uniform(-1.0, 0.5, 4), np.array([0.3, 0.6])
+    problem = (A, b, rng.uniform(0.2, 1.0, 4), mu)
     return {
+        **{name: [problem] for name in ("normals_first_sweep", "minimum_map_step_with_friction",
+                                        "fischer_burmeister_step", "relaxed_sweep")},
+        "jacobi_step": [(*problem, rng.uniform(0.1, 0.3, 4))],
         "contact_targets": [(0.1 * around(6), *rng.uniform(0.0, 1.0, (2, 6)), 0.004, pile[1])],
         "separation_speeds": [(touching, pile[1])],
         "pile_trajectory": [(contact.advance_pile_2d, *scenes.STARTED["contact"]["advance_pile_2d"][0])]}
@@ -256,12 +261,17 @@ def given_calls():
     }
 
 
-@functools.cache
 def calls_of_all():
-    """{(lesson, function): (function, calls)} of every public function: recorded ones, and those written by hand."""
-    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls().items()}
-    for lesson, name, calls in ((lesson, name, calls) for written in (scenes.STARTED, given_calls())
-                                for lesson, functions in written.items() for name, calls in functions.items()):
-        function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
-        found[lesson, name] = function, [*recorded, *calls]
+    """{(lesson, function): (function, calls)} of every public function of all lessons."""
+    return {key: found for lesson in modules.lesson_names() for key, found in calls_of(lesson).items()}
+
+
+@functools.cache
+def calls_of(lesson):
+    """The same for the functions of a lesson: recorded calls, and those written by hand."""
+    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls_of(lesson).items()}
+    for written in (scenes.STARTED, given_calls()):
+        for name, calls in written.get(lesson, {}).items():
+            function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
+            found[lesson, name] = function, [*recorded, *calls]
     return found

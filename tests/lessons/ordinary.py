@@ -12,23 +12,24 @@ from validate.subject import modules
 MOST = 8                     # calls of a function that are kept [-]
 
 
-@functools.cache
 def ordinary_calls():
-    """{(lesson, function): (function, its first calls)} for every public function of a lesson and its companion."""
-    found = {}
+    """{(lesson, function): (function, its first calls)} for every public function of all lessons."""
+    return {key: found for lesson in modules.lesson_names() for key, found in ordinary_calls_of(lesson).items()}
+
+
+@functools.cache
+def ordinary_calls_of(lesson):
+    """The same for the public functions of a lesson and its companion."""
     with tempfile.TemporaryDirectory() as room:
         folder = Path(room) / "answers"
         shutil.copytree(modules.SOLUTIONS, folder)
-        for lesson in modules.lesson_names():
-            module, plain = modules.bind(lesson, folder), modules.bind(lesson)
-            public = public_functions(lesson, module)
-            calls = {name: [] for name in public}
-            for name, function in public.items():
-                function.__globals__[name] = vars(module)[name] = recorded(function, calls[name])
-            points.grade(lesson, module)
-            for name, some in calls.items():
-                found[lesson, name] = getattr(plain, name), some
-    return found
+        module, plain = modules.bind(lesson, folder), modules.bind(lesson)
+        public = public_functions(lesson, module)
+        calls = {name: [] for name in public}
+        for name, function in public.items():
+            function.__globals__[name] = vars(module)[name] = recorded(function, calls[name])
+        points.grade(lesson, module)
+        return {(lesson, name): (getattr(plain, name), some) for name, some in calls.items()}
 
 
 def public_functions(lesson, module):

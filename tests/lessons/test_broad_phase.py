@@ -33,8 +33,9 @@ def swarms(rng):
         yield f"points so far out that their sizes round to 0 in {d}D", np.full((3, d), 1e20), np.full((3, d), 1e20)
 
 
-def test_the_grid_finds_the_pairs_of_brute_force_in_few_cells():
-    for seed in range(20):
+@pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 20), marks=pytest.mark.long)])
+def test_the_grid_finds_the_pairs_of_brute_force_in_few_cells(seeds):
+    for seed in seeds:
         for name, low, high in swarms(np.random.default_rng(seed)):
             n, d = low.shape
             planes = np.append(np.eye(d)[-1], -float(np.median(low[:, -1])))[None]

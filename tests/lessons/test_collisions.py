@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate.grading.expect import NotYet, between, close, numbers, raises
+from validate.grading.expect import NotYet, between, choice, close, numbers, raises
+from validate.reference import choices
 
 from .brute import area, differences, distance, facets, outline
 
@@ -517,7 +518,7 @@ def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson,
                 is_nearest("nearest point of the triangle", q, p, corners, size, f"p = {p}, corners {corners.tolist()}")
 
 
-@exercise("6.8", points=0.25,
+@exercise("6.8", points=0.125,
           hint="rotate the centre into the box's axes with Rᵀ, clamp it there, and rotate the point back with R")
 def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
     r = draw(0.1, 0.5)
@@ -531,7 +532,7 @@ def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
                      np.linalg.norm(away) - r, 1e-11, f"x = {x}, r = {r}, {box}")
 
 
-@exercise("6.8", points=0.25,
+@exercise("6.8", points=0.125,
           hint="inside, the least half_i − |y_i| determines the face; n points out of it, and p_b lies on it")
 def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
     for axis in range(3):
@@ -573,7 +574,7 @@ def corners_of(box):
     return box.x + signs * box.half @ box.R.T
 
 
-@exercise("6.8", points=0.5,
+@exercise("6.8", points=0.25,
           hint="outside: the nearest point of the box; inside: the nearest of the six faces, the least half_i − |y_i|")
 def test_a_ball_touches_a_cube_a_plank_or_a_rod_at_its_nearest_point_or_face(lesson, draw):
     """Brute force: the hull of the corners and its facets."""
@@ -656,7 +657,7 @@ def same_pairs(quantity, got, expected, given=""):
     close(quantity, got[np.lexsort(got.T[::-1])], expected, 0.0, given)
 
 
-@exercise("6.10", points=0.5, hint="every i and every j > i; a common face, edge or corner counts as touching")
+@exercise("6.10", points=0.25, hint="every i and every j > i; a common face, edge or corner counts as touching")
 def test_brute_force_finds_every_pair_once(lesson, draw):
     for d, wide in ((2, 12.0), (3, 6.0)):
         low, high = boxes(draw, 30, d, wide)
@@ -695,7 +696,7 @@ def crowds(draw, d):
             ("boxes with negative coordinates", low - 20.0, high - 20.0)]
 
 
-@exercise("6.10", points=0.5,
+@exercise("6.10", points=0.25,
           hint="loop from the first to the last box, also for one or two; a box inside another touches it")
 def test_pairs_of_crowds_of_any_kind_are_those_of_the_definition(lesson, draw):
     for d in (2, 3):
@@ -705,7 +706,7 @@ def test_pairs_of_crowds_of_any_kind_are_those_of_the_definition(lesson, draw):
                        f"low {low.tolist()}, high {high.tolist()}")
 
 
-@exercise("6.11", points=0.75,
+@exercise("6.11", points=0.25,
           hint="pair both children with the other node; for two leaves: touching_items(a, i, b, j, found)")
 def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     for d, n, m, wide in ((2, 60, 25, 20.0), (3, 40, 90, 9.0), (3, 3, 70, 5.0)):
@@ -723,7 +724,7 @@ def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
 
 
-@exercise("6.11", points=0.75, hint="descend only where the boxes of the two nodes touch: that saves the work")
+@exercise("6.11", points=0.25, hint="descend only where the boxes of the two nodes touch: that saves the work")
 def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
     """In a false tree, the box of one child of the root is far away. No item of that half may be found."""
     a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
@@ -1142,7 +1143,7 @@ def spiral(count):
     return np.stack((np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z), axis=1)
 
 
-@exercise("6.15", points=0.75,
+@exercise("6.15", points=0.25,
           hint="v = weights @ (p − q); support of a along −v, of b along v; stop, "
                "or add the new pair and keep the pairs that matter")
 def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, draw):
@@ -1173,7 +1174,7 @@ def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, 
               (a @ c.n).min() - (b @ c.n).max(), c.gap, KNOWN, given="two ellipsoids with axes of 1 m, 1 m and 1 mm")
 
 
-@exercise("6.15", points=0.75,
+@exercise("6.15", points=0.25,
           hint="far_enough also detects overlap: v is then 0, and the search ends")
 def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesson, draw):
     for d in (2, 3):
@@ -1336,3 +1337,51 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
             close("acceleration when heading for the centre, or slightly beside it, times τ² over the size [-]",
                   np.asarray(lesson.steer(x, v, centre, size, 4.0)) / size * tau**2, expected, 1e-12,
                   f"x = {x}, v = {v}, radius {size}, passes {offset * size} to the right of the centre after {tau} s")
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("6.18", points=1,
+          hint="a ball is sent back only if a step ends inside the wall's reach, in front of its middle")
+def test_the_predicted_share_gets_past_when_balls_are_thrown_at_every_phase(lesson, draw):
+    phases = (np.arange(4000) + 0.5) / 4000
+    for share in (draw(0.3, 0.7), draw(1.1, 1.5), draw(2.0, 4.0), draw(6.0, 12.0)):
+        r, w, dt = draw(0.02, 0.2), draw(0.01, 0.1), draw(0.002, 0.02)
+        v = share * (r + 0.5 * w) / dt
+        z = r + 0.5 * w + phases * v * dt                    # before the first step that may touch
+        ahead = z - v * dt
+        back = (ahead > 0.0) & (ahead < r + 0.5 * w)         # found in front of the middle at once, or a step later
+        later = ahead - v * dt
+        back |= (ahead >= r + 0.5 * w) & (later > 0.0)
+        given = f"r = {r}, w = {w}, v = {v}, dt = {dt}"
+        if share < 1.0:
+            close("share that gets past if a step is shorter than r + w/2", lesson.share_past(r, w, v, dt), 0.0, 0.0,
+                  given)
+        else:                                                # 4000 phases count a share to half a phase at either end
+            close("share that gets past", lesson.share_past(r, w, v, dt), 1.0 - np.mean(back), 1.0 / 4000, given)
+
+
+@exercise("6.19", points=1, hint="a force stops a body if its work up to the wall exceeds the kinetic energy")
+def test_the_work_of_the_chosen_force_grows_without_bound(lesson):
+    def unbounded(gap, force):
+        """Towards the wall the work per octave of the gap, about force · gap, grows."""
+        return bool(np.all(np.diff(force * gap)[:20] < 0.0))
+    choice("the letter of the force that stops every body", lesson.barrier_is(),
+           choices.where("collisions", "forces_against_a_wall", unbounded))
+
+
+@exercise("6.20", points=1, hint="let all turn to the same side, or look ahead for who comes near and when")
+def test_twelve_people_cross_a_circle_without_touching_and_arrive(lesson, draw):
+    around = draw(0.0, 1.0) + 2.0 * np.pi * np.arange(12) / 12
+    x, nearest, largest = 4.0 * np.stack((np.cos(around), np.sin(around)), axis=1), np.inf, 0.0
+    goals, v = -x, np.zeros((12, 2))
+    for _ in range(200):
+        a = np.array([lesson.my_rule(i, x, v, goals) for i in range(12)])
+        numbers("accelerations of all [m/s²]", a, (12, 2))
+        largest = max(largest, np.linalg.norm(a, axis=1).max())
+        v = v + 0.1 * a
+        x = x + 0.1 * v
+        nearest = min(nearest, (np.linalg.norm(x[:, None] - x, axis=2) + 9.0 * np.eye(12)).min())
+    between("least distance of two people [m]", nearest, 0.5, np.inf)
+    between("largest distance from a goal after 20 s [m]", np.linalg.norm(x - goals, axis=1).max(), 0.0, 0.3)
+    between("largest acceleration [m/s²]", largest, 0.0, 5.0)

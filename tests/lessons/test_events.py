@@ -13,7 +13,11 @@ integrators, simulator = bind("integrators"), bind("simulator")
 
 G = 9.81
 NEAR = np.concatenate(([0.0], 10.0 ** np.arange(-15.0, -1.0)))       # distances from a sample [steps]
+DRAWN, DEFAULT = 300, 60     # polynomials; those of the default run, because a test costs more than its polynomial
 PHASES = np.unique(np.concatenate((NEAR, 1.0 - NEAR[1:], np.linspace(0.0, 1.0, 21)[:-1])))
+
+long = pytest.mark.long
+seeds = pytest.mark.parametrize("seed", [pytest.param(k, marks=[long] * (k >= DEFAULT)) for k in range(DRAWN)])
 
 
 # ---------------------------------------------------------------------------------------------- each event, once
@@ -58,7 +62,7 @@ def product(roots, bends, t):
     return values
 
 
-@pytest.mark.parametrize("seed", range(300))
+@seeds
 def test_every_root_of_a_polynomial_is_found_once_with_its_direction(seed):
     """Degree 5 at most, so nothing is interpolated.  The roots are 0.3 steps apart at least: several lie in a step."""
     rng = np.random.default_rng(seed)
@@ -73,7 +77,7 @@ def test_every_root_of_a_polynomial_is_found_once_with_its_direction(seed):
         assert root in events.zeros(ts, values)                              # exactly, as its sample is
 
 
-@pytest.mark.parametrize("seed", range(300))
+@seeds
 def test_every_extremum_of_a_polynomial_is_found_once_with_its_value(seed):
     """Roots of the slope, at samples too; the polynomial is the integral of their product."""
     rng = np.random.default_rng(seed)
@@ -92,7 +96,7 @@ def test_every_extremum_of_a_polynomial_is_found_once_with_its_value(seed):
         assert abs(value - np.polyval(c, time - middle)) <= 100.0 * round_off
 
 
-@pytest.mark.parametrize("per_period", [4, 4.5, 5, 6, 8, 10, 16, 32, 50])
+@pytest.mark.parametrize("per_period", [4, 8, 50, *(pytest.param(n, marks=long) for n in (4.5, 5, 6, 10, 16, 32))])
 def test_every_zero_and_extremum_of_a_sine_is_found_once(per_period):
     """A zero or an extremum lies at every phase of the sample number 10, and exactly there.
 
@@ -309,8 +313,8 @@ def release_errors(held, step, ahead, steps):
 
 
 @pytest.mark.parametrize("held", supports(), ids=lambda held: held.what)
-@pytest.mark.parametrize(("step", "ahead", "order"), [("contact_step_2d", 0.5, 2), ("contact_step_2d", 0.0, 1),
-                                                      ("mean_contact_step_2d", 0.0, 1)])
+@pytest.mark.parametrize(("step", "ahead", "order"), [
+    ("contact_step_2d", 0.5, 2), pytest.param("contact_step_2d", 0.0, 1, marks=long), ("mean_contact_step_2d", 0.0, 1)])
 def test_the_release_from_the_impulses_of_a_loop_has_the_order_of_the_run(held, step, ahead, order):
     coarse, fine = (release_errors(held, getattr(simulator, step), ahead, steps) for steps in (40, 80))
     assert abs(np.log2(coarse / fine) - order) < 0.35, (coarse, fine)

@@ -5,7 +5,9 @@ import pytest
 from scipy.optimize import brentq
 
 from solutions.checks import BadInput
-from validate.grading.expect import between, close, raises
+from validate.grading.expect import NotYet, between, choice, close, raises
+from validate.reference import choices
+from validate.reference.choices.friction import LOAD, MU_K, MU_S
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
@@ -46,7 +48,7 @@ def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(le
                   given=f"lift {load} N, n = {n}")
 
 
-@exercise("3.2", points=0.5,
+@exercise("3.2", points=0.25,
           hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no tangential part")
 def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
     for d in (2, 3):
@@ -59,7 +61,7 @@ def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
 
 
-@exercise("3.2", points=0.5,
+@exercise("3.2", points=0.25,
           hint="beyond the cone its magnitude is μ_s F_N, where F_N is the normal force of F; it points against F_t")
 def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
     for d in (2, 3):
@@ -72,7 +74,7 @@ def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
 
 
-@exercise("3.2", points=0.5,
+@exercise("3.2", points=0.25,
           hint="without a load there is no friction: cone_radius(mu_s, normal_force(F, n)) is then 0, even for μ_s = ∞")
 def test_a_lifted_body_feels_no_friction(lesson, draw):
     axes = frame(draw, 3)
@@ -85,7 +87,7 @@ def test_a_lifted_body_feels_no_friction(lesson, draw):
               given=f"F = {lifting} N, μ = {mu}")
 
 
-@exercise("3.2", points=0.5, hint="let cone_radius compute μ_s F_N: it refuses a negative μ")
+@exercise("3.2", points=0.25, hint="let cone_radius compute μ_s F_N: it refuses a negative μ")
 def test_negative_friction_is_refused(lesson, draw):
     pull, n = draw(0.5, 1.5), np.array([0.0, 1.0])
     F = np.array([pull, -5.0])
@@ -253,7 +255,7 @@ def run(lesson, step, p, x, v, dt, steps, t=0.0):
     return x, v
 
 
-@exercise("3.7", points=0.5,
+@exercise("3.7", points=0.25,
           hint="move the position with the new velocity; when the block stops, v + friction_impulse(…) is exactly zero")
 def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
     """Σ dt v is at most ½ v₀ dt below the true distance.
@@ -275,7 +277,7 @@ def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
         close("position three steps later [m]", again[0], x, 0.0, given=given)
 
 
-@exercise("3.7", points=0.5, hint="use μ_s at rest and μ_k in motion, both with the normal force of this slope")
+@exercise("3.7", points=0.25, hint="use μ_s at rest and μ_k in motion, both with the normal force of this slope")
 def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
     dt, steps = draw(0.01, 0.05), 20
     held, down_held, _, _ = slope(draw, lesson, 1.001, draw(0.1, 0.5))
@@ -293,7 +295,7 @@ def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
         close("velocity of a block that slides down [m/s]", v, (v0 + a * t) * down, 1e-10, given=f"{p}, v = {v0} m/s")
 
 
-@exercise("3.7", points=0.5,
+@exercise("3.7", points=0.25,
           hint="first the pull: v* = v + dt a_t; friction then acts against v*, at most μ_k a_n dt, with a at time t")
 def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, draw):
     axes = frame(draw, 3)
@@ -315,7 +317,7 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     close("input x and v after the call: return new arrays", np.array((x, v)), np.array(before), 0.0)
 
 
-@exercise("3.7", points=0.5,
+@exercise("3.7", points=0.25,
           hint="a block is at rest if every component of v is zero; at |a_t| = μ_s a_n it stays at rest; "
                "a lifted block, a_n = 0, feels no friction")
 def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(lesson, draw):
@@ -390,7 +392,7 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
 
 
-@exercise("3.9", points=0.5,
+@exercise("3.9", points=0.25,
           hint="the speed along d becomes zero once: keep the half of the interval that contains this time, HALVINGS "
                "times")
 def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
@@ -404,7 +406,8 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
               dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
 
 
-@exercise("3.9", points=1, hint="pass t and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
+@exercise("3.9", points=0.25,
+          hint="pass t and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
 def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, draw):
     """Brent's method finds the root of v(τ) = v + τ (drive cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
     omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
@@ -717,3 +720,60 @@ def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
     close("position of a particle inside that moves along the surface [m]: no tangential correction", x, 0.1 * v,
           ROUND_OFF, given=given)
     close("velocity of a particle inside that moves along the surface [m/s]", v_new, v, 0.0, given=given)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("3.17", points=1,
+          hint="½mv² is used up by μ m g times the way: first by that on the strip, the rest behind it")
+def test_a_block_slides_as_far_as_the_times_on_both_materials_allow(lesson, draw):
+    for share in (*draw.within(), *draw.beyond(3.0)):                    # of the speed that just crosses the strip
+        width, near, far = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6)
+        v = share * np.sqrt(2.0 * near * G * width)
+        if share <= 1.0:
+            expected = v * (v / (near * G)) - 0.5 * near * G * (v / (near * G)) ** 2
+        else:
+            # v t − ½ μ g t² = width at the first root; then half the speed that is left, for the time to rest
+            crossing = (v - np.sqrt(v * v - 2.0 * near * G * width)) / (near * G)
+            slower = v - near * G * crossing
+            expected = width + 0.5 * slower * slower / (far * G)
+        close("way of a block over two materials [m]", lesson.sliding_distance(v, width, near, far, G), expected,
+              ROUND_OFF, given=f"v = {v:.4g} m/s, width = {width:.4g} m, μ = {near:.4g} and {far:.4g}")
+
+
+@exercise("3.18", points=1, hint="what holds a block that nothing pulls? And what is the force on it when it slides?")
+def test_the_chosen_friction_balances_the_pull_up_to_its_limit_and_is_kinetic_beyond(lesson):
+    def coulomb(pull, friction):
+        holds = pull <= MU_S * LOAD
+        return np.allclose(friction[holds], pull[holds]) and np.allclose(friction[~holds], MU_K * LOAD)
+    right = choices.where("friction", "frictions_of_a_pulled_block", coulomb)
+    choice("the letter of Coulomb's friction", lesson.dry_friction_is(), right)
+
+
+@exercise("3.19", points=1, hint="multiply v_t by a factor from 0 to 1, or each of its components by one of its own")
+def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, draw):
+    m, mu, dt = draw(0.5, 2.0), draw(0.3, 0.6), 0.02
+    j_n = m * G * dt
+    for angle in draw(0.0, 1.0) + np.pi / 3.0 * np.arange(6):
+        v = 3.0 * np.array([np.cos(angle), np.sin(angle)])
+        for _ in range(200):
+            v = slowed(lesson, v, m, j_n, mu)
+        close("velocity 4 s after a throw at 3 m/s [m/s]", v, np.zeros(2), ROUND_OFF, given=f"μ = {mu:.4g}")
+    for speed in (1e-3, 1.0, 30.0):
+        slowed(lesson, speed * draw(-1.0, 1.0, 2), m, draw(0.0, 2.0) * j_n, mu)
+    v = draw(1.5, 3.0, 2)
+    got = np.array([lesson.my_friction(k * v, m, j_n, mu) for k in (1.0, 0.3, -1.0)])
+    cone = np.array([-mu * j_n * k * v / np.linalg.norm(k * v) for k in (1.0, 0.3, -1.0)])      # none of them stops
+    pyramid = np.array([-mu * j_n * np.sign(k * v) for k in (1.0, 0.3, -1.0)])
+    for name, other in (("friction_impulse", cone), ("pyramid_impulse", pyramid)):
+        if np.abs(got - other).max() < 1e-6 * mu * j_n:
+            raise NotYet("a floor of your own", "another law than those of the lesson", f"that of {name}", "",
+                         "no new floor")
+
+
+def slowed(lesson, v, m, j_n, mu):
+    """The velocity after one impulse of the own floor; it must not be larger."""
+    after = v + np.asarray(lesson.my_friction(v, m, j_n, mu)) / m
+    between("speed after an impulse of your floor, minus that before [m/s]",
+            np.linalg.norm(after) - np.linalg.norm(v), -np.inf, ROUND_OFF)
+    return after

@@ -7,7 +7,8 @@ import pytest
 from scipy.optimize import brentq, nnls
 
 from solutions.checks import BadInput, Diverged
-from validate.grading.expect import between, close, raises
+from validate.grading.expect import between, choice, close, numbers, raises
+from validate.reference import choices
 
 exercise = pytest.mark.exercise
 # All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
@@ -191,7 +192,7 @@ def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
               given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
-@exercise("7.6", points=1, hint="v gains J/m, and ω gains (r_x J_y − r_y J_x)/I")
+@exercise("7.6", points=0.5, hint="v gains J/m, and ω gains (r_x J_y − r_y J_x)/I")
 def test_an_impulse_changes_both_momenta_of_a_flat_body(lesson, draw):
     body = flat(draw, lesson)
     r, J, x = draw(-1.0, 1.0, 2), draw(-3.0, 3.0, 2), draw(-2.0, 2.0, 2)
@@ -296,7 +297,7 @@ def hit_centrally(lesson, draw):
           given=f"n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s")
 
 
-@exercise("7.10", points=0.25, hint="where n · u ≥ u_sep there is nothing to do: J = 0")
+@exercise("7.10", points=0.125, hint="where n · u ≥ u_sep there is nothing to do: J = 0")
 def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
     hit_centrally(lesson, draw)
     n, K = contact(draw)
@@ -315,7 +316,7 @@ def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
               given=f"u = {slip + u_sep * n} m/s, n = {n}, u_sep = {u_sep} m/s, μ = inf")
 
 
-@exercise("7.10", points=0.25,
+@exercise("7.10", points=0.125,
           hint="with enough friction the contact sticks: u + K J = u_sep n, so J = K⁻¹ (u_sep n − u)")
 def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
     for u_sep, mu in ((draw(0.1, 2.0), np.inf), (0.0, 1e6)):
@@ -331,7 +332,7 @@ def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
               given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s")
 
 
-@exercise("7.10", points=0.5,
+@exercise("7.10", points=0.25,
           hint="slide: |J_t| = μ J_n, J_t in the direction of the sticking J_t, the size such that n · u⁺ = u_sep")
 def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
     for share, u_sep, size, heavy in ((draw(0.1, 0.9), 0.0, 1.0, 1.0),
@@ -362,7 +363,7 @@ def steep(draw, low, high):
     return n, K, draw(0.5, 2.0) * (n + ratio * t), ratio
 
 
-@exercise("7.10", points=0.25,
+@exercise("7.10", points=0.125,
           hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < u_sep the bodies separate too slowly and need "
                "an impulse")
 def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson, draw):
@@ -395,7 +396,7 @@ def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson,
           given=f"u = {-n} m/s, n = {n}, K = {k} on its diagonal, u_sep = {u_sep} m/s, μ = 0")
 
 
-@exercise("7.10", points=0.25, hint="a large μ is still finite: compare |J_t| with μ J_n, and slide with this μ")
+@exercise("7.10", points=0.125, hint="a large μ is still finite: compare |J_t| with μ J_n, and slide with this μ")
 def test_much_friction_sticks_or_slides_as_little_friction_does(lesson, draw):
     """K has a condition number below 100, and impulses below 1e3."""
     for low, high in ((3.0, 10.0), (20.0, 50.0), (100.0, 200.0)):
@@ -428,7 +429,7 @@ def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
               np.cos(beta) * across(n, got) - np.sin(beta) * (got @ n) * side, STILL, 1e-10, given=given)
 
 
-@exercise("7.10", points=0.5, hint="call check_contact first")
+@exercise("7.10", points=0.25, hint="call check_contact first")
 def test_contacts_without_physics_are_refused(lesson, draw):
     hit_centrally(lesson, draw)
     n, K = contact(draw)
@@ -501,7 +502,7 @@ def height(phi, v_n, a_n):
     return lambda tau: phi + v_n * tau + 0.5 * a_n * tau * tau
 
 
-@exercise("7.13", points=0.75,
+@exercise("7.13", points=0.5,
           hint="take the root at which the gap closes: the first for v_n < 0, the second if the gap opens first")
 def test_the_moment_of_impact_is_a_root_of_the_gap(lesson, draw):
     phi, speed = draw(0.2, 2.0), draw(0.5, 5.0)
@@ -553,7 +554,7 @@ def test_the_impact_time_is_dt_without_an_impact_and_zero_for_a_ball_pressed_in(
           2.0 * speed / pull + phi / speed, ROUND_OFF, given=f"φ = {phi}, v_n = {speed}, a_n = {-pull}")
 
 
-@exercise("7.13", points=0.5,
+@exercise("7.13", points=0.25,
           hint="φ, v_n and a_n may have any sign: draw the parabola and find where it first falls to zero")
 def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_whatever_the_signs(lesson, draw):
     """Evaluate the parabola at 400 times. Its round-off is 1e-15 of its terms, and 1e-14 of them is allowed."""
@@ -775,7 +776,7 @@ def test_a_ball_that_leaves_from_inside_flies_and_one_that_is_pulled_off_takes_o
                   (e * hit + pull * left) * p.n + (slip + along * time) * t, 1e-10, given=given)
 
 
-@exercise("7.16", points=0.5,
+@exercise("7.16", points=0.25,
           hint="fly to the impact, bounce, continue with the remaining time; "
                "one step may contain several impacts")
 def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
@@ -815,7 +816,7 @@ def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
                       given=f"{given}, {scaled}")
 
 
-@exercise("7.16", points=0.25,
+@exercise("7.16", points=0.125,
           hint="do not change x and v: write x = x + …, not x += …; "
                "after MAX_IMPACTS impacts raise Diverged")
 def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_impacts(lesson, draw):
@@ -841,7 +842,7 @@ def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_
            lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, 1000.0, p)
 
 
-@exercise("7.16", points=0.25,
+@exercise("7.16", points=0.125,
           hint="if bouncing_time is at most the remaining time, the ball stays on the plane: slide_on_plane(…)")
 def test_a_ball_lies_on_the_plane_after_its_last_bounce(lesson, draw):
     for e, upright in ((0.0, False), (draw(0.3, 0.8), False), (0.0, True)):
@@ -966,7 +967,7 @@ def test_two_or_four_points_that_slide_brake_with_mu_times_all_that_presses(less
         between("residual after the sweeps have settled [m/s]", residual, 0.0, 1e-11, given=given)
 
 
-@exercise("7.17", points=0.25,
+@exercise("7.17", points=0.125,
           hint="each impulse is inside its cone, whatever the other points do; call check_impacts first")
 def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson, draw):
     body, r, n = falling_box(draw, lesson, 2)
@@ -987,7 +988,7 @@ def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson
     raises("one point with two normals", BadInput, lesson.solve_impacts, body, r[:1], n, e, mu)
 
 
-@exercise("7.17", points=0.25,
+@exercise("7.17", points=0.125,
           hint="compare with largest_speed; the residual is that of the last sweep; "
                "if the sweeps do not settle, return settle_impacts")
 def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
@@ -1035,7 +1036,7 @@ def close_pair(draw, lesson, m, height):
     return body, np.stack((x * d, -x * d)) - height * x * n, d, n, x
 
 
-@exercise("7.17", points=0.25,
+@exercise("7.17", points=0.125,
           hint="at most MAX_SWEEPS sweeps; the residual is the largest |component| of Kᵢ (J − Jᵢ) of all "
                "points; compare it with CONVERGED largest_speed(body, r)")
 def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_however_it_moves(lesson, draw):
@@ -1113,7 +1114,7 @@ def tumbling(draw, lesson):
         yield body._replace(v=body.v - 4.0 * up), r - 0.3 * up, n / np.linalg.norm(n, axis=1, keepdims=True)
 
 
-@exercise("7.17", points=0.25,
+@exercise("7.17", points=0.125,
           hint="each point has its own normal and its own u_sepᵢ ≥ 0; afterwards it must separate at u_sepᵢ or faster")
 def test_without_friction_a_tumbling_body_changes_no_more_than_all_its_points_demand(lesson, draw):
     """Sweeps stop at changes of 1e-14 of 10 m/s. The error may be a hundred times that. ω is v over 0.1 m."""
@@ -1126,3 +1127,60 @@ def test_without_friction_a_tumbling_body_changes_no_more_than_all_its_points_de
             given = f"r = {r.tolist()}, n = {n.tolist()}, e = {e}, {moving}"
             close("velocity after the impact [m/s]", got.v, expected[:3], 1e-9 * slow, given)
             close("angular velocity after the impact [rad/s]", got.omega, expected[3:], 1e-8 * slow, given)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("7.18", points=1, hint="an impact at the speed w leaves an average of g dt w/2 less of w²/2")
+def test_an_elastic_ball_lies_still_after_the_predicted_time(lesson, draw):
+    for _ in range(3):
+        g, dt, flights = draw(1.0, 20.0), draw(0.002, 0.02), draw.whole(150, 250)
+        h = 0.5 * (0.5 * flights * g * dt) ** 2 / g
+        x, v, t = h, 0.0, 0.0
+        while x != 0.0 or v > 2.0 * g * dt:
+            v, t = v - g * dt, t + dt
+            x = x + dt * v
+            if x < 0.0:
+                x, v = 0.0, -v
+        # the fall before the first impact, and the last flights, are a few of the flights' sum of times
+        close("time until an elastic ball lies still [s]", lesson.elastic_rest_time(h, g, dt), t, 8.0 / flights * t,
+              given=f"h = {h}, g = {g}, dt = {dt}")
+
+
+@exercise("7.19", points=1, hint="without friction an elastic impact, e = 1, keeps the energy")
+def test_the_chosen_impact_keeps_its_energy_at_full_restitution(lesson):
+    choice("the letter of the impact without friction", lesson.smooth_rod_is(), choices.where(
+        "impulses", "energies_of_a_rod", lambda e, energy: abs(energy[-1] - 1.0) < 1e-12))
+
+
+def of_a_ball(m, R, n):
+    """Offset of the contact point, the inverse inertia of a solid ball, and K there."""
+    r, inverse = -R * n, 1.0 / (0.4 * m * R * R)
+    return r, inverse, np.eye(3) / m + inverse * (R * R * np.eye(3) - np.outer(r, r))
+
+
+@exercise("7.20", points=1,
+          hint="K⁻¹ (u⁺ − u) is the impulse that leads to u⁺: which u⁺ keeps the energy and turns the slip?")
+def test_a_super_ball_returns_its_slip_gains_no_energy_and_comes_back(lesson, draw):
+    for _ in range(5):
+        n = draw(-1.0, 1.0, 3)
+        n = n / np.linalg.norm(n)
+        _, _, K = of_a_ball(draw(0.05, 2.0), draw(0.02, 0.3), n)
+        u = draw(-2.0, 2.0, 3)
+        u = u - (u @ n + draw(0.5, 5.0)) * n
+        slip = u - (u @ n) * n
+        J = lesson.my_impulse(u, n, K)
+        numbers("impulse [N s]", J, (3,))
+        after = u + K @ J
+        between("speed of separation over that of approach", after @ n / -(u @ n), 0.1, np.inf)
+        between("slip after the impact over that before", after @ slip / (slip @ slip), -np.inf, -0.3)
+        stake = 0.5 * u @ np.linalg.solve(K, u)
+        between("gain of energy over the energy at stake", 0.5 * J @ (u + after) / stake, -1.0, 1e-12)
+    m, R, v, omega = draw(0.05, 0.2), draw(0.03, 0.07), np.array([draw(1.5, 2.5), -5.0, 0.0]), np.zeros(3)
+    for side in (1.0, -1.0, 1.0):                            # floor, table, floor
+        n = np.array([0.0, side, 0.0])
+        r, inverse, K = of_a_ball(m, R, n)
+        v[1] = -side * max(1.0, abs(v[1]))                   # gravity, and a ball that comes slowly still comes
+        J = lesson.my_impulse(v + np.cross(omega, r), n, K)
+        v, omega = v + J / m, omega + inverse * np.cross(r, J)
+    between("velocity along the floor after floor, table and floor [m/s]", v[0], -np.inf, 0.0)

@@ -8,7 +8,9 @@ import pytest
 from scipy.spatial import Delaunay
 
 from solutions.checks import BadInput
-from validate.grading.expect import close, raises
+from validate.grading.expect import between, choice, close, raises, truth
+from validate.reference import choices
+from validate.reference.choices.inertia_tensors import PULL
 from validate.reference.orientation import about
 
 from .brute import solid
@@ -329,7 +331,7 @@ def test_away_from_its_centre_a_body_resists_like_a_point_more(lesson, draw):
               -tensor(m, r - d), ROUNDED, f"size {size} m, its {given}")
 
 
-@exercise("4.12", points=1,
+@exercise("4.12", points=0.5,
           hint="shift each tensor from its own centre xᵢ to the common one: the offset is xᵢ − X, the mass mᵢ")
 def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
     clouds = [cloud(draw, n) for n in (draw.whole(3, 4), draw.whole(2, 5), draw.whole(4, 6))]
@@ -387,7 +389,7 @@ def test_parts_without_mass_are_refused(lesson, draw):
         raises(what, BadInput, lesson.combine, wrong, x, I)
 
 
-@exercise("4.13", points=0.75, hint="the columns of R are the axes, in the order of the moments: I R = R diag(moments)")
+@exercise("4.13", points=0.5, hint="the columns of R are the axes, in the order of the moments: I R = R diag(moments)")
 def test_principal_axes_are_where_l_is_parallel_to_omega(lesson, draw):
     R, moments = rotation(draw), np.sort(draw(1.0, 3.0, 3))
     I = R @ np.diag(moments) @ R.T
@@ -414,7 +416,7 @@ def test_principal_axes_are_right_handed(lesson, draw):
         close("input tensor after the call: unchanged", I, kept, 0.0)
 
 
-@exercise("4.13", points=0.5,
+@exercise("4.13", points=0.25,
           hint="equal moments allow many axes; return any that are orthogonal, right-handed unit vectors")
 def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any_size(lesson, draw):
     """det(I − λ) = −λ³ + tr I λ² − ½(tr² I − tr I²) λ + det I. Roots 0.2 apart are known to about 1e-14."""
@@ -598,7 +600,7 @@ def compare_integrals(lesson, what, x, faces, expected, given):
     close(f"∫x xᵀ dV of {what} [m⁵]", second, expected[2], ROUNDED, given)
 
 
-@exercise("4.15", points=0.75,
+@exercise("4.15", points=0.25,
           hint="w = a · (b × c) is six times the tetrahedron's volume; first and second contain s = a + b + c")
 def test_integrals_over_a_tetrahedron_are_those_of_its_corners(lesson, draw):
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
@@ -609,7 +611,7 @@ def test_integrals_over_a_tetrahedron_are_those_of_its_corners(lesson, draw):
     compare_integrals(lesson, "a tetrahedron away from the origin", x, TETRAHEDRON, expected, f"corners {x.tolist()}")
 
 
-@exercise("4.15", points=0.75,
+@exercise("4.15", points=0.25,
           hint="add all triangles with the sign of w: negative terms cancel the volume outside the body")
 def test_integrals_over_boxes_and_an_angle_are_products(lesson, draw):
     size, centre = draw(0.3, 1.5, 3), draw(-2.0, 2.0, 3)
@@ -720,7 +722,7 @@ def open_corners(faces):
     return sorted({corner for i, j in there if there[i, j] != there[j, i] for corner in (i, j)})
 
 
-@exercise("4.16", points=0.5,
+@exercise("4.16", points=0.25,
           hint="count every edge i → j and every edge j → i: the counts must be equal for any numbering of the corners")
 def test_lumps_are_closed_until_a_triangle_is_lost_turned_doubled_or_misplaced(lesson, draw):
     for name, x, original, _ in lumps(draw, np.zeros(3)):
@@ -742,7 +744,7 @@ def test_lumps_are_closed_until_a_triangle_is_lost_turned_doubled_or_misplaced(l
                        naming=open_corners(broken))
 
 
-@exercise("4.17", points=0.75, hint="subtract V c cᵀ before taking the trace: the tensor is about the centre of mass")
+@exercise("4.17", points=0.25, hint="subtract V c cᵀ before taking the trace: the tensor is about the centre of mass")
 def test_a_mesh_has_the_mass_centre_and_tensor_of_its_body(lesson, draw):
     density, size, centre = draw(0.5, 2.0), draw(0.3, 1.5, 3), draw(-2.0, 2.0, 3)
     x, faces = box_mesh(size, centre)
@@ -833,7 +835,7 @@ def test_a_sheet_thinner_than_round_off_has_no_volume(lesson, draw):
         raises("a sheet thinner than round-off", BadInput, lesson.mesh_body, 1.0, x, faces)
 
 
-@exercise("4.17", points=0.5,
+@exercise("4.17", points=0.25,
           hint="the centre is first/volume, not the mean of the corners; a small body is valid")
 def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetrahedra(lesson, draw):
     for size in SIZES:
@@ -849,3 +851,48 @@ def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetr
                       np.asarray(centre) / size - place, first / V, ROUNDED, given)
                 close(f"tensor of {name} over density and size [-]", np.asarray(I) / density / size**5,
                       np.trace(C) * np.eye(3) - C, ROUNDED, given)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("4.18", points=1, hint="its kinetic energy is ½mv² + ½Iω² with ω = v/R, and all of it comes from the height")
+def test_a_body_rolls_down_in_the_time_that_its_forces_give(lesson, draw):
+    for share in draw(0.1, 1.0, 3):
+        m, R, way, slope, g = draw(0.5, 2.0), draw(0.1, 0.5), draw(1.0, 3.0), draw(0.1, 0.6), draw(5.0, 15.0)
+        I = share * m * R * R
+        # m a + f = m g sin θ,  I a/R = f R: acceleration and friction
+        a, _ = np.linalg.solve([[m, 1.0], [I / R, -R]], [m * g * np.sin(slope), 0.0])
+        close("time of rolling down [s]", lesson.rolling_time(I, m, R, way, slope, g), np.sqrt(2.0 * way / a), 1e-12,
+              given=f"I/(m R²) = {share:.4g}, way = {way:.4g} m, slope = {slope:.4g} rad")
+
+
+@exercise("4.19", points=1, hint="the more of its mass lies far from the axis, the more energy goes into the rotation")
+def test_the_chosen_body_rolls_as_half_of_its_mass_at_the_rim_would(lesson):
+    right = choices.where("inertia_tensors", "four_rollers", lambda t, way: np.allclose(way, PULL * t * t / 3.0))
+    choice("the letter of the solid cylinder", lesson.solid_cylinder_is(), right)
+
+
+@exercise("4.20", points=1, hint="symmetry makes moments equal, and material far from the centre makes them large")
+def test_a_mesh_of_ones_own_has_three_large_equal_moments(lesson, draw):
+    volume = draw(0.5, 2.0)
+    x, faces = lesson.my_mesh(volume)
+    x, faces = np.asarray(x, dtype=float), np.asarray(faces)
+    edges = Counter((int(f[k]), int(f[(k + 1) % 3])) for f in faces for k in range(3))
+    closed = all(count == 1 and edges.get(edge[::-1]) == 1 for edge, count in edges.items())
+    truth("whether each edge belongs to two faces, once in each direction", closed, True)
+    filled, moments = volume_and_moments(x, faces)
+    between("volume of the mesh over that which was asked for [-]", filled / volume, 0.99, 1.01)
+    between("largest over smallest principal moment [-]", moments[2] / moments[0], 1.0, 1.01)
+    ball = 0.4 * filled * (0.75 * filled / np.pi) ** (2.0 / 3.0)
+    between("smallest moment over that of a ball of the same mass and volume [-]", moments[0] / ball, 1.3, np.inf)
+
+
+def volume_and_moments(x, faces):
+    """Volume and principal moments at density 1, from the tetrahedra of the faces with the origin."""
+    corners = x[faces]
+    volumes = np.linalg.det(corners) / 6.0
+    V, total = volumes.sum(), corners.sum(axis=1)
+    c = volumes @ total / (4.0 * V)
+    squares = np.einsum("f,fka,fkb->ab", volumes, corners, corners) + np.einsum("f,fa,fb->ab", volumes, total, total)
+    spread = squares / 20.0 - V * np.outer(c, c)
+    return V, np.linalg.eigvalsh(np.trace(spread) * np.eye(3) - spread)

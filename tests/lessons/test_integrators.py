@@ -6,17 +6,19 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate.grading.expect import between, close, raises
+from validate.grading.expect import NotYet, between, choice, close, raises
+from validate.reference import choices
+from validate.reference.choices.integrators import OMEGA_DT
 
 exercise = pytest.mark.exercise
 
 # method: exercise, points for its matrix, points for its order, order, times at which it evaluates a {c: weight}
 METHODS = {
-    "euler_step": ("1.1", 1, 1, 1, {0: 1}),
+    "euler_step": ("1.1", 0.5, 0.5, 1, {0: 1}),
     "midpoint_step": ("1.2", 1, 1, 2, {0.5: 1}),
-    "rk4_step": ("1.3", 1, 2, 4, {0: 1 / 6, 0.5: 2 / 3, 1: 1 / 6}),
+    "rk4_step": ("1.3", 1, 1, 4, {0: 1 / 6, 0.5: 2 / 3, 1: 1 / 6}),
     "average_velocity_step": ("1.4", 1, 1, 1, {0: 1}),
-    "symplectic_euler_step": ("1.5", 1, 1, 1, {0: 1}),
+    "symplectic_euler_step": ("1.5", 0.5, 0.5, 1, {0: 1}),
     "verlet_step": ("1.6", 1, 1, 2, {0: 1 / 2, 1: 1 / 2}),
     "implicit_euler_step": ("1.7", 0.5, 1, 1, {1: 1}),
     "implicit_midpoint_step": ("1.8", 0.5, 1, 2, {0.5: 1}),
@@ -306,3 +308,59 @@ def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
     last = np.arange(4) == 3
     raises("an error of zero", BadInput, lesson.observed_order, dts, np.where(last, 0.0, errors))
     raises("a negative step", BadInput, lesson.observed_order, np.where(last, -dts, dts), errors)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("1.11", points=1,
+          hint="one step of Euler goes along the tangent of a circle: how far from its centre does it end?")
+def test_the_predicted_growth_is_that_of_a_run_of_euler_over_one_period(lesson, draw):
+    for low, high in ((4, 7), (12, 20), (50, 90)):
+        steps, omega = draw.whole(low, high), draw(1.0, 5.0)
+        dt, (x, v) = 2.0 * np.pi / (omega * steps), draw(0.2, 1.0, 2)
+        begin = np.hypot(x, v / omega)
+        for _ in range(steps):
+            x, v = x + dt * v, v - dt * omega**2 * x
+        grown = np.hypot(x, v / omega) / begin
+        # each step rounds twice
+        close("growth of the amplitude in one period [-]", lesson.growth_per_period(steps), grown,
+              1e-15 * 4.0 * steps * grown, given=f"{steps} steps per period")
+
+
+@exercise("1.12", points=1, hint="from x = 1 and v = 0, one step of explicit Euler leads to x = 1 and v = −ω² dt")
+def test_the_chosen_curve_grows_at_every_step_as_explicit_euler_does(lesson):
+    right = choices.where("integrators", "energies_of_a_spring", lambda step, energy: np.allclose(
+        energy[1:] / energy[:-1], 1.0 + OMEGA_DT**2, rtol=1e-12))
+    choice("the letter of explicit Euler's curve", lesson.explicit_euler_is(), right)
+
+
+@exercise("1.13", points=1, hint="begin with Verlet: what becomes of it if it drifts, kicks and drifts?")
+def test_a_method_of_ones_own_is_of_second_order_keeps_energy_and_is_new(lesson, draw):
+    t, p, T = draw(1.4, 1.9), Drive(draw(0.5, 0.9), 0.0), draw(0.4, 0.5)
+    x, v = draw(-1.5, 1.5, 3), draw(-1.5, 1.5, 3)
+    end, errors = driven_reference(p, t, x, v, T), []
+    for n in (10, 40):
+        got = np.array(lesson.advance(lesson.my_step, driven_pendula, t, x.copy(), v.copy(), T / n, n, p))
+        close(f"x and v after {n} steps [rad, rad/s]", got, end, T / n)
+        errors.append(max(np.abs(got - end).max(), 1e-12))               # what the reference solution is good for
+    between("order of convergence over two halvings, if not higher", min(2.0, np.log2(errors[0] / errors[1]) / 2.0),
+            1.8, 2.0)                                                    # 1.8: as for the other methods
+
+    p = lesson.Oscillator(draw(1.0, 3.0), 0.0)
+    x, v = draw(0.3, 1.0, 1), draw(0.3, 1.0, 1)
+    begin = p.omega**2 * x[0]**2 + v[0]**2
+    x, v = lesson.advance(lesson.my_step, lesson.oscillator_acceleration, 0.0, x, v, 0.2 / p.omega, 1000, p)
+    between("energy after 1,000 steps, over that at the start", (p.omega**2 * x[0]**2 + v[0]**2) / begin, 0.98, 1.02)
+    check_new(lesson, draw)
+
+
+def check_new(lesson, draw):
+    """No other method of the lesson takes the same step: they differ by dt² or dt³ times rates of about 1/s."""
+    start, p = (draw(1.0, 2.0), draw(0.5, 1.0, 2), draw(0.5, 1.0, 2), draw(0.15, 0.2)), Drive(0.7, 0.0)
+    got = np.array(lesson.my_step(driven_pendula, *start, p))
+    others = {method: step_by_stages(driven_pendula, method, *start, p) for method in METHODS}
+    others["blanes_moan_step"] = lesson.blanes_moan_step(driven_pendula, *start, p)
+    for method, other in others.items():
+        if np.abs(got - np.array(other)).max() < 1e-9:
+            raise NotYet("a step of your own", "an end that no other method of the lesson has", f"that of {method}", "",
+                         "no new method")

@@ -129,7 +129,7 @@ def counted(find):
     return noted, calls
 
 
-@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("d", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_a_tower_at_rest_is_not_searched_again_and_stands_as_if_it_were(d):
     """Single steps find all contacts anew."""
     state, pile = tower(np.random.default_rng(7), d)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate.grading.expect import between, close, raises
+from validate.grading.expect import between, choice, close, numbers, raises
+from validate.reference import choices
 from validate.reference.kinematics import jacobian_of as slopes
 from validate.reference.kinematics import joints_of as joints
 from validate.reference.orientation import about as turn
@@ -212,7 +213,7 @@ def test_the_jacobian_needs_no_angles(lesson, draw):
               size * ROUND_OFF, given=f"joints and end at {x} m")
 
 
-@exercise("11.3", points=0.5, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
+@exercise("11.3", points=0.25, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
 def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
     for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6)):      # the last arm has links of micrometres
         sigma = size * np.array([draw(1.5, 3.0), draw(0.3, 1.2)])
@@ -231,7 +232,7 @@ def shown(ellipse):
     return longer, shorter, np.tan(angle)
 
 
-@exercise("11.3", points=0.25, hint="for a = c the angle is ±45°; for one joint there is no pair of columns, so D = 0")
+@exercise("11.3", points=0.125, hint="for a = c the angle is ±45°; for one joint there is no pair of columns, so D = 0")
 def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
     """The longer axis of (p, q), (±q, ±p) is at ±45°; a hundredth of a per cent makes a circle an ellipse."""
     p, q = draw(1.0, 2.0), draw(0.2, 0.8)
@@ -254,7 +255,7 @@ def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
           given=f"J = {J}")
 
 
-@exercise("11.3", points=0.25,
+@exercise("11.3", points=0.125,
           hint="σ₂ from D, the root of a sum of squares of 2 × 2 determinants: a difference would lose digits")
 def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson, draw):
     """Both columns are rounded, which changes what is nine digits shorter by 1e-16/1e-9."""
@@ -299,7 +300,7 @@ def whole_lengths(draw, size):
     return tuple(np.round(1024.0 * draw(low, high)) / 1024.0 * size for low, high in ((1.2, 2.0), (0.5, 1.1)))
 
 
-@exercise("11.4", points=0.5,
+@exercise("11.4", points=0.25,
           hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance; where that is "
                "less than EDGE (l₁ + l₂), the root of a negative number is 0")
 def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
@@ -328,7 +329,7 @@ def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
           given=f"lengths {long} m and {long} m")
 
 
-@exercise("11.4", points=0.5,
+@exercise("11.4", points=0.25,
           hint="the products under the roots, and half the angle, keep the digits of θ₂, the arctangents those of θ₁; "
                "there may be a third length")
 def test_the_elbow_keeps_its_digits_where_the_arm_is_nearly_straight_or_folded(lesson, draw):
@@ -396,7 +397,7 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- forward, in space
 
-@exercise("11.6", points=1, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
+@exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
     for n in (draw.whole(3, 7), 9, 2, 1):
         theta, axes, offsets = chain(draw, n)
@@ -452,7 +453,7 @@ def test_an_axis_through_the_end_moves_it_nowhere(lesson, draw):
         close("velocity of the end [m/s]", J[:3, k], expected, ROUND_OFF, given=f"axis {a[k]}, end at {r} m from it")
 
 
-@exercise("11.8", points=1, hint="d = q_target ∘ q̄ and not the other way round: the rotation is in the world")
+@exercise("11.8", points=0.5, hint="d = q_target ∘ q̄ and not the other way round: the rotation is in the world")
 def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
     for sign in (1.0, -1.0):
         for _ in range(6):
@@ -717,7 +718,7 @@ def there_and_back(x, target, lengths):
     return np.array(x)
 
 
-@exercise("11.14", points=1,
+@exercise("11.14", points=0.5,
           hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
     for d, far in ((3, 0.0), (2, 0.0), (2, 20.0)):                            # the last target is out of reach
@@ -802,7 +803,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
     hold_a_joint_that_nothing_pushes(lesson, draw)
 
 
-@exercise("11.15", points=0.5,
+@exercise("11.15", points=0.25,
           hint="zeros in the columns of blocked joints, in all rows, so that the others take over; clip at the end")
 def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
     for (task, count), exactly in zip(6 * TASKS, 4 * [False] + 8 * [True], strict=True):
@@ -847,7 +848,7 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
               np.clip(free, low, high), SOLVED, given=f"θ = {theta}, limits {low} to {high}, target {target} m")
 
 
-@exercise("11.15", points=0.5,
+@exercise("11.15", points=0.25,
           hint="block only joints that Jᵀ e pushes outwards; a joint that it pulls back must be free")
 def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
     for _ in range(3):
@@ -926,3 +927,78 @@ def test_it_ends_on_the_target_as_near_to_rest_as_it_can(lesson, draw):
     close("end of the arm [m]", joints(theta, lengths)[-1], target, 1e-9, given=f"target {target} m, rest {rest}")
     along = (rest - theta) - np.linalg.lstsq(J, J @ (rest - theta), rcond=None)[0]
     close("part of the way to rest that the end would allow [rad]", along, np.zeros(4), 1e-6, given=f"rest {rest}")
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def settled(lengths, target, damping, theta, iterations=3000):
+    """The distance [m] that damped steps leave, with a Jacobian by hand."""
+    for _ in range(iterations):
+        phi = np.cumsum(theta)
+        ends = np.cumsum(np.stack((lengths * np.cos(phi), lengths * np.sin(phi))), axis=1)
+        r = ends[:, -1:] - ends + np.stack((lengths * np.cos(phi), lengths * np.sin(phi)))
+        J, e = np.stack((-r[1], r[0])), target - ends[:, -1]
+        theta = theta + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(2), e)
+    return np.sqrt(e @ e)
+
+
+@exercise("11.17", points=1, hint="a damped step does not move the arm if Jᵀ e = 0: which place of its reach is that?")
+def test_damped_steps_leave_the_predicted_distance(lesson, draw):
+    lengths = np.array([draw(1.2, 1.4), draw(0.3, 0.5), draw(0.2, 0.4)])
+    turn, reach, hole = draw(0.0, 6.0), np.sum(lengths), 2.0 * lengths[0] - np.sum(lengths)
+    for away in (draw(1.2, 2.0) * reach, draw(0.5, 0.8) * reach, draw(0.2, 0.7) * hole):
+        for damping in (0.7 * reach, draw(0.9, 1.2) * reach):
+            target = away * np.array([np.cos(turn), np.sin(turn)])
+            left = settled(lengths, target, damping, np.array([turn + 0.4, 0.5, 0.6]))
+            # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
+            close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
+                  given=f"lengths {lengths}, {away} m away, λ = {damping}")
+
+
+@exercise("11.18", points=1,
+          hint="the pseudo-inverse is Newton's method: the next error is a multiple of the square of the last")
+def test_the_chosen_error_is_squared_by_every_iteration(lesson):
+    choice("the letter of the pseudo-inverse", lesson.newton_is(), choices.where(
+        "kinematics", "errors_of_four_ways", lambda k, error: np.allclose(error[1:5], error[:4] ** 2, rtol=1e-12)))
+
+
+def followed(lengths, path):
+    """(distances from the path [m], angles (pictures, n), σ₂ [m]) of an arm, four damped steps per picture."""
+    reach, theta, seen = np.sum(lengths), np.full(len(lengths), 0.6), []
+
+    def at(theta, target):
+        phi = np.cumsum(theta)
+        links = np.stack((lengths * np.cos(phi), lengths * np.sin(phi)))
+        beyond = np.cumsum(links[:, ::-1], axis=1)[:, ::-1]
+        return target - np.sum(links, axis=1), np.stack((-beyond[1], beyond[0]))
+
+    for k, target in enumerate(path):
+        for _ in range(4 if k else 104):                     # the hand goes to the first point before the film
+            e, J = at(theta, target)
+            theta = theta + J.T @ np.linalg.solve(J @ J.T + (0.1 * reach) ** 2 * np.eye(2), e)
+        e, J = at(theta, target)
+        seen.append((np.sqrt(e @ e), theta, np.linalg.svd(J, compute_uv=False)[1]))
+    off, thetas, thin = zip(*seen, strict=True)
+    return np.array(off), np.array(thetas), np.array(thin)
+
+
+@exercise("11.19", points=1, hint="stay away from the rim of the reach, and give the hand more time")
+def test_an_arm_writes_what_it_is_told_slowly_and_is_never_straight(lesson):
+    lengths, points, seconds = lesson.my_writing()
+    lengths, points = np.array(lengths, dtype=float), np.array(points, dtype=float)
+    between("number of links", lengths.size, 2, 6)
+    numbers("the lengths [m]", lengths, (lengths.size,))
+    numbers("the points [m]", points, (len(points), 2))
+    between("shortest link, over the reach", np.min(lengths) / np.sum(lengths), 0.01, 1.0)
+    between("time of the film [s]", seconds, 2.0, 20.0)
+    reach, along = np.sum(lengths), np.linspace(0.0, len(points) - 1.0, round(25 * seconds))
+    path = np.stack([np.interp(along, np.arange(len(points)), points[:, c]) for c in (0, 1)], axis=1)
+    drawn = np.sum(np.linalg.norm(np.diff(path, axis=0), axis=1))
+    between("length of the path, over the reach", drawn / reach, 1.0, np.inf)
+    aside = path - np.mean(path, axis=0)
+    across = np.ptp(aside @ np.linalg.svd(aside, full_matrices=False)[2][1])
+    between("width of the drawing, over the reach", across / reach, 0.05, np.inf)
+    off, thetas, thin = followed(lengths, path)
+    between("distance of the hand from the path, over the reach", np.max(off) / reach, 0.0, 0.01)
+    between("fastest joint [rad/s]", 25.0 * np.max(np.abs(np.diff(thetas, axis=0))), 0.0, 2.0)
+    between("least σ₂, over the reach", np.min(thin) / reach, 0.05, np.inf)

@@ -230,7 +230,8 @@ def test_an_executed_notebook_reaches_its_end(tmp_path):
 
 # ---------------------------------------------------------------------------------------------- in a terminal
 
-@pytest.mark.parametrize("kind", ["syntax", pytest.param("one beside Exception", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["syntax", "one beside Exception"])
 def test_pytest_says_it_once_and_counts_the_other_lessons(tmp_path, kind):
     broken = KINDS[kind]
     handed_out(tmp_path, integrators=broken.text, springs=example.worked("springs"))
@@ -242,7 +243,7 @@ def test_pytest_says_it_once_and_counts_the_other_lessons(tmp_path, kind):
     assert re.search(r"^ +all  20 of 40", said, re.M) and len(said.splitlines()) < 40, said
 
 
-@pytest.mark.parametrize("kind", ["one beside Exception", "another encoding"])
+@pytest.mark.parametrize("kind", ["one beside Exception", pytest.param("another encoding", marks=pytest.mark.long)])
 def test_validate_ends_in_one_sentence(tmp_path, kind):
     handed_out(tmp_path / "lessons", integrators=KINDS[kind].text)
     options = ["--scene", "oscillator", "--quick", f"--of={tmp_path / 'lessons'}", f"--out={tmp_path / 'report'}"]

@@ -207,6 +207,7 @@ def test_andrews_squeezer_comes_to_the_published_angles():
     assert np.max(np.abs(mechanisms.andrews_angles(q) / mechanisms.ANDREWS_END - 1.0)) < 5e-5
 
 
+@pytest.mark.long
 def test_bricards_mechanism_moves_although_its_constraints_depend_on_each_other():
     now, p = joined(mechanisms.bricard())
     arms = joints.joint_arms(now[1], p.joints)

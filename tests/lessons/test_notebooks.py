@@ -133,7 +133,7 @@ def test_a_lesson_is_told_in_the_same_way_everywhere(path):
     lesson = path.stem.partition("_")[2]
     numbers = exercises((SOLUTIONS / f"{lesson}.py").read_text())
     for heading in ("| **You need** |", "| **Lessons before** |", "| **Time** |", "**Afterwards you can**",
-                    "## The idea", "## Break it", "## What this scene leaves out", "## Make it (★★★)", "## The curtain",
+                    "## The idea", "## Break it", "## What this scene leaves out", "## Make it (★★★)", "## The scene",
                     "## What you know now", "**Read on.**", "## Three questions"):
         assert text.count(heading) == 1, heading
     assert f"| {len(numbers)}, 20 points" in text

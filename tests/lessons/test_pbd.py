@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from solutions.checks import BadInput, Diverged
-from validate.grading.expect import between, close, raises, truth
+from validate.grading.expect import between, choice, close, numbers, raises, truth
+from validate.reference import choices
 
 from .brute import solid
 
@@ -229,7 +230,7 @@ def equations(x, lam, goal, dt, p):
     return np.concatenate(((x - goal - dt * dt * p.inv_mass[:, None] * force).ravel(), length - p.rest))
 
 
-@exercise("8.4", points=1,
+@exercise("8.4", points=0.5,
           hint="both rows of the docstring: the matrix contains −dt² W Σ λ ∇²C "
                "beside 1, and the unknown is the new λ itself")
 def test_a_newton_iteration_solves_the_equations_linearised_at_its_guess(lesson, draw):
@@ -248,7 +249,7 @@ def test_a_newton_iteration_solves_the_equations_linearised_at_its_guess(lesson,
               np.zeros(x.size + 3), 1e-10, given=given)
 
 
-@exercise("8.4", points=0.5,
+@exercise("8.4", points=0.25,
           hint="λ is in newtons: divide Λ = dt² λ by dt² at the end; W multiplies Jᵀ from the left, row by row")
 def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
     """The guess is the solution, so REGULARISATION, which acts on the change of λ, has no effect."""
@@ -268,7 +269,7 @@ def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
         close("multipliers λ [N]: minus the weight below", lam, below, 1e-9, given=given)
 
 
-@exercise("8.4", points=0.5,
+@exercise("8.4", points=0.25,
           hint="each link has ε = REGULARISATION (w_i + w_j), which acts on the change of λ: −ε on "
                "the diagonal, −C − ε dt² λ on the right (for Λ)")
 def test_redundant_links_share_a_change_of_their_multipliers_by_the_trace(lesson, draw):
@@ -539,7 +540,7 @@ def angle(x):
     return np.arctan2(np.cross(c, d) @ e, c @ d)
 
 
-@exercise("8.9", points=0.75,
+@exercise("8.9", points=0.5,
           hint="flat is 0; atan2 with (N_c × N_d) · e/|e| gives the sign; "
                "reduce C to (−π, π], however far outside it is")
 def test_the_fold_constraint_is_the_signed_angle_minus_the_wanted_one(lesson, draw):
@@ -577,7 +578,7 @@ def test_the_fold_constraint_is_the_signed_angle_minus_the_wanted_one(lesson, dr
           [lesson.fold_constraint(sheet, turn)[0] for turn in (np.pi, -np.pi)], [np.pi, np.pi], 0.0)
 
 
-@exercise("8.9", points=0.75,
+@exercise("8.9", points=0.25,
           hint="each wing changes the angle by |e|/|N| along its normal; the gradient "
                "of the edge follows from the lever arm β and from Σ = 0")
 def test_the_gradient_of_a_fold_is_that_of_its_angle_without_net_force_or_torque(lesson, draw):
@@ -605,7 +606,7 @@ def smooth_angle(x):
     return 2.0 * np.arctan(np.sum(np.cross(c, d) * e) / (np.sqrt(np.sum(c * c) * np.sum(d * d)) + np.sum(c * d)))
 
 
-@exercise("8.9", points=0.5,
+@exercise("8.9", points=0.25,
           hint="beside an obtuse angle β is below 0 or above 1: do not clamp it; a small fold is not degenerate")
 def test_folds_with_acute_and_obtuse_wings_have_the_slope_of_their_angle_at_any_size(lesson, draw):
     """The complex step is exact to round-off. tan ½θ is below 15, and the heights are above 0.3 sizes."""
@@ -755,7 +756,8 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
         raises("a constraint without movable mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha)
 
 
-@exercise("8.13", points=1, hint="Λ of each link continues from its old value; add w ΔΛ n to i and subtract it from j")
+@exercise("8.13", points=0.5,
+          hint="Λ of each link continues from its old value; add w ΔΛ n to i and subtract it from j")
 def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(lesson, draw):
     for d, alpha, rest in ((2, draw(0.001, 0.1), draw(0.5, 1.0)), (3, draw(0.001, 0.1), draw(8.0, 9.0)),
                            (2, 0.0, draw(0.5, 1.0)), (3, 0.0, draw(8.0, 9.0)),       # α = 0 pulls and pushes, too
@@ -884,7 +886,7 @@ def turn_of(q_new, q_old):
     return matrix(q_new) @ matrix(q_old).T
 
 
-@exercise("8.16", points=1.5,
+@exercise("8.16", points=1,
           hint="the rotation vector is I⁻¹(r × p), in world coordinates; quaternion_update(q, turn, 1.0) applies it")
 def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
     q, R, m, I_body = body(draw)
@@ -987,3 +989,85 @@ def test_lumps_small_and_large_and_inside_out_have_the_volume_of_their_hull_and_
                 close(f"volume of {name}, over its size [-]", V / size**3, sign * ConvexHull(x).volume, 1e-11, given)
                 close(f"gradient of the volume of {name}, over its size [-]", np.asarray(gradient) / size**2,
                       sign * slope, 1e-11, given)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("8.19", points=1, hint="the next angle per step is δ (1 − δ²): how does 1/δ² grow?")
+def test_a_circling_weight_slows_down_as_predicted(lesson, draw):
+    for angle, turns in ((draw(0.02, 0.04), 300), (draw(0.05, 0.1), 200), (0.05, 0)):
+        length, dt = draw(0.5, 2.0), draw(0.01, 0.05)
+        x, v = np.array([0.0, -length]), np.array([angle * length / dt, 0.0])
+        begin = np.linalg.norm(v)
+        for _ in range(turns):
+            goal = x + dt * v
+            goal = goal * (length / np.linalg.norm(goal))
+            x, v = goal, (goal - x) / dt
+        # the terms that are left out are δ² of the loss
+        close("speed that is left [m/s]", lesson.circling_speed(begin, length, dt, turns * dt), np.linalg.norm(v),
+              2.0 * angle**2 * begin, given=f"v = {begin}, length = {length}, dt = {dt}, {turns} steps")
+
+
+@exercise("8.20", points=1, hint="in a step of dt/n a weight falls by g (dt/n)²: how does that depend on n?")
+def test_the_chosen_curve_falls_with_the_square_of_the_number_of_substeps(lesson):
+    choice("the letter of the substeps", lesson.substeps_are(), choices.where(
+        "pbd", "chains_by_visits", lambda n, low: np.allclose(low * n * n, low[0], rtol=1e-12)))
+
+
+def xpbd_run(x, network, frames):
+    """(largest error of a rigid link [-], farthest way of a point [m], highest energy above the start [J])."""
+    w, dt, v, start, soft = network.inv_mass, 1.0 / 240.0, 0.0 * x, x, network.alpha > 0.0
+    mass = np.where(w > 0.0, 1.0 / np.where(w > 0.0, w, 1.0), 0.0)[:, None]
+    links = list(zip(network.i.tolist(), network.j.tolist(), network.rest.tolist(),
+                     (network.alpha / dt**2).tolist(), strict=True))
+
+    def seen(x, v):
+        C = np.linalg.norm(x[network.i] - x[network.j], axis=1) - network.rest
+        energy = 0.5 * np.sum(mass * v * v) - np.sum(mass * x * network.gravity)
+        return (np.max(np.abs(C / network.rest)[~soft], initial=0.0), np.linalg.norm(x - start, axis=1).max(),
+                energy + 0.5 * np.sum(C[soft] ** 2 / network.alpha[soft]))
+
+    history = [seen(x, v)]
+    for _ in range(4 * frames):
+        new, lam = x + (w > 0.0)[:, None] * (dt * v + dt * dt * network.gravity), np.zeros(len(links))
+        for _ in range(network.sweeps):
+            for s, (i, j, rest, alpha) in enumerate(links):
+                r = new[i] - new[j]
+                length = np.sqrt(r @ r)
+                change = -(length - rest + alpha * lam[s]) / (w[i] + w[j] + alpha)
+                lam[s] += change
+                new[i] += w[i] * change / length * r
+                new[j] -= w[j] * change / length * r
+        x, v = new, (new - x) / dt
+        history.append(seen(x, v))
+    worst, way, energy = np.transpose(history)
+    return worst.max(), way.max(), energy.max() - energy[0], np.sum(mass)
+
+
+def one_piece(n, i, j):
+    """Whether links join all points."""
+    joined = {0}
+    for _ in range(n):
+        joined |= {b for a, b in (*zip(i, j, strict=True), *zip(j, i, strict=True)) if a in joined}
+    return len(joined) == n
+
+
+@exercise("8.21", points=1,
+          hint="begin with links of the right length; more sweeps, lighter loads and shorter chains stretch less")
+def test_a_thing_of_ones_own_holds_together_and_moves(lesson):
+    x, network, frames = lesson.my_thing()
+    network = lesson.ConstraintNetwork(*network)
+    x = np.array(x, dtype=float)
+    numbers("the points [m]", x, x.shape if x.ndim == 2 else (6, 2))
+    size = np.linalg.norm(np.ptp(x, axis=0))
+    between("number of points", len(x), 6, 60)
+    between("number of free points", np.count_nonzero(network.inv_mass > 0.0), 3, 60)
+    between("sweeps", network.sweeps, 1, 10)
+    between("frames", frames, 60, 300)
+    between("rigid links, over all links", np.mean(network.alpha == 0.0), 0.5, 1.0)
+    truth("whether the links join all points", one_piece(len(x), network.i.tolist(), network.j.tolist()), True)
+    worst, way, gain, mass = xpbd_run(x, network, int(frames))
+    between("largest error of a rigid link, over its length", worst, 0.0, 0.05)
+    between("farthest way of a point, over the size of the thing", way / size, 0.1, np.inf)
+    # a hundredth of a millimetre of the whole thing's height
+    between("gain of energy, over the weight times the size", gain / (mass * 9.81 * size), -np.inf, 1e-5)

@@ -91,7 +91,7 @@ def test_a_beam_on_two_parallel_rods_moves_like_a_bob(d):
     assert np.max(np.abs(stretch(model, s))) < 1e-13
 
 
-@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("d", [2, pytest.param(3, marks=pytest.mark.long)])
 @pytest.mark.parametrize("compliance", [1e-3, 1e-2])
 def test_a_compliant_rod_is_a_spring_of_the_inverse_stiffness_with_first_order(d, compliance):
     """It hangs and is let go unstretched:  x = α m g (1 − cos ω t)  along itself."""

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate.grading.expect import between, close, numbers, raises, truth
+from validate.grading.expect import between, choice, close, numbers, raises, truth
+from validate.reference import choices
 from validate.reference.orientation import about
 
 exercise = pytest.mark.exercise
@@ -209,7 +210,8 @@ def test_momentum_changes_by_the_forces_times_dt(lesson, draw):
           ROUND_OFF)
 
 
-@exercise("10.2", points=1, hint="angular_acceleration(q[i], ω[i], τ[i], 1/inv_inertia[i]) for each body that can turn")
+@exercise("10.2", points=0.5,
+          hint="angular_acceleration(q[i], ω[i], τ[i], 1/inv_inertia[i]) for each body that can turn")
 def test_every_body_in_space_obeys_euler(lesson, draw):
     for planes in (2, 0):
         t, x, q, v, omega, dt, p = moving(draw, lesson, planes)
@@ -250,7 +252,7 @@ def test_the_power_is_that_of_the_torque(lesson, draw):
     row_by_row("ω of what begins to turn [rad/s]", got, spins_after(q, still, tau, dt, p), ROUND_OFF, p)
 
 
-@exercise("10.3", points=0.5, hint="velocities first; then positions and angles of all rows, with the new ones")
+@exercise("10.3", points=0.25, hint="velocities first; then positions and angles of all rows, with the new ones")
 def test_a_step_in_the_plane_is_velocities_first(lesson, draw):
     for planes in (2, 0):
         t, x, q, v, omega, dt, p = moving_2d(draw, lesson, planes)
@@ -262,7 +264,7 @@ def test_a_step_in_the_plane_is_velocities_first(lesson, draw):
             row_by_row(f"{name} after a step", is_, should, ROUND_OFF, p)
 
 
-@exercise("10.3", points=0.5, hint="a fall is ½ g t² (1 + dt/t) long with symplectic Euler; angles grow by ω t")
+@exercise("10.3", points=0.25, hint="a fall is ½ g t² (1 + dt/t) long with symplectic Euler; angles grow by ω t")
 def test_bodies_fly_on_parabolas_that_are_late_by_half_a_step(lesson, draw):
     _, x, q, v, omega, _, p = moving_2d(draw, lesson, 1)
     v[0], v[5], omega[1], omega[5] = 300.0 * v[0], 1e-9 * v[5], 100.0 * omega[1], 1e-9 * omega[5]    # fast, and slow
@@ -685,19 +687,19 @@ def forces_in(state, n, unit):
 
 # ---------------------------------------------------------------------------------------------- the loop in the plane
 
-@exercise("10.6", points=0.25,
+@exercise("10.6", points=0.125,
           hint="velocities, detection, contact; then x + dt v and q + dt ω of all rows, with the new ones")
 def test_rows_that_touch_nothing_fly_in_the_plane(lesson, draw):
     flies(lesson, draw, 2)
 
 
-@exercise("10.6", points=0.25,
+@exercise("10.6", points=0.125,
           hint="bounds(x, q, p.half) and find_contacts(narrow, x, …) take the places before the motion")
 def test_contacts_in_the_plane_are_those_of_the_beginning(lesson, draw):
     finds_what_is_near_at_the_beginning(lesson, draw, 2)
 
 
-@exercise("10.6", points=0.25, hint="aim = closing_speeds(gap, dt): bodies may close their gap, but not more")
+@exercise("10.6", points=0.125, hint="aim = closing_speeds(gap, dt): bodies may close their gap, but not more")
 def test_a_falling_disc_stops_on_the_surface_and_not_in_it(lesson, draw):
     falls_and_stops(lesson, draw, 2)
 
@@ -710,7 +712,7 @@ def disc_on(lesson, draw, plane, mu, v=(0.0, 0.0), floor=(0.0, 0.0), height=0.0,
     return state._replace(v=np.array([v, floor], float)), p, r, m
 
 
-@exercise("10.6", points=0.25,
+@exercise("10.6", points=0.125,
           hint="forces before contacts: contacts must stop the velocity that gravity adds in this step")
 def test_a_disc_rolls_down_a_slope_or_slides(lesson, draw):
     """It rolls with ⅔ g sin θ where μ ≥ ⅓ tan θ, and else slides with g (sin θ − μ cos θ)."""
@@ -731,7 +733,7 @@ def test_a_disc_rolls_down_a_slope_or_slides(lesson, draw):
 
 
 @pytest.mark.counts_calls                                            # boxes would be compiled anew, for seconds
-@exercise("10.6", points=0.25, hint="bounds(x, q, half): detection takes bodies as they are turned at the beginning")
+@exercise("10.6", points=0.125, hint="bounds(x, q, half): detection takes bodies as they are turned at the beginning")
 def test_a_box_comes_down_on_its_lowest_corner(lesson, draw):
     """The corner at r from the centre stops: j = −u_n/(1/m + r_x²/I), u_n = ω r_x − fall."""
     m, I, half = draw(0.5, 2.0), draw(0.02, 0.1), np.array([0.3, 0.2])
@@ -752,18 +754,18 @@ def test_a_box_comes_down_on_its_lowest_corner(lesson, draw):
         close("its angular velocity [rad/s]", np.asarray(end.omega)[0], spin + r[0] * j / I, MANY, given=given)
 
 
-@exercise("10.6", points=0.25,
+@exercise("10.6", points=0.125,
           hint="rows with inv_mass 0 keep v and ω, and move with them: they carry what lies on them")
 def test_belts_rollers_and_lifts_carry_a_disc(lesson, draw):
     is_carried(lesson, draw, 2)
 
 
-@exercise("10.6", points=0.25, hint="p.sweeps times velocity_sweep_2d, each with the v, ω and J of the one before")
+@exercise("10.6", points=0.125, hint="p.sweeps times velocity_sweep_2d, each with the v, ω and J of the one before")
 def test_each_sweep_halves_the_error_of_a_column_of_two_discs(lesson, draw):
     sweeps_halve_the_error(lesson, draw, 2)
 
 
-@exercise("10.6", points=0.25, hint="apply kept_impulses before the first sweep, so that sweeps add up over the steps")
+@exercise("10.6", points=0.125, hint="apply kept_impulses before the first sweep, so that sweeps add up over the steps")
 def test_memory_turns_sweeps_into_steps(lesson, draw):
     """Four discs above each other, two sweeps per step: from nothing each step leaves 0.73 of the error of forces."""
     n, m, dt = 4, draw(0.5, 2.0), 0.005
@@ -792,12 +794,12 @@ def test_loads_see_the_velocities_of_the_beginning(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- the loop in space
 
-@exercise("10.7", points=0.25, hint="the loop of the plane; then x + dt v and turn_quaternions(q, ω, dt) of all rows")
+@exercise("10.7", points=0.125, hint="the loop of the plane; then x + dt v and turn_quaternions(q, ω, dt) of all rows")
 def test_rows_that_touch_nothing_fly_in_space(lesson, draw):
     flies(lesson, draw, 3)
 
 
-@exercise("10.7", points=0.25, hint="find_contacts before the motion; aim = closing_speeds(gap, dt), as in the plane")
+@exercise("10.7", points=0.125, hint="find_contacts before the motion; aim = closing_speeds(gap, dt), as in the plane")
 def test_balls_are_found_before_they_touch_and_stop_on_the_surface(lesson, draw):
     falls_and_stops(lesson, draw, 3)
     finds_what_is_near_at_the_beginning(lesson, draw, 3)
@@ -812,7 +814,7 @@ def ball_on(lesson, draw, mu, share=0.4, sweeps=40, tilt=0.5):
     return *made(lesson, [r * n], m, np.zeros((1, 3)) + I, [(r, r, r)], [np.append(n, 0.0)], mu, sweeps, 0.05), n, r, m
 
 
-@exercise("10.7", points=0.25, hint="the same loop as in the plane, with the functions for space")
+@exercise("10.7", points=0.125, hint="the same loop as in the plane, with the functions for space")
 def test_a_ball_rolls_down_any_slope_or_slides(lesson, draw):
     """It rolls with 5/7 of g along the slope, and slides with g_t − μ g_n where μ < 2/7 tan θ."""
     steps, dt = draw.whole(10, 20), draw(0.002, 0.01)
@@ -830,18 +832,18 @@ def test_a_ball_rolls_down_any_slope_or_slides(lesson, draw):
         close("angular velocity of a ball on a slope [rad/s]", np.asarray(end.omega)[0], rate, 10.0 * SWEPT)
 
 
-@exercise("10.7", points=0.25,
+@exercise("10.7", points=0.125,
           hint="rows with inv_mass 0 keep v and ω, and move with them: they carry what lies on them")
 def test_belts_rollers_and_lifts_carry_a_ball(lesson, draw):
     is_carried(lesson, draw, 3)
 
 
-@exercise("10.7", points=0.25, hint="p.sweeps times velocity_sweep, each with the v, ω and J of the one before")
+@exercise("10.7", points=0.125, hint="p.sweeps times velocity_sweep, each with the v, ω and J of the one before")
 def test_each_sweep_halves_the_error_of_a_column_of_two_balls(lesson, draw):
     sweeps_halve_the_error(lesson, draw, 3)
 
 
-@exercise("10.7", points=0.25,
+@exercise("10.7", points=0.125,
           hint="apply kept_impulses(contacts, state.contacts, state.J, p.margin) before the first sweep")
 def test_an_impulse_in_space_is_remembered_as_far_as_the_margin(lesson, draw):
     remembers(lesson, draw, 3)
@@ -849,7 +851,7 @@ def test_an_impulse_in_space_is_remembered_as_far_as_the_margin(lesson, draw):
     is_loaded_at_rest(lesson, draw, 3)
 
 
-@exercise("10.7", points=0.25, hint="inertia in the world: world_inertia(turn, inv_inertia), wherever an impulse acts")
+@exercise("10.7", points=0.125, hint="inertia in the world: world_inertia(turn, inv_inertia), wherever an impulse acts")
 def test_impulses_turn_a_ball_with_its_mass_inside_as_its_tensor_says(lesson, draw):
     """In the second step the impulses of the first one are remembered, and they turn it in the same way."""
     state, p, n, r, m = ball_on(lesson, draw, np.inf, np.array([0.3, draw(0.4, 0.5), 0.55]), 120)
@@ -876,7 +878,7 @@ def test_impulses_turn_a_ball_with_its_mass_inside_as_its_tensor_says(lesson, dr
 
 
 @pytest.mark.counts_calls                                            # boxes would be compiled anew, for seconds
-@exercise("10.7", points=0.25, hint="bounds(x, q, half): detection takes bodies as they are turned at the beginning")
+@exercise("10.7", points=0.125, hint="bounds(x, q, half): detection takes bodies as they are turned at the beginning")
 def test_a_box_in_space_comes_down_on_its_lowest_corner(lesson, draw):
     """The corner at r from the centre stops: j = −u_n/(1/m + (r × n) · I⁻¹ (r × n)), and I Δω = j r × n.
 
@@ -1480,3 +1482,25 @@ def test_the_difference_is_the_largest_of_all(lesson, draw):
         close("ratio of times [-]", ratio, 2.0, ROUND_OFF)
     difference, _ = compared(lesson, np.full(4, 3.0), np.full(4, 1.5), full, full)
     close("difference of what is the same [-]", difference, 0.0, 0.0)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("10.17", points=1,
+          hint="count the steps until the gap is below the margin: the body has moved by that many v dt")
+def test_a_body_stops_at_the_predicted_depth(lesson, draw):
+    for share in (draw(0.2, 0.9), draw(1.1, 2.0), draw(3.0, 8.0)):
+        margin, dt = draw(0.02, 0.1), draw(0.005, 0.05)
+        for gap in (margin + draw(0.001, 0.01), margin + draw(0.5, 1.0), 0.5 * margin):
+            speed = share * margin / dt
+            place = gap
+            while place >= margin:
+                place -= speed * dt
+            close("depth at which the loop stops the body [m]", lesson.stopping_depth(speed, gap, margin, dt),
+                  max(0.0, -place), ROUND_OFF, given=f"speed {speed}, gap {gap}, margin {margin}, dt = {dt}")
+
+
+@exercise("10.18", points=1, hint="2 t(dt/2) − t(dt) is the same for every dt if, and only if, the error is c dt")
+def test_the_chosen_result_has_an_error_in_proportion_to_the_step(lesson):
+    choice("the letter of the result that may be extrapolated", lesson.may_be_extrapolated(), choices.where(
+        "simulator", "times_of_an_event", lambda dt, t: np.ptp(2.0 * t[:-1] - t[1:]) < 1e-12))

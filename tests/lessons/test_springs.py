@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate.grading.expect import between, close, raises
+from validate.grading.expect import between, choice, close, raises
+from validate.reference import choices
+from validate.reference.choices.springs import MASS
 
 exercise = pytest.mark.exercise
 
@@ -216,7 +218,7 @@ def lengths(x, network):
     return np.sqrt(np.sum((x[network.j] - x[network.i]) ** 2, axis=1))
 
 
-@exercise("2.7", points=1,
+@exercise("2.7", points=0.5,
           hint="add T r/l at point i and −T r/l at j to the forces of the other springs; each spring has its own k")
 def test_spring_forces_are_the_gradient_of_the_elastic_energy(lesson, draw):
     for d in (1, 2, 3):
@@ -228,7 +230,7 @@ def test_spring_forces_are_the_gradient_of_the_elastic_energy(lesson, draw):
               -slope(energy, x), 1e-12)
 
 
-@exercise("2.7", points=1, hint="l̇ = r · (v_j − v_i)/l; k_d belongs to the same spring as the ends")
+@exercise("2.7", points=0.5, hint="l̇ = r · (v_j − v_i)/l; k_d belongs to the same spring as the ends")
 def test_dampers_are_the_gradient_of_the_dissipation_and_let_a_mesh_rotate_freely(lesson, draw):
     for d in (1, 2, 3):
         x, v, network = tetrahedron(lesson, draw, d)
@@ -244,7 +246,7 @@ def test_dampers_are_the_gradient_of_the_dissipation_and_let_a_mesh_rotate_freel
         close(f"forces on a network that moves and rotates as a rigid body in {d}D [N]", rigid, at_rest, 1e-12)
 
 
-@exercise("2.7", points=0.5, hint="subtract at j what you add at i, whether or not one of the points is fixed")
+@exercise("2.7", points=0.25, hint="subtract at j what you add at i, whether or not one of the points is fixed")
 def test_springs_exert_no_net_force_and_no_net_torque(lesson, draw):
     for d in (1, 2, 3):
         x, v, network = tetrahedron(lesson, draw, d)
@@ -258,7 +260,7 @@ def test_springs_exert_no_net_force_and_no_net_torque(lesson, draw):
         close(f"torque of all forces in {d}D [N m]", x.T @ force - force.T @ x, np.zeros((d, d)), 1e-12)
 
 
-@exercise("2.7", points=0.5, hint="if the squared length is 0.0, raise BadInput before dividing by it")
+@exercise("2.7", points=0.25, hint="if the squared length is 0.0, raise BadInput before dividing by it")
 def test_a_spring_without_length_is_refused(lesson, draw):
     x, v, network = tetrahedron(lesson, draw, 2)
     expected = -slope(lambda x: 0.5 * np.sum(network.k * (lengths(x, network) - network.rest) ** 2), x)
@@ -271,7 +273,7 @@ def test_a_spring_without_length_is_refused(lesson, draw):
     raises("a spring whose ends coincide", BadInput, lesson.spring_forces, x, v, network)
 
 
-@exercise("2.8", points=1,
+@exercise("2.8", points=0.5,
           hint="gravity is already an acceleration; divide the air force by the mass; a = 0 where inv_mass = 0")
 def test_points_without_springs_fall_alike_drift_with_the_wind_and_stay_where_fixed(lesson, draw):
     g, x, v = draw(-10.0, 10.0, 2), draw(-1.0, 1.0, (4, 2)), draw(-3.0, 3.0, (4, 2))
@@ -292,7 +294,7 @@ def test_points_without_springs_fall_alike_drift_with_the_wind_and_stay_where_fi
     close("accelerations at v = (mg + F_wind)/k_v, and where fixed [m/s²]", a, none, 1e-13)
 
 
-@exercise("2.8", points=1,
+@exercise("2.8", points=0.5,
           hint="multiply each point's spring force by its own inv_mass: a light end accelerates more than a heavy one")
 def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson, draw):
     rest, k, k_d = draw(0.8, 1.2), draw(40.0, 60.0), draw(1.0, 3.0)
@@ -519,7 +521,7 @@ def swaying(t, x, v, network):
     return force
 
 
-@exercise("2.13", points=1, hint="the right-hand side contains dt ∂F/∂x v; the position moves with the new velocity")
+@exercise("2.13", points=0.5, hint="the right-hand side contains dt ∂F/∂x v; the position moves with the new velocity")
 def test_the_implicit_step_is_linearly_implicit_euler(lesson, draw):
     for m in (draw(20.0, 50.0), draw(0.4, 1.0)):
         t, dt = draw(0.6, 1.0), draw(0.05, 0.10)
@@ -657,3 +659,52 @@ def test_the_hand_brings_a_point_to_rest_at_the_target_for_every_step(lesson, dr
         between("largest gain of energy in a step, over the energy at the start", np.max(gains), -np.inf, 1e-14)
         # without damping each step divides the energy by 1 + rate²: (1 / 1.09)^60 = 0.0057
         between("energy that is left after 60 steps, over that at the start", energies[-1] / energies[0], 0.0, 0.0075)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@exercise("2.15", points=1,
+          hint="the uppermost spring carries all n points, the lowest one only the last: add up their stretches")
+def test_a_chain_sags_as_far_as_its_equations_of_balance_say(lesson, draw):
+    for n in (1, draw.whole(2, 4), draw.whole(8, 15)):
+        m, k, g = draw(0.01, 0.1), draw(50.0, 200.0), draw(5.0, 15.0)
+        balance = k * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+        balance[-1, -1] = k                                              # no spring below the last point
+        sag = np.linalg.solve(balance, np.full(n, m * g))[-1]
+        # the condition of the balance is below 4 n² = 900, and a sag below 4 m
+        close("sag of the lowest point [m]", lesson.chain_sag(n, m, k, g), sag, 1e-12,
+              given=f"{n} points of {m:.4g} kg, k = {k:.4g} N/m, g = {g:.4g} m/s²")
+
+
+@exercise("2.16", points=1,
+          hint="symplectic Euler is stable while ω dt < 2, and ω is the fastest vibration of the network")
+def test_the_chosen_step_keeps_its_ratio_to_the_fastest_period(lesson):
+    right = choices.where("springs", "longest_steps", lambda k, dt: np.allclose(dt * np.sqrt(k / MASS), 2.0))
+    choice("the letter of the longest stable step", lesson.longest_step_is(), right)
+
+
+@exercise("2.17", points=1,
+          hint="begin with triangles: a square of four springs folds flat, and a diagonal holds it")
+def test_a_body_of_ones_own_holds_its_shape_and_its_weight(lesson, draw):
+    size = draw(0.3, 0.8)
+    x, pairs, k = lesson.my_body(size)
+    x, pairs = np.asarray(x, dtype=float), np.asarray(pairs)
+    given = f"size = {size:.4g} m"
+    between("number of points", len(x), 5, 200)
+    between("height of the lowest point [m]", x[:, 1].min(), 1e-9, 10.0, given)
+    between("width or height, the larger one, over size [-]", np.ptp(x, axis=0).max() / size, 0.9, 1.1, given)
+    squares = squared_frequencies(x, pairs, float(k), 0.02)
+    between("slowest vibration over that which carries the weight [-]",
+            np.sqrt(max(0.0, squares[3]) / (2.0 * 9.81 / size)), 1.0, np.inf, given)
+    between("fastest vibration times a step of 1/1000 s [-]", np.sqrt(squares[-1]) / 1000.0, 0.0, 2.0, given)
+
+
+def squared_frequencies(x, pairs, k, m):
+    """ω² [1/s²] of all vibrations about a shape at rest, in order; the first three are those of a rigid body, 0."""
+    n = len(x)
+    K = np.zeros((n, 2, n, 2))
+    for i, j in pairs:
+        along = (x[j] - x[i]) / np.linalg.norm(x[j] - x[i])
+        for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
+            K[a, :, b] += sign * k * np.outer(along, along)
+    return np.linalg.eigvalsh(K.reshape(2 * n, 2 * n)) / m

@@ -57,6 +57,7 @@ def ripple_left(k_d, k_v, height, along, seconds=2.0, dt=5e-4):
     return sizes[-len(sizes) // 7:].max() / height
 
 
+@pytest.mark.long
 def test_a_damper_slows_a_ripple_along_a_string_and_hardly_one_across_it_but_air_slows_both():
     """Across the links the damper acts in second order only; m ẍ = −k_v ẋ leaves exp(−k_v t/2m), here e⁻¹ at 2 s."""
     assert ripple_left(0.5, 0.0, 1e-3, along=True) < 0.05

@@ -811,3 +811,69 @@ edit("6.17", "divides by the square of the speed for the time",
      "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along / speed**2")
 edit("6.17", "takes the distance for the time: does not divide by the speed",
      "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along")
+
+
+# 6.18 --------------------------------------------------------------------------------------------------------------
+@right("6.18", "by counting from the end of the step")
+def share_past(r, w, v, dt):
+    reach, move = r + 0.5 * w, v * dt
+    return max(0.0, (move - reach) / move)
+
+
+edit("6.18", "takes both sides of the wall: a ball that is found behind the middle leaves on the far side",
+     "(r + 0.5 * w)", "(2.0 * r + w)")
+edit("6.18", "takes the whole thickness in front of the middle", "0.5 * w", "w")
+edit("6.18", "forgets the thickness of the wall", "(r + 0.5 * w)", "r")
+edit("6.18", "forgets the radius of the ball", "(r + 0.5 * w)", "(0.5 * w)")
+edit("6.18", "returns the share that is sent back", "1.0 - (r + 0.5 * w) / (v * dt)", "(r + 0.5 * w) / (v * dt)")
+edit("6.18", "returns a negative share for short steps",
+     "np.maximum(0.0, 1.0 - (r + 0.5 * w) / (v * dt))", "1.0 - (r + 0.5 * w) / (v * dt)")
+edit("6.18", "takes the diameter of the ball as its radius", "(r + 0.5 * w)", "(0.5 * r + 0.5 * w)")
+
+
+# 6.19 --------------------------------------------------------------------------------------------------------------
+@right("6.19", "as a small letter")
+def barrier_is():
+    return "b"
+
+
+edit("6.19", "chooses the force that is infinite at the wall but does a finite work: one over the root",
+     '"B"', '"A"')
+edit("6.19", "chooses the largest force far from the wall: a constant force does a finite work",
+     '"B"', '"C"')
+edit("6.19", "chooses the ramp, which is strongest at the wall but ends at a finite work",
+     '"B"', '"D"')
+
+
+# 6.20 --------------------------------------------------------------------------------------------------------------
+@right("6.20", "looks ahead, and keeps to one side")
+def my_rule(i, x, v, goals):
+    to = goals[i] - x[i]
+    a = 1.5 * (to * min(1.0, 1.2 / max(np.linalg.norm(to), 1e-9)) - v[i])
+    for j in range(len(x)):
+        if j != i:
+            r, w = x[j] - x[i], v[j] - v[i]
+            n = r / np.linalg.norm(r)
+            a = a - (0.5 / max(np.linalg.norm(r) - 0.5, 0.05) * n if np.linalg.norm(r) < 2.0 else 0.0 * n)
+            tau = -(r @ w) / max(w @ w, 1e-9)
+            miss = np.linalg.norm(r + tau * w)
+            if 0.0 < tau < 4.0 and miss < 0.8:
+                a = a + 2.0 * (0.8 - miss) / (tau + 0.3) * np.array([n[1], -n[0]])
+    return a * min(1.0, 4.5 / max(np.linalg.norm(a), 1e-9))
+
+
+@right("6.20", "round the middle to the other side")
+def to_the_other_side(i, x, v, goals):
+    away, distance, size = goals[i] - x[i], np.linalg.norm(x[i]), np.linalg.norm(goals[i])
+    around = np.array([x[i, 1], -x[i, 0]]) / distance + (size - distance) / size * x[i]
+    return 2.0 * (1.2 * (around if away @ away > 1.0 else away) - v[i])
+
+
+edit("6.20", "walks straight to the goal, and meets all others in the middle",
+     "around if away @ away > 1.0 else away", "0.3 * away")
+edit("6.20", "stands still", "1.2 * way", "0.0 * way")
+edit("6.20", "walks round the middle for ever", "around if away @ away > 1.0 else away", "around")
+edit("6.20", "turns by the number of the person: neighbours go to different sides",
+     "np.array([-x[i, 1], x[i, 0]])", "(-1.0) ** i * np.array([-x[i, 1], x[i, 0]])")
+edit("6.20", "accelerates more than a person can", "2.0 * (1.2", "6.0 * (1.2")
+edit("6.20", "runs to the goal too slowly to arrive", "1.2 * way", "0.3 * way")

@@ -2180,3 +2180,184 @@ def velocity_sweep_2d_2(v, omega, J, aim, give, contacts, arms, pile):
 right("9.16", "as a list")(lambda *given: list(worked.velocity_sweep_2d(*given)))
 right("9.16", "with arrays that are not contiguous")(
     lambda *given: tuple(np.repeat(part, 2, axis=0)[::2] for part in worked.velocity_sweep_2d(*given)))
+
+
+# 9.17 -----------------------------------------------------------------------------------------------------------
+edits("9.17", {
+    "uses 1/A_kk for the normal, whatever r is": ("J[n] - r[n] * (A[n] @ J + b[n])",
+                                                  "J[n] - (A[n] @ J + b[n]) / A[n, n]"),
+    "uses 1/A_kk for friction, whatever r is": ("J[t] - r[t] * (A[t] @ J + b[t])",
+                                                "J[t] - (A[t] @ J + b[t]) / A[t, t]"),
+    "uses the factor of the normal for friction, too": ("r[t] *", "r[n] *"),
+    "uses the factor of the first contact for all": ("r[n] *", "r[0] *"),
+    "divides by r": ("r[n] * (A[n] @ J + b[n])", "(A[n] @ J + b[n]) / r[n]"),
+    "takes r for a share of 1/A_kk": ("r[n] * (A[n] @ J + b[n])", "r[n] * (A[n] @ J + b[n]) / A[n, n]"),
+    "moves along the velocity, not against it": ("J[n] - r[n]", "J[n] + r[n]"),
+    "lets contacts pull": ("np.maximum(0.0, J[n] - r[n] * (A[n] @ J + b[n]))", "J[n] - r[n] * (A[n] @ J + b[n])"),
+    "projects the velocity, not the impulse": ("np.maximum(0.0, J[n] - r[n] * (A[n] @ J + b[n]))",
+                                               "J[n] - r[n] * np.minimum(0.0, A[n] @ J + b[n])"),
+    "omits b": ("(A[n] @ J + b[n])", "(A[n] @ J)"),
+    "limits friction on one side only": ("np.minimum(np.maximum(J[t] - r[t] * (A[t] @ J + b[t]), -limit), limit)",
+                                         "np.minimum(J[t] - r[t] * (A[t] @ J + b[t]), limit)"),
+    "limits friction by the μ of the first contact": ("mu[n // 2]", "mu[0]"),
+    "multiplies the limit of friction by r": ("limit = mu[n // 2] * J[n]", "limit = r[t] * mu[n // 2] * J[n]"),
+    "changes its input": ("J = float_copy(J)", "pass"),
+    "visits the contacts from the last to the first": ("range(0, J.size, 2)", "range(0, J.size, 2)[::-1]"),
+    "makes two sweeps": ("range(0, J.size, 2)", "[*range(0, J.size, 2)] * 2"),
+    "leaves out the last contact": ("range(0, J.size, 2)", "range(0, J.size - 2, 2)"),
+    "rubs without a limit": ("if J[n] > 0.0 else 0.0", "if J[n] > 0.0 else np.inf"),
+})
+
+
+@right("9.17", "keeps the velocities up to date")
+def proximal_sweep(A, b, J, mu, r):
+    J, u = J.copy(), A @ J + b
+    for k in range(len(J)):
+        size = np.inf if k % 2 == 0 else mu[k // 2] * J[k - 1] if J[k - 1] > 0.0 else 0.0
+        change = np.clip(J[k] - r[k] * u[k], -size if k % 2 else 0.0, size) - J[k]
+        J[k] += change
+        u += change * A[:, k]
+    return J
+
+
+# 9.18 -----------------------------------------------------------------------------------------------------------
+edits("9.18", {
+    "subtracts the legs from the hypotenuse": ("else x + y - h", "else h - x - y"),
+    "loses the digits of a small leg": ("if x > 0.0 and y > 0.0 else", "if False else"),
+    "forgets the factor 2": ("2.0 * x * (y / (x + y + h))", "x * (y / (x + y + h))"),
+    "uses the form with the product everywhere": (" if x > 0.0 and y > 0.0 else x + y - h", ""),
+    "adds the hypotenuse": ("else x + y - h", "else x + y + h"),
+    "has the slopes of the hypotenuse": ("1.0 - x / h, 1.0 - y / h", "x / h, y / h"),
+    "exchanges the slopes": ("1.0 - x / h, 1.0 - y / h", "1.0 - y / h, 1.0 - x / h"),
+    "omits the slopes of the legs' sum at (0, 0)": ("return 0.0, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5)",
+                                                    "return 0.0, -np.sqrt(0.5), -np.sqrt(0.5)"),
+    "has slopes of 1 at (0, 0)": ("return 0.0, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5)", "return 0.0, 1.0, 1.0"),
+    "has slopes of 0 at (0, 0)": ("return 0.0, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5)", "return 0.0, 0.0, 0.0"),
+    "returns φ alone": ("return phi, 1.0 - x / h, 1.0 - y / h", "return phi"),
+    "reverses the signs of the slopes": ("1.0 - x / h, 1.0 - y / h", "x / h - 1.0, y / h - 1.0"),
+    "takes the square of the hypotenuse": ("h = np.hypot(x, y)", "h = x * x + y * y"),
+    "takes the sum of the legs for the hypotenuse": ("h = np.hypot(x, y)", "h = abs(x) + abs(y)"),
+    "takes small numbers for zero": ("if h == 0.0:", "if h < 1e-12:"),
+})
+
+
+@right("9.18", "by the angle of the triangle")
+def fischer_burmeister(x, y):
+    size = np.hypot(x, y)
+    if size == 0.0:
+        return 0.0, 1.0 - 1.0 / np.sqrt(2.0), 1.0 - 1.0 / np.sqrt(2.0)
+    c, s = x / size, y / size
+    phi = 2.0 * max(x, y) * min(c, s) / (c + s + 1.0) if min(x, y) > 0.0 else x + y - size
+    return phi, 1.0 - c, 1.0 - s
+
+
+# 9.19 -----------------------------------------------------------------------------------------------------------
+edits("9.19", {
+    "solves for the contacts that do not push": ("if u[k] < A[k, k] * lam[k]:", "if u[k] > A[k, k] * lam[k]:"),
+    "compares a velocity with an impulse": ("if u[k] < A[k, k] * lam[k]:", "if u[k] < lam[k]:"),
+    "solves for all contacts that approach": ("if u[k] < A[k, k] * lam[k]:", "if u[k] < 0.0:"),
+    "solves for all contacts that have pushed": ("if u[k] < A[k, k] * lam[k]:", "if lam[k] > 0.0:"),
+    "solves for all contacts": ("if u[k] < A[k, k] * lam[k]:", "if True:"),
+    "reverses the sign of b": ("matrix[k], right[k] = A[k], -b[k]", "matrix[k], right[k] = A[k], b[k]"),
+    "omits b": ("matrix[k], right[k] = A[k], -b[k]", "matrix[k] = A[k]"),
+    "returns the change, not the impulses": ("return solve(matrix, right)", "return solve(matrix, right) - lam"),
+    "adds the solution to the impulses": ("return solve(matrix, right)", "return lam + solve(matrix, right)"),
+    "cuts off what pulls": ("return solve(matrix, right)", "return np.maximum(0.0, solve(matrix, right))"),
+    "takes the velocities for the right-hand side": ("right[k] = A[k], -b[k]", "right[k] = A[k], -u[k]"),
+    "treats each contact as if it were alone": ("matrix[k], right[k] = A[k], -b[k]",
+                                                "matrix[k, k], right[k] = A[k, k], -b[k]"),
+    "goes half of the way": ("return solve(matrix, right)", "return 0.5 * (lam + solve(matrix, right))"),
+    "omits b in the velocities": ("u, matrix, right = A @ lam + b,", "u, matrix, right = A @ lam,"),
+    "leaves the impulses of the others as they are": ("np.zeros(b.size)", "float_copy(lam)"),
+    "leaves out the last contact": ("range(b.size)", "range(b.size - 1)"),
+})
+
+
+@right("9.19", "solves for the contacts that push, alone")
+def minimum_map_step(A, b, lam):
+    on = np.flatnonzero(A @ lam + b <= np.diag(A) * lam)
+    new = np.zeros(len(b))
+    new[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
+    return new
+
+
+@right("9.19", "by the slopes of the minimum map")
+def minimum_map_step_2(A, b, lam):
+    x, u = np.diag(A) * lam, A @ lam + b
+    slopes = np.where((x < u)[:, None], np.diag(np.diag(A)), A)
+    return lam - np.linalg.solve(slopes, np.minimum(x, u))
+
+
+# 9.20 -----------------------------------------------------------------------------------------------------------
+edits("9.20", {
+    "is below the ground where the block slides back": ("np.abs(v)", "v"),
+    "forgets the friction": ("mu * np.abs(v) * dt", "np.abs(v) * dt"),
+    "returns a velocity, not a gap": ("mu * np.abs(v) * dt", "mu * np.abs(v)"),
+    "forgets the velocity": ("mu * np.abs(v) * dt", "mu * dt"),
+    "lifts by half of it, as a mean over the step": ("mu * np.abs(v) * dt", "0.5 * mu * np.abs(v) * dt"),
+    "grows with the square of the step": ("mu * np.abs(v) * dt", "mu * np.abs(v) * dt * dt"),
+    "takes the way that gravity gives in the step": ("mu * np.abs(v) * dt", "mu * 9.81 * dt * dt"),
+    "sinks in place of floating": ("mu * np.abs(v) * dt", "-mu * np.abs(v) * dt"),
+    "divides by the friction": ("mu * np.abs(v) * dt", "np.abs(v) * dt / mu if mu else 0.0"),
+    "floats nowhere: takes the relaxation for Coulomb's law": ("mu * np.abs(v) * dt", "0.0"),
+    "takes the sine of the angle of friction for its tangent": ("mu * np.abs(v) * dt",
+                                                                "mu * np.abs(v) * dt / np.sqrt(1.0 + mu * mu)"),
+    "squares the friction": ("mu * np.abs(v) * dt", "mu * mu * np.abs(v) * dt"),
+    "doubles it": ("mu * np.abs(v) * dt", "2.0 * mu * np.abs(v) * dt"),
+})
+right("9.20", "by the slope of the cone's edge")(lambda mu, v, dt: np.tan(np.arctan(mu)) * dt * max(v, -v))
+
+
+# 9.21 -----------------------------------------------------------------------------------------------------------
+edits("9.21", {
+    "chooses the curve that grows: that solver does not converge, and the relaxation does":
+        ("return \"B\"", "return \"C\""),
+    "chooses the slow curve: slow sweeps still end where the laws hold, and the relaxation does not":
+        ("return \"B\"", "return \"D\""),
+    "chooses the curve that falls fastest: Newton's method solves the laws as they are":
+        ("return \"B\"", "return \"A\""),
+    "gives a number, not a letter": ("return \"B\"", "return 2"),
+    "gives a word, not a letter": ("return \"B\"", "return \"the second\""),
+})
+right("9.21", "as a small letter")(lambda: "b")
+
+
+# 9.22 -----------------------------------------------------------------------------------------------------------
+edits("9.22", {
+    "makes plain sweeps": ("if 0.0 < size < before:", "if False:"),
+    "makes a sweep more than it may": ("range(calls - 1)", "range(calls)"),
+    "makes ten times as many sweeps as it may": ("range(calls - 1)", "range(10 * calls)"),
+    "makes one sweep only": ("range(calls - 1)", "range(0)"),
+    "divides by zero where a sweep changes nothing": ("if 0.0 < size < before:", "if size <= before:"),
+    "goes back along the direction": ("swept + size", "swept - size"),
+    "forgets the change in the direction": ("size / before * p + change", "size / before * p"),
+    "goes on as if the changes were zero": ("before = size", "before = np.inf"),
+    "changes its input": ("J, p, before = float_copy(J),", "J[:] = sweep(J); J, p, before = J,"),
+    "returns no impulses": ("return sweep(J)", "return 0.0 * sweep(J)"),
+})
+
+
+@right("9.22", "keeps a momentum, and forgets it where it leads astray")
+def fewer_sweeps(sweep, J, calls):
+    ahead, t = J.copy(), 1.0
+    for _ in range(calls):
+        new = sweep(ahead)
+        if (ahead - new) @ (new - J) > 0.0:
+            t = 1.0
+        following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * t * t))
+        ahead, J, t = new + (t - 1.0) / following * (new - J), new, following
+    return J
+
+
+@right("9.22", "combines the last five sweeps so that their changes cancel")
+def fewer_sweeps_2(sweep, J, calls):
+    news, changes = [], []
+    for _ in range(calls - 1):
+        new = sweep(J)
+        news, changes = [*news[-4:], new], [*changes[-4:], new - J]
+        J = new
+        if len(news) > 1 and np.any(changes[-1]):
+            columns = np.stack([changes[-1] - other for other in changes[:-1]], axis=1)
+            parts = np.linalg.lstsq(columns, changes[-1], rcond=1e-10)[0]
+            J = new - sum(part * (new - other) for part, other in zip(parts, news[:-1], strict=True))
+    return sweep(J)

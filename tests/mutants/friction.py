@@ -556,3 +556,67 @@ edit("3.15", "reverses the depth", "depth, mu)", "-depth, mu)")
 edit("3.15", "returns the whole displacement along the surface",
      "friction_impulse(tangential(moved, n), 1.0, depth, mu)", "tangential(moved, n)")
 edit("3.15", "takes the normal part of the displacement for the depth", "1.0, depth", "1.0, max(0.0, -(moved @ n))")
+
+
+# 3.17 -----------------------------------------------------------------------------------------------------------
+@right("3.17", "by speeds")
+def sliding_distance(v, width, mu_near, mu_far, g):
+    way = v * v / (2.0 * mu_near * g)
+    return way if way <= width else width + (way - width) * mu_near / mu_far
+
+
+edit("3.17", "slides on as if the strip had no end", "left <= 0.0", "True")
+edit("3.17", "forgets that a slow block stops on the strip", "left <= 0.0", "False")
+edit("3.17", "gives the strip the friction of the ground behind it", "0.5 * v * v - mu_near", "0.5 * v * v - mu_far")
+edit("3.17", "gives the ground behind the strip the friction of the strip", "left / (mu_far", "left / (mu_near")
+edit("3.17", "counts the way from the far edge of the strip", "return width + left", "return left")
+edit("3.17", "forgets the half of ½mv² where the block enters", "left = 0.5 * v * v", "left = v * v")
+edit("3.17", "forgets the half of ½mv² of a block that stops on the strip", "return 0.5 * v * v", "return v * v")
+edit("3.17", "lets the strip take nothing from the energy", "0.5 * v * v - mu_near * g * width", "0.5 * v * v")
+edit("3.17", "divides by the mean of both frictions behind the strip", "left / (mu_far",
+     "left / (0.5 * (mu_near + mu_far)")
+
+
+# 3.18 -----------------------------------------------------------------------------------------------------------
+@right("3.18", "as a small letter")
+def dry_friction_is():
+    return "c"
+
+
+edit("3.18", "takes static friction for μ_s F_N at every pull: it would drag a block that nothing pulls", '"C"', '"A"')
+edit("3.18", "lets friction stay at its limit: once the block slides, kinetic friction acts, which is smaller",
+     '"C"', '"B"')
+edit("3.18", "lets the block slip as soon as the pull exceeds kinetic friction: it holds up to μ_s F_N", '"C"', '"D"')
+
+
+# 3.19 -----------------------------------------------------------------------------------------------------------
+@right("3.19", "grips better the slower the block is")
+def my_friction(v_t, m, j_n, mu):
+    speed = np.sqrt(v_t @ v_t)
+    if speed == 0.0:
+        return 0.0 * v_t
+    return -min(m * speed, mu * j_n * (1.0 + 1.0 / (1.0 + speed))) / speed * v_t
+
+
+@right("3.19", "a brush whose hairs lie along x: twice the friction against them")
+def brushed(v_t, m, j_n, mu):
+    speed = np.sqrt(v_t @ v_t)
+    if speed == 0.0:
+        return 0.0 * v_t
+    return -min(m * speed, mu * j_n * (2.0 if v_t[0] < 0.0 else 0.7)) / speed * v_t
+
+
+FIRST = "along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))"
+edit("3.19", "is Coulomb's floor", FIRST, "return friction_impulse(v_t, m, j_n, mu)")
+edit("3.19", "is the pyramid of 3.6", FIRST,
+     "return pyramid_impulse(v_t, m, j_n, mu, np.array([1.0, 0.0]), np.array([0.0, 1.0]))")
+edit("3.19", "does nothing", FIRST, "return 0.0 * v_t")
+edit("3.19", "pushes the block along", "return -np.array", "return np.array")
+edit("3.19", "is not limited along the blade: it turns a slow block round",
+     "np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))",
+     "0.5 * mu * j_n")
+edit("3.19", "never quite stops the block: the drag of a fluid", FIRST, "return -0.1 * m * v_t")
+edit("3.19", "turns the block round without slowing it", FIRST, "return -2.0 * m * v_t")
+edit("3.19", "brakes along the blade only", "np.sign(v_t[1]) * across", "0.0")
+edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",
+     "[np.sign(v_t[1]) * across, np.sign(v_t[0]) * along]")

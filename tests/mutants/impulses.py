@@ -788,3 +788,60 @@ edit("7.17", "adds the velocity by the point's own impulse", "- times(K, Js[i])"
 edit("7.17", "takes all velocities before the impact",
      "point_velocity(after.v, after.omega, r[i])", "point_velocity(body.v, body.omega, r[i])")
 edit("7.17", "does not store the impulse", "Js[i] = J", "pass")
+
+
+# 7.18 --------------------------------------------------------------------------------------------------------------
+@right("7.18", "flight by flight")
+def elastic_rest_time(h, g, dt):
+    w, t = np.sqrt(2.0 * g * h), 0.0
+    while w > 0.0:
+        w, t = w - 0.5 * g * dt, t + 2.0 * w / g
+    return t
+
+
+edit("7.18", "says that a ball loses g dt of its speed per flight, twice what it loses", "4.0", "2.0")
+edit("7.18", "forgets that a projection lifts the ball", "4.0 * h", "h")
+edit("7.18", "counts the way up only, half of a flight", "4.0 * h", "8.0 * h")
+edit("7.18", "returns the number of flights in place of their time",
+     "4.0 * h / (g * dt)", "2.0 * np.sqrt(2.0 * h / g) / dt")
+edit("7.18", "adds up the flights as if none became shorter", "4.0 * h / (g * dt)", "16.0 * h / (g * dt)")
+edit("7.18", "returns the time of the fall", "4.0 * h / (g * dt)", "np.sqrt(2.0 * h / g)")
+edit("7.18", "says that an elastic ball bounces for ever", "4.0 * h / (g * dt)", "np.inf + 0.0 * h")
+
+
+# 7.19 --------------------------------------------------------------------------------------------------------------
+@right("7.19", "as a small letter")
+def smooth_rod_is():
+    return "d"
+
+
+edit("7.19", "chooses a rod that gains energy: only friction turns slip into normal motion",
+     '"D"', '"A"')
+edit("7.19", "chooses the rod that gains most energy: restitution alone never gains any",
+     '"D"', '"B"')
+edit("7.19", "chooses the rod that loses most: at e = 1 only friction can take energy",
+     '"D"', '"C"')
+
+
+# 7.20 --------------------------------------------------------------------------------------------------------------
+@right("7.20", "loses a little along the normal and along the slip")
+def my_impulse(u, n, K):
+    after = -0.9 * (u @ n) * n - 0.8 * (u - (u @ n) * n)
+    return np.linalg.solve(K, after - u)
+
+
+@right("7.20", "with two inverse masses of the ball")
+def by_two_masses(u, n, K):
+    normal = (u @ n) * n
+    slip = u - normal
+    return -1.8 / (n @ K @ n) * normal - 1.7 * slip * (slip @ slip) / max(slip @ K @ slip, 1e-300)
+
+
+edit("7.20", "stops the slip, as infinite friction does", "-2.0 * u", "-u - (u @ n) * n")
+edit("7.20", "leaves the slip as it is: no friction",
+     "solve3(K[0], K[1], K[2], -2.0 * u)", "-2.0 * (u @ n) / (n @ (K @ n)) * n")
+edit("7.20", "returns more slip than came: gains energy", "-2.0 * u", "-2.2 * u")
+edit("7.20", "does nothing", "-2.0 * u", "0.0 * u")
+edit("7.20", "turns the slip but does not separate", "-2.0 * u", "-2.0 * u + (u @ n) * n")
+edit("7.20", "pushes the other way", "-2.0 * u", "2.0 * u")
+edit("7.20", "returns too little of the slip", "-2.0 * u", "-2.0 * u + 0.85 * (u - (u @ n) * n)")

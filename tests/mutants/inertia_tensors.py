@@ -635,3 +635,66 @@ edit("4.17", "adds the covariance to its trace", "np.eye(3) - covariance", "np.e
 edit("4.17", "divides by the mass in place of the volume", "first / volume", "first / (density * volume)")
 edit("4.17", "adds the trace to every entry, not only on the diagonal",
      "np.trace(covariance) * np.eye(3)", "np.trace(covariance)")
+
+
+# 4.18 -----------------------------------------------------------------------------------------------------------
+@right("4.18", "by the energy at the end")
+def rolling_time(I, m, radius, way, slope, g):
+    speed = np.sqrt(2.0 * m * g * way * np.sin(slope) / (m + I / radius**2))
+    return 2.0 * way / speed
+
+
+edit("4.18", "lets the body slide: no energy goes into the rotation", "(1.0 + I / (m * radius * radius))", "1.0")
+edit("4.18", "gives all the energy to the rotation", "(1.0 + I", "(0.0 + I")
+edit("4.18", "takes the drop for the horizontal way: cos in place of sin", "np.sin", "np.cos")
+edit("4.18", "lets the body fall straight down", "np.sin(slope)", "1.0")
+edit("4.18", "forgets the 2 in s = ½ a t²", "2.0 * way", "way")
+edit("4.18", "returns the square of the time", "np.sqrt(2.0 * way / a)", "2.0 * way / a")
+edit("4.18", "divides the moment by m R in place of m R²", "m * radius * radius", "m * radius")
+edit("4.18", "adds half of I/(m R²)", "1.0 + I /", "1.0 + 0.5 * I /")
+edit("4.18", "returns the speed at the end", "np.sqrt(2.0 * way / a)", "np.sqrt(2.0 * way * a)")
+
+
+# 4.19 -----------------------------------------------------------------------------------------------------------
+@right("4.19", "as a small letter")
+def solid_cylinder_is():
+    return "d"
+
+
+edit("4.19", "chooses the solid ball: it has less mass far from its axis, and is faster", '"D"', '"C"')
+edit("4.19", "chooses the hollow ball: all its mass lies in its skin, so it is slower", '"D"', '"A"')
+edit("4.19", "chooses the hoop: all its mass lies at the rim, so it is the slowest", '"D"', '"B"')
+
+
+# 4.20 -----------------------------------------------------------------------------------------------------------
+BOX = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6],
+                [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+CORNERS = np.array([(i, j, k) for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
+
+
+@right("4.20", "eight small cubes at the corners of a large one")
+def my_mesh(volume):
+    a = 0.5 * volume ** (1.0 / 3.0)
+    return (np.vstack([a * (CORNERS + 6.0 * c) for c in CORNERS]),
+            np.vstack([BOX + 8 * k for k in range(8)]))
+
+
+@right("4.20", "six small cubes on three axes")
+def on_axes(volume):
+    a = (volume / 6.0) ** (1.0 / 3.0)
+    places = np.vstack([np.eye(3), -np.eye(3)])
+    return np.vstack([a * (CORNERS + 3.0 * c) for c in places]), np.vstack([BOX + 8 * k for k in range(6)])
+
+
+FIRST = "a = (3.0 * volume) ** (1.0 / 3.0)"
+edit("4.20", "is half as large as it should be", "(3.0 * volume)", "(1.5 * volume)")
+edit("4.20", "has the same size always", "(3.0 * volume)", "3.0")
+edit("4.20", "is inside out",
+     "[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]", "[[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]")
+edit("4.20", "has a hole: a face is missing", ", [1, 3, 2]]", "]")
+edit("4.20", "has one face the other way round", "[1, 3, 2]", "[1, 2, 3]")
+edit("4.20", "has three different moments", "x = 0.5 * a *", "x = np.array([1.25, 1.0, 0.8]) * 0.5 * a *")
+edit("4.20", "is an octahedron, which is nearly a ball", FIRST,
+     "return ((0.75 * volume) ** (1.0 / 3.0) * np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], "
+     "[0, 0, -1]]), "
+     "np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]))")

@@ -316,3 +316,84 @@ edit("1.10", "divides each logarithm by the other one, and takes the mean",
 edit("1.10", "accepts a step of zero or below", 'check_positive("step dt [s]", dts[n])', "pass")
 edit("1.10", "forgets both means, that of log dt and that of log error",
      "np.sum(xi * eta) / np.sum(xi * xi)", "np.sum(np.log(dts) * np.log(errors)) / np.sum(np.log(dts)**2)")
+
+
+# 1.11 -----------------------------------------------------------------------------------------------------------
+@right("1.11", "step by step")
+def growth_per_period(steps):
+    factor = 1.0
+    for _ in range(steps):
+        factor *= np.hypot(1.0, 2.0 * np.pi / steps)
+    return factor
+
+
+edit("1.11", "gives the growth of the energy, which is the square of that of the amplitude", "(0.5 * steps)", "steps")
+edit("1.11", "takes the leg ω dt as the growth of a step, not the hypotenuse",
+     "(1.0 + angle * angle) ** (0.5 * steps)", "(1.0 + angle) ** steps")
+edit("1.11", "gives the growth of a single step", "** (0.5 * steps)", "** 0.5")
+edit("1.11", "adds the growth of the steps, where each multiplies the one before",
+     "(1.0 + angle * angle) ** (0.5 * steps)", "1.0 + 0.5 * steps * angle * angle")
+edit("1.11", "gives the limit for many steps, e^(2π²/steps)",
+     "(1.0 + angle * angle) ** (0.5 * steps)", "np.exp(0.5 * steps * angle * angle)")
+edit("1.11", "forgets 2π: a period is 2π/ω, not 1/ω", "2.0 * np.pi / steps", "1.0 / steps")
+edit("1.11", "takes a period of π/ω, after which the motion is at the other side", "2.0 * np.pi", "np.pi")
+edit("1.11", "says that the amplitude stays", "(1.0 + angle * angle)", "(1.0 + 0.0 * angle)")
+edit("1.11", "says that the amplitude shrinks", "(0.5 * steps)", "(-0.5 * steps)")
+
+
+# 1.12 -----------------------------------------------------------------------------------------------------------
+@right("1.12", "as a small letter")
+def explicit_euler_is():
+    return "a"
+
+
+edit("1.12", "chooses the average velocity: its energy grows, too, but half as fast as that of explicit Euler",
+     '"A"', '"B"')
+edit("1.12", "chooses implicit Euler: it takes the slope at the end of the step, and loses energy", '"A"', '"C"')
+edit("1.12", "chooses symplectic Euler: it moves with the new velocity, and its energy comes back", '"A"', '"D"')
+
+
+# 1.13 -----------------------------------------------------------------------------------------------------------
+@right("1.13", "two kicks, McLachlan's best")
+def my_step(acceleration, t, x, v, dt, p):
+    share = 0.1931833275037836
+    x = x + share * dt * v
+    v = v + 0.5 * dt * acceleration(t + share * dt, x, v, p)
+    x = x + (1.0 - 2.0 * share) * dt * v
+    v = v + 0.5 * dt * acceleration(t + (1.0 - share) * dt, x, v, p)
+    return x + share * dt * v, v
+
+
+@right("1.13", "Nyström's method of fourth order")
+def nystrom_step(acceleration, t, x, v, dt, p):
+    a1 = acceleration(t, x, v, p)
+    a2 = acceleration(t + 0.5 * dt, x + 0.5 * dt * v + dt * dt / 8.0 * a1, v, p)
+    a3 = acceleration(t + dt, x + dt * v + 0.5 * dt * dt * a2, v, p)
+    return x + dt * v + dt * dt / 6.0 * (a1 + 2.0 * a2), v + dt / 6.0 * (a1 + 4.0 * a2 + a3)
+
+
+@right("1.13", "three steps of drift, kick, drift: Forest and Ruth")
+def forest_ruth_step(acceleration, t, x, v, dt, p):
+    outer = 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
+    for share in (outer, 1.0 - 2.0 * outer, outer):
+        h = share * dt
+        x = x + 0.5 * h * v
+        v = v + h * acceleration(t + 0.5 * h, x, v, p)
+        x, t = x + 0.5 * h * v, t + h
+    return x, v
+
+
+edit("1.13", "does not move", "x_mid = x + 0.5 * dt * v", "return x, v")
+edit("1.13", "is velocity Verlet", "x_mid = x + 0.5 * dt * v", "return verlet_step(acceleration, t, x, v, dt, p)")
+edit("1.13", "is symplectic Euler", "x_mid = x + 0.5 * dt * v",
+     "return symplectic_euler_step(acceleration, t, x, v, dt, p)")
+edit("1.13", "is the midpoint method, which gains energy", "x_mid = x + 0.5 * dt * v",
+     "return midpoint_step(acceleration, t, x, v, dt, p)")
+edit("1.13", "is Runge–Kutta 4", "x_mid = x + 0.5 * dt * v",
+     "return rk4_step(acceleration, t, x, v, dt, p)")
+edit("1.13", "takes the mean of the steps of Euler and symplectic Euler: of first order in the position",
+     "x_mid = x + 0.5 * dt * v", "return average_velocity_step(acceleration, t, x, v, dt, p)")
+edit("1.13", "kicks at the old time", "acceleration(t + 0.5 * dt", "acceleration(t")
+edit("1.13", "drifts by half a step only", "return x_mid + 0.5 * dt * v_new", "return x_mid")
+edit("1.13", "kicks for half a step only", "v + dt * acc", "v + 0.5 * dt * acc")
+edit("1.13", "drifts with the old velocity at the end", "x_mid + 0.5 * dt * v_new", "x_mid + 0.5 * dt * v")

@@ -1821,3 +1821,60 @@ edit("11.16", "limits the way to rest to 10 rad", "(arm.rest - theta)", "np.clip
 edit("11.16", "limits the pull to 1 rad", PULLED, f"(lambda z: {PULLED})(np.clip(z, -1.0, 1.0))")
 edit("11.16", "normalises a pull that is longer than 1", PULLED, f"(lambda z: {PULLED})(z / max(1.0, np.sqrt(z @ z)))")
 edit("11.16", "uses a pull of at most ½", "arm.pull *", "min(arm.pull, 0.5) *")
+
+
+# 11.17 --------------------------------------------------------------------------------------------------------------
+@right("11.17", "by cases")
+def remaining_distance(lengths, target, damping):
+    away, least = np.linalg.norm(target), max(0.0, 2.0 * max(lengths) - sum(lengths))
+    return away - sum(lengths) if away > sum(lengths) else max(0.0, least - away)
+
+
+edit("11.17", "says that the damping keeps a part of the error",
+     "np.maximum(0.0, np.maximum(away - reach, hole - away))",
+     "np.maximum(0.0, np.maximum(away - reach, hole - away)) + away * damping**2 / (damping**2 + reach**2)")
+edit("11.17", "forgets that an arm with a long link has a hole in its reach",
+     "np.maximum(away - reach, hole - away)", "away - reach")
+edit("11.17", "forgets the rim of the reach", "np.maximum(away - reach, hole - away)", "hole - away")
+edit("11.17", "returns a negative distance within reach",
+     "np.maximum(0.0, np.maximum(away - reach, hole - away))", "np.maximum(away - reach, hole - away)")
+edit("11.17", "takes the first link off the hole once more", "2.0 * np.max(lengths)", "np.max(lengths)")
+edit("11.17", "returns the distance from the base", "np.maximum(0.0, np.maximum(away - reach, hole - away))", "away")
+edit("11.17", "takes the longest link as the reach", "reach, away = np.sum(lengths)", "reach, away = np.max(lengths)")
+
+
+# 11.18 --------------------------------------------------------------------------------------------------------------
+@right("11.18", "as a small letter")
+def newton_is():
+    return "a"
+
+
+edit("11.18", "chooses the slowest straight line: a fixed factor per iteration is that of a gradient",
+     '"A"', '"B"')
+edit("11.18", "chooses a straight line: a fixed factor per iteration is no Newton step",
+     '"A"', '"C"')
+edit("11.18", "chooses the steepest straight line: each iteration adds as many digits as the last",
+     '"A"', '"D"')
+
+
+# 11.19 --------------------------------------------------------------------------------------------------------------
+@right("11.19", "a spiral by two links")
+def my_writing():
+    t = np.linspace(0.0, 4.0 * np.pi, 121)
+    r = 0.15 + 0.02 * t
+    return np.array([1.0, 1.0]), np.stack((1.0 + r * np.cos(t), 0.5 + r * np.sin(t)), axis=1), 12.0
+
+
+@right("11.19", "a square by four links")
+def writing_a_square():
+    corners = np.array([(1.0, 0.5), (1.8, 0.5), (1.8, 1.3), (1.0, 1.3), (1.0, 0.5)])
+    return np.array([0.8, 0.7, 0.6, 0.5]), corners, 12.0
+
+
+edit("11.19", "writes beyond the reach", "1.1 + r", "2.0 + r")
+edit("11.19", "writes too fast for the joints", "points, 10.0", "points, 2.0")
+edit("11.19", "writes a single point", "r * np.cos(t)", "0.0 * r")
+edit("11.19", "writes a line", "0.5 + r * np.sin(t)", "0.5 + 0.0 * t")
+edit("11.19", "writes next to nothing", "0.35 + 0.12", "0.05 + 0.01")
+edit("11.19", "uses an arm of one link", "np.array([1.0, 0.8, 0.5])", "np.array([2.3])")
+edit("11.19", "takes longer than the film", "points, 10.0", "points, 60.0")

@@ -826,3 +826,72 @@ edit("8.18", "gives two corners of a face the same gradient",
      "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")
 edit("8.18", "uses the area of the face for its first corner",
      "across = cross(b, c) / 6.0", "across = cross(b - a, c - a) / 6.0")
+
+
+# 8.19 --------------------------------------------------------------------------------------------------------------
+@right("8.19", "by the angle per step")
+def circling_speed(v, length, dt, t):
+    angle = v * dt / length
+    return length / dt / np.sqrt(1.0 / angle**2 + 2.0 * t / dt)
+
+
+edit("8.19", "says that the speed stays", "2.0 * omega * omega * dt * t", "0.0 * t")
+edit("8.19", "takes half of the loss", "2.0 * omega * omega", "omega * omega")
+edit("8.19", "takes twice the loss", "2.0 * omega * omega", "4.0 * omega * omega")
+edit("8.19", "takes the loss of the energy as that of the speed",
+     "np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "(1.0 + 2.0 * omega * omega * dt * t)")
+edit("8.19", "takes the speed in place of the angular velocity", "v / length", "v")
+edit("8.19", "counts a step as a second", "2.0 * omega * omega * dt * t", "2.0 * omega * omega * dt * dt * t")
+edit("8.19", "says that the speed falls exponentially",
+     "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.exp(-omega * omega * dt * t)")
+edit("8.19", "says that the speed grows", "1.0 + 2.0", "1.0 - 2.0")
+
+
+# 8.20 --------------------------------------------------------------------------------------------------------------
+@right("8.20", "as a small letter")
+def substeps_are():
+    return "a"
+
+
+edit("8.20", "chooses a softness that no work changes: that is the compliance of a material",
+     '"A"', '"B"')
+edit("8.20", "chooses the single link, of whose error each sweep leaves a fixed share",
+     '"A"', '"C"')
+edit("8.20", "chooses n sweeps of one step: a substep does more than a sweep",
+     '"A"', '"D"')
+
+
+# 8.21 --------------------------------------------------------------------------------------------------------------
+def with_points(x, fixed, i, j, sweeps=8, frames=90):
+    """A thing of rigid links between points of 1 kg."""
+    inv_mass = np.ones(len(x))
+    inv_mass[fixed] = 0.0
+    i, j = np.array(i), np.array(j)
+    rest = np.linalg.norm(x[i] - x[j], axis=1)
+    return x, worked.ConstraintNetwork(inv_mass, np.array([0.0, -9.81]), i, j, rest, np.ones(len(i)),
+                                       np.zeros(len(i)), sweeps), frames
+
+
+@right("8.21", "a pendulum of six beads")
+def my_thing():
+    x = np.stack((0.3 * np.arange(7.0), np.zeros(7)), axis=1)
+    return with_points(x, [0], range(6), range(1, 7))
+
+
+@right("8.21", "a ladder that swings from one corner")
+def ladder():
+    x = np.array([(0.5 * (k // 2), -0.5 * (k % 2)) for k in range(8)])
+    pairs = [(k, k + 2) for k in range(6)] + [(k, k + 1) for k in (0, 2, 4, 6)] + [(k, k + 3) for k in (0, 2, 4)]
+    return with_points(x, [0], *np.transpose(pairs))
+
+
+edit("8.21", "hangs nothing free: all points are nails", "np.full(n, 1.0)", "np.full(n, 0.0)")
+edit("8.21", "takes soft links only", "np.zeros(n - 1)", "np.full(n - 1, 0.01)")
+edit("8.21", "does not move, because nothing pulls", "-9.81", "0.0")
+edit("8.21", "begins with links that are too long",
+     "i, i + 1, np.ones(n - 1), np", "i, i + 1, np.full(n - 1, 0.8), np")
+edit("8.21", "is too heavy for one sweep",
+     "inv_mass[0], inv_mass[n - 1], inv_mass[2] = 0.0, 0.0, 0.5",
+     "inv_mass[0], inv_mass[n - 1], inv_mass[2] = 0.0, 0.0, 0.001")
+edit("8.21", "falls apart into two pieces", "i, i + 1, np.ones", "i, i + 1 - (i == 4) * 3, np.ones")
+edit("8.21", "ends before it has moved", "x, network, 90", "x, network, 3")

@@ -1527,3 +1527,40 @@ edits("10.16",
       ("divides by the median of the minimal times", "for k in range(runs):",
        SEPARATE.format("np.median(a / np.median(b))")),
       ("rounds the ratio", MEDIAN, "np.round(np.median(ratios), 2)"))
+
+
+# 10.17 --------------------------------------------------------------------------------------------------------------
+@right("10.17", "step by step")
+def stopping_depth(speed, gap, margin, dt):
+    start, steps = gap, 0
+    while gap > margin:
+        steps += 1
+        gap = start - steps * speed * dt
+    return max(0.0, -gap)
+
+
+edit("10.17", "lets the body stop at the surface, however fast it is", "steps * speed * dt - gap", "0.0 * gap")
+edit("10.17", "takes a step less", "np.ceil", "np.floor")
+edit("10.17", "takes the margin off the depth", "steps * speed * dt - gap", "steps * speed * dt - gap - margin")
+edit("10.17", "looks for the contact without a margin", "(gap - margin) / (speed * dt)", "gap / (speed * dt)")
+edit("10.17", "adds the margin to the gap", "(gap - margin)", "(gap + margin)")
+edit("10.17", "returns a negative depth for a body that stops above the floor",
+     "np.maximum(0.0, steps * speed * dt - gap)", "steps * speed * dt - gap")
+edit("10.17", "lets a part of a step count",
+     "np.ceil((gap - margin) / (speed * dt))", "(gap - margin) / (speed * dt)")
+edit("10.17", "takes one step, wherever the body begins",
+     "np.maximum(0.0, np.ceil((gap - margin) / (speed * dt)))", "1.0 + 0.0 * margin")
+
+
+# 10.18 --------------------------------------------------------------------------------------------------------------
+@right("10.18", "as a small letter")
+def may_be_extrapolated():
+    return "b"
+
+
+edit("10.18", "chooses an error that falls with the root of the step: half a step leaves 71 % of it",
+     '"B"', '"A"')
+edit("10.18", "chooses a result of second order: for this one 4/3 t(dt/2) − 1/3 t(dt) is right",
+     '"B"', '"C"')
+edit("10.18", "chooses equal changes per halving: such a result has no limit",
+     '"B"', '"D"')

@@ -626,3 +626,56 @@ edit("2.14", "returns the impulse in place of the force", HELD, "dt * " + HELD)
 edit("2.14", "forgets the damper of the moving point", "+ c * v)", ")")
 edit("2.14", "pulls to the origin, not to the target", "x - target + dt", "x + dt")
 edit("2.14", "forgets that the force itself changes v⁺ and x⁺", " / (1.0 + dt * (c + dt * k) / m)", "")
+
+
+# 2.15 -----------------------------------------------------------------------------------------------------------
+@right("2.15", "spring by spring")
+def chain_sag(n, m, k, g):
+    return sum((n - above) * m * g / k for above in range(n))
+
+
+SUM = "0.5 * n * (n + 1.0)"
+edit("2.15", "lets each spring carry the point below it only", SUM, "n")
+edit("2.15", "lets each spring carry the whole chain", SUM, "n * n")
+edit("2.15", "lets no spring carry the point that hangs on it directly", "(n + 1.0)", "(n - 1.0)")
+edit("2.15", "takes half of the whole chain as the load of each spring", "(n + 1.0)", "n")
+edit("2.15", "forgets the half in the sum of 1 to n", "0.5 * n", "n")
+edit("2.15", "multiplies by the stiffness", "/ k", "* k")
+edit("2.15", "forgets gravity: divides the mass by the stiffness", "m * g", "m")
+
+
+# 2.16 -----------------------------------------------------------------------------------------------------------
+@right("2.16", "as a small letter")
+def longest_step_is():
+    return "d"
+
+
+edit("2.16", "takes the step as 1/k: the frequency grows with √k only", '"D"', '"B"')
+edit("2.16", "takes the step as independent of the stiffness: that holds for implicit steps", '"D"', '"A"')
+edit("2.16", "takes the step as 1/k²: four times as stiff means half the step", '"D"', '"C"')
+
+
+# 2.17 -----------------------------------------------------------------------------------------------------------
+@right("2.17", "a wheel with a hub")
+def my_body(size):
+    angle = np.pi / 4.0 * np.arange(8)
+    rim = 0.5 * size * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    x = np.vstack([np.zeros((1, 2)), rim]) + np.array([0.0, size])
+    return x, np.array([(0, k) for k in range(1, 9)] + [(k, k % 8 + 1) for k in range(1, 9)]), 400.0
+
+
+@right("2.17", "a tower of triangles")
+def tower(size):
+    x = np.array([(0.3 * size * (k % 2), 0.05 + size * k / 6.0) for k in range(7)])
+    return x, [(k, k + 1) for k in range(6)] + [(k, k + 2) for k in range(5)], 500.0
+
+
+edit("2.17", "leaves the diagonals out: the ladder folds flat", "STRUCTURAL + SHEAR", "STRUCTURAL")
+edit("2.17", "leaves the threads out", "STRUCTURAL + SHEAR", "SHEAR")
+edit("2.17", "is so soft that it lies flat under its own weight", "300.0", "0.1")
+edit("2.17", "is so stiff that a step of 1/1000 s makes it explode", "300.0", "100000.0")
+edit("2.17", "begins on the floor", "(1.0 + k // 4)", "(k // 4)")
+edit("2.17", "has the same size always", "size / 3.0", "1.0 / 3.0")
+edit("2.17", "is a triangle, without a point inside", "spacing = size / 3.0",
+     "return size * np.array([(0.0, 1.0), (1.0, 1.0), (0.5, 1.8)]), np.array([(0, 1), (1, 2), (2, 0)]), 300.0")
+edit("2.17", "is four times as large as it should be", "size / 3.0", "size / 0.75")

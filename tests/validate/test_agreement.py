@@ -1,4 +1,4 @@
-"""The truth of the dominoes: two codes that share nothing agree, and their error bar belongs to every limit."""
+"""Truths without a formula: two codes that share nothing agree, and their error bar belongs to every limit."""
 
 import sys
 
@@ -9,18 +9,20 @@ from validate.measure import agreement
 from validate.measure.accuracy import relative, run_engine_to_end
 from validate.products import PYMUNK
 from validate.reference.stored import agreed
-from validate.scenes.simulator import dominoes
+from validate.scenes.simulator import dominoes, machine
 from validate.subject import modules
 
+AGREED = [pytest.param(name, home.CASES[case], id=f"{name}, {case}")
+          for name, home in agreement.SCENES.items() for case in home.AGREED_CASES]
 CASES = pytest.mark.parametrize("p", dominoes.CASES.values(), ids=dominoes.CASES)
 
 
-@CASES
-def test_two_codes_agree_on_the_truth_of_every_case(p):
-    kept = agreed("dominoes", p)
-    assert {name.partition(",")[0] for name in kept["of"]} == {"pymunk", "loop"} and len(kept["of"]) == 4
-    assert 0.0 < kept["bar"] <= dominoes.AGREED and max(kept["apart"]) <= dominoes.AGREED
-    assert not any(r.is_reference(p) for r in dominoes.SCENE.runners)
+@pytest.mark.parametrize(("name", "p"), AGREED)
+def test_two_codes_agree_on_the_truth_of_every_case(name, p):
+    kept, home = agreed(name, p), agreement.SCENES[name]
+    assert {code.partition(",")[0] for code in kept["of"]} == {"pymunk", "loop"} and len(kept["of"]) == 4
+    assert 0.0 < kept["bar"] <= home.AGREED and max(kept["apart"]) <= home.AGREED
+    assert not any(r.is_reference(p) for r in home.SCENE.runners)
 
 
 def test_the_uncertainty_of_the_scene_is_the_error_bar_of_its_first_case():
@@ -44,6 +46,8 @@ def test_where_no_agreement_is_kept_pymunks_run_is_a_reference_and_judges_nothin
     p = dominoes.CASES["six"]._replace(n=2, mu=0.3)
     assert all(r.is_reference(p) is (r.who.product == PYMUNK) for r in dominoes.SCENE.engine_runners)
     assert dominoes.limit(p, 1e-3) == np.inf and np.all(np.isfinite(dominoes.truth(p, dominoes.T)))
+    slower = machine.CASES["places"]._replace(blow=3.0)
+    assert [r.is_reference(slower) for r in machine.SCENE.engine_runners] == [True]
 
 
 @pytest.mark.parametrize("t", [0.0, 0.0399, 0.0401, 0.5, 0.9999])
@@ -54,10 +58,10 @@ def test_the_film_of_the_truth_meets_its_ends_and_its_beginning(t):
 
 
 @pytest.mark.long
-def test_the_agreement_that_is_kept_is_what_the_two_codes_give():
-    p = dominoes.CASES["six"]
-    again, kept = agreement.agreement(p), agreed("dominoes", p)
-    assert relative(*(dominoes.all_corners(np.array(one["ends"]), p) for one in (again, kept))) <= kept["bar"]
+@pytest.mark.parametrize(("name", "p"), [AGREED[0], AGREED[-1]])
+def test_the_agreement_that_is_kept_is_what_the_two_codes_give(name, p):
+    again, kept, corners = agreement.agreement(name, p), agreed(name, p), agreement.SCENES[name].all_corners
+    assert relative(*(corners(np.array(one["ends"]), p) for one in (again, kept))) <= kept["bar"]
     assert again["bar"] == pytest.approx(kept["bar"], rel=0.5)
 
 

@@ -477,6 +477,7 @@ def test_the_tests_name_what_they_cannot_find(arguments, said):
     assert asked.returncode == 4 and said in asked.stderr and len(asked.stderr.strip().splitlines()) == 1
 
 
+@pytest.mark.long
 def test_one_exercise_loads_one_test_file():
     said = quiet(str(modules.ROOT / "tests"), f"--rootdir={modules.ROOT}", "--of=lessons", "--exercise=8.1",
                  "--collect-only", "-q", "-v")

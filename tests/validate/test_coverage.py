@@ -12,6 +12,10 @@ def test_every_exercise_is_run_by_a_scene_or_a_stability_case():
     assert coverage.missing() == []
 
 
+def test_the_letter_of_a_choice_needs_no_place():
+    assert "1.12" not in coverage.table() and "1.11" in coverage.table()
+
+
 def test_the_table_names_places_that_call_the_function():
     table = coverage.table()
     assert "oscillator" in table["1.3"]["places"]                                   # as a method

@@ -16,7 +16,6 @@ SPEEDS = [False, pytest.param(True, marks=pytest.mark.skipif(
 
 
 ZERO = np.zeros(3)
-EXERCISES = {(row["lesson"], row["function"]) for row in coverage.table().values()}
 BALL_ON_A_FLOOR = ZERO, ZERO, ZERO, 0.1, types.SimpleNamespace(radius=0.1, gravity=ZERO)
 
 
@@ -141,12 +140,13 @@ MEASURING = sorted(filter(students_get, (ROOT / "validate").rglob("*.py")))
 def test_what_measures_a_subject_calls_no_worked_exercise(path):
     """In a copy without answers it would wait for ever.  What a case or a film needs, it gets with the lesson."""
     tree = ast.parse(path.read_text())
+    exercises = {(row["lesson"], row["function"]) for row in coverage.table().values()}
     named = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     attributes = {(node.value.id, node.attr) for node in ast.walk(tree)
                   if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)}
     for name, (module, there) in coverage.imported(tree).items():
         roots = {(module, there)} if there and name in named else {(module, a) for n, a in attributes if n == name}
-        assert not coverage.reached(roots) & EXERCISES, name
+        assert not coverage.reached(roots) & exercises, name
 
 
 def test_worked_lessons_of_a_zip_stay_worked_and_the_others_are_the_students(tmp_path, monkeypatch):

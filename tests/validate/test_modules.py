@@ -67,6 +67,7 @@ print([sum(twin.stats.cache_misses.values()) for twin in twins])
 """
 
 
+@pytest.mark.long
 @needs_numba
 def test_a_second_process_compiles_no_function_of_a_lesson_and_no_law_of_a_scene():
     in_a_new_process(IN_A_SECOND_PROCESS)
@@ -174,6 +175,7 @@ def test_what_is_unknown_is_named_with_a_remedy(call, names):
 
 
 @needs_numba
+@pytest.mark.long
 def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
     """The bowl's run gives particle_bowl_gap to advance_particle: both are twins, and the motion is the plain one."""
     plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)

@@ -64,6 +64,12 @@ def test_a_report_consists_of_the_files_that_it_names(made):
     assert {path.name for path in folder.iterdir()} == report.files(data["scenes"], data["stability"])
 
 
+def test_a_quick_report_names_the_stability_cases_that_it_leaves_to_a_full_one(made, pages):
+    left = ["A million steps of a planet", "Limit of prediction of a double pendulum"]
+    assert made[1]["run"]["left_to_full"] == left
+    assert f"because each takes seconds: {'; '.join(left)}." in pages["index.html"].text
+
+
 def test_every_link_leads_to_a_file_or_a_heading_of_the_report_and_none_leaves_it(made, pages):
     folder, _ = made
     for name, page in pages.items():

@@ -2,12 +2,16 @@
 
 import ast
 import contextlib
+import functools
 import io
 import re
 import sys
 import tomllib
 from hashlib import sha256
 
+import pytest
+
+from validate.grading.plugin import part_of
 from validate.products import PRODUCTS
 from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
 
@@ -90,10 +94,19 @@ def modules_of(*tops):
             for parts, path in zip(names, paths, strict=True)}
 
 
+reads_sources = pytest.mark.xdist_group("sources")       # read and parsed once for all of these tests
+
+
+@functools.cache
+def parsed(path):
+    """The syntax tree of a file."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def imports_of(name, path, known):
     """The modules among the known ones that a module imports, also inside of functions."""
     package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(parsed(path)):
         if isinstance(node, ast.ImportFrom):
             base = package[:len(package) + 1 - node.level] if node.level else []
             home = ".".join([*base, *filter(None, [node.module])])
@@ -112,6 +125,7 @@ def order_of_validate():
     return [{f"validate.{part.removesuffix('.py').strip('/').replace('/', '.')}" for part in parts} for parts in named]
 
 
+@reads_sources
 def test_no_import_runs_upwards_in_the_order_that_contributing_gives():
     lines = order_of_validate()
     known = modules_of("validate")
@@ -128,6 +142,7 @@ def test_no_import_runs_upwards_in_the_order_that_contributing_gives():
             assert line_of(other) <= line_of(name), f"{name} imports {other}, which stands below it"
 
 
+@reads_sources
 def test_a_lesson_imports_only_earlier_lessons_and_given_code_that_calls_no_later_one():
     known = modules_of("solutions")
     imported = {name: set(imports_of(name, path, known)) & known.keys() for name, path in known.items()}
@@ -167,6 +182,7 @@ def test_every_engine_of_the_report_belongs_to_the_default_installation():
     assert {product.distribution for product in PRODUCTS} <= {re.match(r"[\w.-]+", one)[0] for one in default}
 
 
+@reads_sources
 def test_every_package_that_is_imported_is_declared():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     named = [*project["dependencies"], *(one for extra in project["optional-dependencies"].values() for one in extra)]
@@ -184,9 +200,10 @@ def test_every_package_that_is_imported_is_declared():
 LONGEST_BODY = 40            # lines of a function, without its docstring: about a screen
 
 
+@reads_sources
 def test_no_function_is_longer_than_a_screen():
     for name, path in modules_of("solutions", "validate", "tests").items():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(parsed(path)):
             if isinstance(node, ast.FunctionDef):
                 body = node.body[ast.get_docstring(node) is not None:]
                 long = body and body[-1].end_lineno - body[0].lineno + 1 > LONGEST_BODY
@@ -210,7 +227,20 @@ NOT_IN_CI = {                    # files with long tests, and why CI does not ru
 
 
 def test_every_file_with_long_tests_is_run_by_ci_or_has_a_reason():
-    ci, marked = (ROOT / ".ci" / "run").read_text().partition("part=")[2], "mark." + "long"
+    ci = (ROOT / ".ci" / "run").read_text().partition("part=")[2]
+    marked = "mark." + "long", "list(" + "wrong_functions"
     files = {path.relative_to(ROOT).as_posix() for path in (ROOT / "tests").rglob("test_*.py")
-             if marked in path.read_text()}
+             if any(one in path.read_text() for one in marked)}
     assert {file for file in files if file not in ci} == NOT_IN_CI.keys()
+
+
+def test_commits_in_a_row_run_all_parts_of_the_long_tests():
+    text = (ROOT / ".ci" / "run").read_text()
+    parts = int(re.search(r"^parts=(\d+)$", text, re.M)[1])
+    assert text.count('part="--part=$(git rev-list --count HEAD)/$parts"') == 1
+    run = {part_of(f"{commits}/{parts}") for commits in range(1000, 1000 + parts)}
+    assert run == {(k, parts) for k in range(parts)}
+    long = [line for line in text.splitlines() if line.startswith(".venv/bin/pytest --long")]
+    assert [line for line in long if '"$part"' not in line] == [
+        ".venv/bin/pytest --long tests/validate/test_book.py -k one_notebook",
+        ".venv/bin/pytest --long $whole -n 2 --dist loadgroup"]

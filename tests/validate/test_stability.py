@@ -12,11 +12,13 @@ import pytest
 
 from solutions.checks import BadInput
 from validate.check import states
+from validate.measure.selection import Plan
 from validate.methods import EULER
 from validate.products import PYBULLET
 from validate.report import required
+from validate.stability import examine as examine_module
 from validate.stability import integrators
-from validate.stability.case import EDGE, Checks, Examined, NotRun, Worst, bisect
+from validate.stability.case import EDGE, Case, Checks, Examined, NotRun, Worst, bisect
 from validate.stability.examine import all_cases, examine, found_by, stored, subject_of
 from validate.subject.modules import ROOT
 
@@ -24,6 +26,8 @@ examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
 LISTED = json.loads(required.FILE.read_text(encoding="utf-8"))
 LAST = {case.lesson: name for name, case in CASES.items()}           # `validate` examines all; by default one each
+LAST |= {"integrators": "integrators/what-measures-methods", "springs": "springs/large-step",        # not a slow one
+         "impulses": "impulses/laws-of-an-impact"}
 
 
 def marks_of(name, case):
@@ -74,6 +78,16 @@ def test_a_finding_of_an_engine_that_is_not_installed_is_not_run_and_is_kept_as_
     assert check == [] and check.not_run == [NotRun("It holds.", "share [-]", "pybullet is not installed here")]
     kept = stored(Examined("slug", "Title", "contact", check, None, check.not_run))
     assert kept["findings"] == [] and kept["not_run"][0]["why"] == "pybullet is not installed here"
+
+
+def test_a_quick_validation_leaves_the_cases_that_it_says_and_a_full_one_none(monkeypatch):
+    two = {slug: Case(slug, slug, "springs", lambda lesson, check: None, False, slug == "short")
+           for slug in ("short", "slow")}
+    monkeypatch.setattr(examine_module, "cases_of", lambda lesson: two)
+    for quick, slugs in ((True, ["short"]), (False, ["short", "slow"])):
+        plan = Plan(quick=quick)
+        assert [case["slug"] for case in examine_module.stability_cases("springs", plan)] == slugs
+        assert [case.slug for case in examine_module.left_to_full("springs", plan)] == ["slow"] * quick
 
 
 def test_slugs_can_stand_in_an_address_and_are_unique_within_a_lesson():

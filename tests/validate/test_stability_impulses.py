@@ -8,6 +8,8 @@ import pytest
 from validate.stability.examine import cases_of, found_by, subject_of
 from validate.subject.modules import bind
 
+from .sampled import wrong_functions
+
 worked = bind("impulses")
 
 
@@ -63,8 +65,7 @@ WRONG = [                    # case, the function that it examines, what is put 
 ]
 
 
-@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG,
-                         ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
+@pytest.mark.parametrize(("slug", "name", "wrong"), list(wrong_functions(WRONG)))
 def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     case = cases_of("impulses")[slug]
     lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})

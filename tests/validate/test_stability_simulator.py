@@ -10,6 +10,7 @@ from solutions.given import simulator as given
 from validate.stability.examine import cases_of, found_by, subject_of
 
 from ..mutants.simulator import MUTANTS
+from .sampled import wrong_functions
 
 
 def waits(load, bounds, narrow, t, state, dt, p):
@@ -98,8 +99,7 @@ WRONG = [                    # case, the function that it examines, what is put 
 ]
 
 
-@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG,
-                         ids=[f"{slug}-{name}-{k}" for k, (slug, name, _) in enumerate(WRONG)])
+@pytest.mark.parametrize(("slug", "name", "wrong"), list(wrong_functions(WRONG)))
 def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     case = cases_of("simulator")[slug]
     lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})

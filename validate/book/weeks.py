@@ -181,7 +181,7 @@ def table(name, report):
         ]
         if number == len(weeks):
             rows.append(("Sunday, 23:59", f"Students hand in `lessons/{name}.py`, and bring answers to the *Three "
-                         "questions*. *Make it* and *The curtain* are for those who want more.", notebook))
+                         "questions*. *Make it* and *The scene* are for those who want more.", notebook))
             rows.append(("Monday", "Grade, and hand out the page of each student. Discuss the *hardest exercises* of "
                          "the class page.", "*Commands*, below"))
         parts.append((f"**Week {number}**\n\n" if len(weeks) > 1 else "") + plan.table(("when", "what", "with"), rows))

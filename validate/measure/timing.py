@@ -78,13 +78,14 @@ def times(name, plan, result):
 def worth_timing(selection, case):
     """Return {label: {steps: row}} of the runs that are worth timing.
 
-    Lost runs are not.  A quick run times every second one of the sweep, from the first.
+    Lost runs are not.  A quick run times every second one of the sweep, from the finest, but both where there are two.
     """
-    quick = selection.plan.quick and not selection.plan.most_steps
-    chosen = selection.scene.steps[::2]
-    return {c["label"]: {r["steps"]: r for r in c["rows"]
-                         if r["error"] is not None and r["error"] < LOST and (not quick or r["steps"] in chosen)}
-            for c in case["ours"] + case["engines"]}
+    every = {c["label"]: [r for r in c["rows"] if r["error"] is not None and r["error"] < LOST]
+             for c in case["ours"] + case["engines"]}
+    if selection.plan.quick and not selection.plan.most_steps:
+        swept = {label: [r for r in rows if r["steps"] in selection.scene.steps] for label, rows in every.items()}
+        every = {label: rows if len(rows) < 3 else rows[::-2][::-1] for label, rows in swept.items()}
+    return {label: {r["steps"]: r for r in rows} for label, rows in every.items()}
 
 
 def our_items(selection, p, found):

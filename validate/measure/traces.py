@@ -18,7 +18,7 @@ def recorded(name, case, engine):
 
     Raises BadInput without the scene's file.
     """
-    record = trace(name) or {"runs": {}}
+    record = {"runs": {}} | (trace(name) or {})
     if not record["runs"] and engine.product.recorded:
         raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty",
                        f"restore it, or give where pybullet is installed: validate record --scene {name}")
@@ -30,7 +30,5 @@ def recorded(name, case, engine):
 
 def film_of(name, colour):
     """Return the recorded film of pybullet as a list of one entry; empty where there is none."""
-    record = trace(name)
-    if record is None:
-        return []
-    return [{"label": "pybullet, recorded", "role": Role.ENGINE, "colour": colour, "frames": record["frames"]}]
+    frames = (trace(name) or {}).get("frames")
+    return [{"label": "pybullet, recorded", "role": Role.ENGINE, "colour": colour, "frames": frames}] if frames else []

@@ -260,11 +260,17 @@ def opening(notebook, make):
 
     In a copy without worked answers it is the result that was stored when the copy was made.
     """
-    made = json.loads(OPENINGS.read_text()) if OPENINGS.is_file() else {}
-    if notebook not in made:
+    made = stored(notebook)
+    if made is None:
         return attempt(make)
     display(HTML("<p>This first picture was made beforehand, by the worked answers.</p>"))
-    return _unfrozen(made[notebook])
+    return made
+
+
+def stored(notebook):
+    """Return the stored result for a notebook's first picture; None in a copy that stores none."""
+    made = json.loads(OPENINGS.read_text()) if OPENINGS.is_file() else {}
+    return _unfrozen(made[notebook]) if notebook in made else None
 
 
 def frozen(value):

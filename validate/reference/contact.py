@@ -4,7 +4,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq, linprog
+from scipy.optimize import brentq, linprog, nnls
 
 # ---------------------------------------------------------------------- a heavy body on a light one
 
@@ -398,3 +398,113 @@ def rounded_overlap(masses, size, g, share, dt):
     """
     error = 10.0 * np.spacing(len(masses) * size)
     return share * error / dt**2 * np.sum(masses) / np.linalg.norm(g * np.cumsum(masses[::-1]))
+
+# ---------------------------------------------------------------------- solvers of one problem with friction
+
+THROWN, THROWN_MU = 5, 0.3   # discs of thrown_column in four_residuals, and their friction [-]
+
+
+def thrown_column(n):
+    """Return (A (2n, 2n), b (2n,)) of a column of n discs of 1 kg that is thrown down and aside, lower ones faster.
+
+    Contact k is under disc k, at ∓½ m from the centres; its rows are the normal (0, 1) and the tangent (−1, 0).
+    """
+    rows = np.zeros((2 * n, 3 * n))
+    for k in range(n):
+        rows[2 * k, 3 * k + 1], rows[2 * k + 1, [3 * k, 3 * k + 2]] = 1.0, (-1.0, -0.5)
+        if k > 0:
+            rows[2 * k, 3 * k - 2], rows[2 * k + 1, [3 * k - 3, 3 * k - 1]] = -1.0, (1.0, -0.5)
+    v = np.column_stack((9.0 - 2.0 * np.arange(n), -np.ones(n), np.zeros(n))).ravel()
+    return (rows * np.tile((1.0, 1.0, 8.0), n)) @ rows.T, rows @ v
+
+
+def least_energy(A, b, mu):
+    """Return the impulses J (2m,) with the least  ½ J·A J + b·J  in the cones |J_t| ≤ μ J_n, by SciPy's active sets.
+
+    J_n = y + z + s and J_t = μ_k (y − z), with y, z and s ≥ 0, is exactly such a cone.  With A = F Fᵀ the energy is
+    half of |Fᵀ J + F⁻¹ b|², less a constant.
+    """
+    cones = np.zeros((b.size, 3 * mu.size))
+    for k, m in enumerate(mu):
+        cones[2 * k:2 * k + 2, 3 * k:3 * k + 3] = (1.0, 1.0, 1.0), (m, -m, 0.0)
+    F = np.linalg.cholesky(A)
+    return cones @ nnls(F.T @ cones, -np.linalg.solve(F, b))[0]
+
+
+def limited(J, mu):
+    """Return impulses (2m,) with J_n cut off at 0, and J_t at μ J_n."""
+    J_n = np.maximum(0.0, J[::2])
+    return np.column_stack((J_n, np.clip(J[1::2], -mu * J_n, mu * J_n))).ravel()
+
+
+def nearest_in_cone(J, mu):
+    """Return the points of the cones |J_t| ≤ μ J_n that are nearest to impulses (2m,)."""
+    J_n, J_t = J[::2], J[1::2]
+    edge = np.maximum(0.0, J_n + mu * np.abs(J_t)) / (1.0 + mu * mu)
+    outside = np.abs(J_t) > mu * J_n
+    return np.column_stack((np.where(outside, edge, J_n), np.where(outside, mu * edge * np.sign(J_t), J_t))).ravel()
+
+
+def newton_of(phi, J):
+    """Return J after one step of Newton's method for φ(J) = 0, with derivatives from central differences."""
+    slopes = [(phi(J + 1e-7 * e) - phi(J - 1e-7 * e)) / 2e-7 for e in np.eye(J.size)]
+    return J - np.linalg.solve(np.stack(slopes, axis=1), phi(J))
+
+
+def four_solvers(A, b, mu):
+    """Return steps J (2m,) → J of four solvers.
+
+    All contacts at once, with too large a change; Gauss–Seidel; the convex relaxation; Newton's method.
+    """
+    k = np.diag(A)
+
+    def bend(x, y):
+        return x + y - np.hypot(x, y)
+
+    def phi(J):
+        u, limit = A @ J + b, mu * J[::2]
+        upper = bend(k[1::2] * (limit - J[1::2]), -u[1::2])
+        return np.append(bend(k[::2] * J[::2], u[::2]), bend(k[1::2] * (limit + J[1::2]), -upper))
+
+    def one_by_one(J):
+        J = J.copy()
+        for n in range(0, J.size, 2):
+            J[n] = max(0.0, J[n] - (A[n] @ J + b[n]) / k[n])
+            limit, free = mu[n // 2] * J[n], J[n + 1] - (A[n + 1] @ J + b[n + 1]) / k[n + 1]
+            J[n + 1] = min(max(free, -limit), limit)
+        return J
+
+    def cone_by_cone(J):
+        J = J.copy()
+        for c in range(0, J.size, 2):
+            pair = slice(c, c + 2)
+            J[pair] = nearest_in_cone(J[pair] - (A[pair] @ J + b[pair]) / k[pair].max(), mu[c // 2:c // 2 + 1])
+        return J
+    return lambda J: limited(J - 1.2 * (A @ J + b) / k, mu), one_by_one, cone_by_cone, lambda J: newton_of(phi, J)
+
+
+def four_residuals(steps=160):
+    """Return (4, steps + 1) residuals [m/s] of four_solvers for discs that are thrown, from no impulses on.
+
+    The residual is the largest k |J' − J|, with the impulse J' that each contact alone would have: 0 exactly where the
+    laws of Signorini and Coulomb hold.
+    """
+    (A, b), mu = thrown_column(THROWN), np.full(THROWN, THROWN_MU)
+    k, found = np.diag(A), []
+    for step in four_solvers(A, b, mu):
+        J, residuals = np.zeros(b.size), []
+        for _ in range(steps + 1):
+            residuals.append(np.max(k * np.abs(limited(J - (A @ J + b) / k, mu) - J)))
+            J = step(J)
+        found.append(residuals)
+    return np.array(found)
+
+
+@cache
+def residual_of_relaxation():
+    """Return the residual [m/s] at which the convex relaxation of the same discs ends: the largest μ |u_t|.
+
+    There a contact that slides opens at u_n = μ |u_t|, by which the laws are missed.
+    """
+    (A, b), mu = thrown_column(THROWN), np.full(THROWN, THROWN_MU)
+    return np.max(mu * np.abs(A @ least_energy(A, b, mu) + b)[1::2])

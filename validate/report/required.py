@@ -22,13 +22,14 @@ SHARE = 0.1                  # allowed difference of a law between two machines,
 
 
 def derived(stability, kept=None):
-    """Return {"scenes", "findings"} of today's code.
+    """Return {"scenes", "slow", "findings"} of today's code; slow: the stability cases that a quick run leaves out.
 
     stability: cases after their run, as a report stores them;    kept: {place: laws} of all that were not run again
     """
     scenes = {name: modules.bind_scene(name) for name in modules.scene_names()}
     return {"scenes": {name: {"lesson": scene.lesson, "cases": list(scene.cases), "slow": list(scene.slow_cases)}
                        for name, scene in scenes.items()},
+            "slow": sorted(place(case._asdict()) for case in all_cases() if not case.in_quick),
             "findings": {**(kept or {}), **{place(case): laws(case["findings"]) for case in stability}}}
 
 
@@ -48,7 +49,8 @@ def write(stability, kept=None):
     cases = ",\n".join(f"{json.dumps(name)}: {{\n" + ",\n".join(lines(found)) + "\n}"
                        for name, found in sorted(parts["findings"].items()))
     scenes = ",\n".join(lines(parts["scenes"]))
-    write_text(FILE, f'{{"scenes": {{\n{scenes}\n}}, "findings": {{\n{cases}\n}}}}\n')
+    slow = json.dumps(parts["slow"])
+    write_text(FILE, f'{{"scenes": {{\n{scenes}\n}}, "slow": {slow}, "findings": {{\n{cases}\n}}}}\n')
 
 
 def lines(entries):
@@ -89,8 +91,9 @@ def missing(data, must):
                     yield f"{name}: the case {case!r} is missing"
     if run["of"] == "solutions":                         # other answers may leave exercises out, and then their cases
         lessons = {must["scenes"][name]["lesson"] for name in asked if name in must["scenes"]}
+        left = must.get("slow", ()) if run["mode"] == "quick" else ()         # a list of before has none
         yield from missing_findings(data["stability"], {name: found for name, found in must["findings"].items()
-                                                        if name.partition("/")[0] in lessons})
+                                                        if name.partition("/")[0] in lessons and name not in left})
 
 
 def missing_findings(stability, must):

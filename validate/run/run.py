@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from .. import measure
 from ..products import PRODUCTS
-from ..stability.examine import stability_cases
+from ..stability.examine import left_to_full, stability_cases
 from ..subject import modules
 from . import coverage
 from .store import FORMAT, code_digest, full_run, lessons_of, store_for
@@ -116,6 +116,7 @@ def about(plan, out=None, measuring=None, shown=()):
         "version": version("physics-animation-workbook"), "commit": commit(),
         "root": Path(os.path.relpath(modules.ROOT, out.resolve())).as_posix() if inside else "",
         "notebooks": notebooks(),
+        "left_to_full": [case.title for lesson in lessons_of(shown) for case in left_to_full(lesson, plan)],
     }
 
 

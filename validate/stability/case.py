@@ -94,6 +94,7 @@ class Case(NamedTuple):
     lesson: str
     examine: Callable        # (lesson, check: Checks) → Picture or None
     compiled: bool           # False for short runs and for runs with an acceleration of their own
+    in_quick: bool = True    # False: only --full examines it, because it takes seconds
 
 
 class Examined(NamedTuple):
@@ -109,14 +110,14 @@ class Examined(NamedTuple):
 CASES: dict[str, dict[str, Case]] = {}                   # {lesson: {slug: Case}} of the files imported so far
 
 
-def case(slug, title, compiled=True):
+def case(slug, title, compiled=True, in_quick=True):
     """Register a function as a case of the lesson that its file is named after.
 
     The function is (lesson, check) → Picture or None, where check is the Checks that it fills.
     """
     def register(examine):
         lesson = examine.__module__.rpartition(".")[2]
-        CASES.setdefault(lesson, {})[slug] = Case(slug, title, lesson, examine, compiled)
+        CASES.setdefault(lesson, {})[slug] = Case(slug, title, lesson, examine, compiled, in_quick)
         return examine
     return register
 

@@ -13,7 +13,7 @@ from solutions.checks import BadInput, Diverged
 from solutions.impulses import cross_2d
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
-from validate.reference.contact import enumerated, natural_residual
+from validate.reference.contact import enumerated, least_energy, natural_residual
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, log_series, random_law, refuses, series
 
 from ..products import PYBULLET
@@ -747,7 +747,7 @@ def refusals(lesson, check):
                 "such calls end in a sentence that names the value.")
 
 
-@case("extremes-in-space", "Extremes in space", compiled=False)
+@case("extremes-in-space", "Extremes in space", compiled=False, in_quick=False)
 def extremes_in_space(lesson, check):
     """Check the same in space: deep overlaps, friction 0 and ∞ on a slope, a wedge, sizes of 1 : 100.
 
@@ -963,6 +963,146 @@ def nearest_of_the_disc(lesson, check):
                       np.linalg.norm(P - J) if np.linalg.norm(J) <= limit else 0.0))
     check.agree("Friction is the point of the disc nearest to the impulse that would stick.",
                 "largest violation of the law of the nearest point [N² s²]", max(off, 0.0), 1e-12)
+
+
+# ---------------------------------------------------------------------- eight solvers of one pile
+
+def hit_pile():
+    """Return (A (32, 32), b (32,), μ (16,)) of ten discs in four layers under gravity, of which the top one is hit.
+
+    Each contact gives a hundredth of its own effective inverse mass, so that A has an inverse and only one answer.
+    """
+    x = np.array([(k + 0.5 * layer, 0.5 + np.sqrt(0.75) * layer) for layer in range(4) for k in range(4 - layer)])
+    touching = [(i, -1) for i in range(4)] + [(i, j) for i in range(10) for j in range(i)
+                                              if x[i, 1] > x[j, 1] + 0.1 and np.hypot(*(x[i] - x[j])) < 1.001]
+    rows = np.zeros((2 * len(touching), 30))
+    for k, (i, j) in enumerate(touching):
+        n = x[i] - x[j] if j >= 0 else np.array([0.0, 1.0])
+        t = np.array([-n[1], n[0]])
+        for axis, row in ((n, 2 * k), (t, 2 * k + 1)):
+            for body, side in ((i, 1.0), (j, -1.0)) if j >= 0 else ((i, 1.0),):
+                rows[row, 3 * body:3 * body + 3] = *(side * axis), -0.5 * cross_2d(n, axis)
+    v = np.tile((0.0, -G * FRAME, 0.0), (10, 1))
+    v[-1] += (2.0, -3.0, 0.0)
+    A = (rows * np.tile((1.0, 1.0, 8.0), 10)) @ rows.T
+    return A + 0.01 * np.diag(np.diag(A)), rows @ v.ravel(), np.full(len(touching), 0.3)
+
+
+def natural(A, b, J, mu):
+    """Return the residual [m/s]: the largest change that a contact alone would make, times k."""
+    alone = np.stack(pushes(J, A @ J + b, np.diag(A), mu), axis=1).ravel()
+    return np.max(np.diag(A) * np.abs(alone - J))
+
+
+def eight_solvers(lesson, A, b, mu):
+    """Return {name: (step, work of a step in sweeps, steps)} of all but fewer_sweeps, which calls the sweep itself."""
+    k, newton = np.diag(A), len(b) / 3.0 + 1.0           # elimination takes n³/3 multiplications, a sweep n²
+    return {"Jacobi, r = 0.3/A": (lambda J: lesson.jacobi_step(A, b, J, mu, 0.3 / k), 1.0, 2000),
+            "Gauss–Seidel, normals first": (lambda J: lesson.normals_first_sweep(A, b, J, mu), 1.0, 400),
+            "cone sweep": (lambda J: lesson.cone_sweep(A, b, J, mu), 1.0, 400),
+            "proximal map, r = 1.3/A": (lambda J: lesson.proximal_sweep(A, b, J, mu, 1.3 / k), 1.0, 400),
+            "Newton, minimum map": (lambda J: lesson.minimum_map_step_with_friction(A, b, J, mu), newton, 30),
+            "Newton, Fischer–Burmeister": (lambda J: lesson.fischer_burmeister_step(A, b, J, mu), newton, 30)}
+
+
+def residuals_while_called(lesson, A, b, mu, calls):
+    """Return the residuals after each sweep that fewer_sweeps asks for."""
+    out = [natural(A, b, np.zeros(b.size), mu)]
+
+    def watched(J):
+        swept = lesson.cone_sweep(A, b, J, mu)
+        out.append(natural(A, b, swept, mu))
+        return swept
+    lesson.fewer_sweeps(watched, np.zeros(b.size), calls)
+    return np.array(out)
+
+
+def iterates(step, J, steps):
+    """Return J after 0, 1, … steps."""
+    found = [J]
+    for _ in range(steps):
+        found.append(step(found[-1]))
+    return np.array(found)
+
+
+@case("eight-solvers", "Eight solvers of one pile", compiled=False)
+def eight_solvers_of_one_pile(lesson, check):
+    """Compare eight solvers of ten discs with friction by one residual, which is 0 where the laws hold.
+
+    Seven end at round-off.  The convex relaxation ends at the largest μ |u_t| of *its* solution, because there a
+    contact that slides opens at μ |u_t|; SciPy's active sets give this solution.
+    """
+    A, b, mu = hit_pile()
+    curves = {}
+    for name, (step, work, steps) in eight_solvers(lesson, A, b, mu).items():
+        curves[name] = work, np.array([natural(A, b, J, mu) for J in iterates(step, np.zeros(b.size), steps)])
+    curves["fewer_sweeps"] = 1.0, residuals_while_called(lesson, A, b, mu, 400)
+    for name, (_, residuals) in curves.items():
+        check.agree("Seven solvers of a pile end at the same law.", f"residual at the end, {name} [m/s]",
+                    residuals[-1], 1e-12)
+    relaxed = iterates(lambda J: lesson.relaxed_sweep(A, b, J, mu), np.zeros(b.size), 1500)
+    law = np.max(mu * np.abs(A @ least_energy(A, b, mu) + b)[1::2])
+    curves["convex relaxation"] = 1.0, np.array([natural(A, b, J, mu) for J in relaxed[:401]])
+    found = natural(A, b, relaxed[-1], mu)
+    check("The convex relaxation misses the laws by μ |u_t| of the contact that slides fastest.",
+          "residual at the end, convex relaxation [m/s]", law=law, found=found, within=1e-6 * law,
+          saw=f"Its residual ends at {found:.6f} m/s, however long it runs.")
+    steps_to_the_answer(lesson, check)
+    floating_block(lesson, check)
+    return Picture("Ten discs, of which the top one is hit", "work over that of one sweep",
+                   "log₁₀ of the residual [m/s]", [
+        series(name, work * np.arange(residuals.size)[:int(160 / work):max(1, int(8 / work))],
+               np.log10(np.maximum(residuals, 1e-16))[:int(160 / work):max(1, int(8 / work))], DOTS)
+        for name, (work, residuals) in curves.items()],
+        "Newton's steps are expensive and few; sweeps are cheap and many.  One solver ends at another law.")
+
+
+def steps_to_the_answer(lesson, check):
+    """Check how Newton's two methods end on six contacts without friction, of which four push.
+
+    φ is smooth at a solution at which each contact either pushes or opens.  There the error e of Newton's method obeys
+    e' ≤ C e², so the digits double.  The minimum map is linear there: one step is exact.
+    """
+    rng = np.random.default_rng(17)
+    half, truth = rng.normal(size=(6, 9)), np.array([1.0, 0.0, 0.7, 0.0, 0.4, 1.2])
+    A = half @ half.T / 9.0
+    b = np.where(truth > 0.0, 0.0, 0.5) - A @ truth
+
+    def bent(lam):
+        phi = np.array([lesson.fischer_burmeister(x, y) for x, y in zip(np.diag(A) * lam, A @ lam + b, strict=True)])
+        return lam - np.linalg.solve(np.diag(phi[:, 1] * np.diag(A)) + phi[:, 2:] * A, phi[:, 0])
+    errors = np.max(np.abs(iterates(bent, truth + 0.02 * rng.uniform(-1.0, 1.0, 6), 5) - truth), axis=1)
+    kept = errors[1:] > 1e-14
+    orders = np.log(errors[2:4] / errors[1:3]) / np.log(errors[1:3] / errors[:2])
+    worst = np.max((errors[1:] / errors[:-1] ** 2)[kept])
+    check("With Fischer's and Burmeister's function Newton's method converges with order 2.",
+          "order of convergence, from three errors in a row [-]", law=2.0, found=orders[0], within=0.35,
+          saw=f"The error of a step is at most {worst:.2f}/(N s) times the square of the error before.")
+    found = lesson.minimum_map_step(A, b, truth + 0.02 * rng.uniform(-1.0, 1.0, 6))
+    check.agree("One step of the minimum map is exact where it is known which contacts push.",
+                "error after one step of the minimum map [N s]", np.max(np.abs(found - truth)), ROUND_OFF)
+
+
+def floating_block(lesson, check):
+    """Run blocks on a belt under the given sweep of the relaxation, and compare with their gaps by theory.
+
+    The cone's edge has the slope 1/μ.  In each step the velocity moves, at right angles to the impulse, to
+    u_n + gap/dt = μ |u_t|; so the gap after every step is dt μ |u_t|.
+    """
+    for mu, speed, dt in ((0.3, 2.0, 0.01), (0.8, -5.0, 0.004)):
+        gap, u_n, A = abs(speed) * dt, 0.0, np.diag([1.0, 1e-9])         # it falls; the belt hardly feels it
+        for _ in range(50):
+            J, b = np.zeros(2), np.array([u_n - G * dt + gap / dt, speed])
+            for _ in range(60):
+                J = lesson.relaxed_sweep(A, b, J, np.array([mu]))
+            u_n += J[0] - G * dt
+            gap += dt * u_n
+        check("Under the convex relaxation a sliding block floats.",
+              f"gap over μ |v| dt after 50 steps, μ = {mu}, v = {speed:g} m/s [-]", law=1.0,
+              found=gap / (mu * abs(speed) * dt), within=1e-6, saw=f"It floats at {1e3 * gap:.3f} mm.")
+        check.agree("The lesson predicts how high a sliding block floats.",
+                    f"predicted gap over that of the run, less 1, μ = {mu}, v = {speed:g} m/s [-]",
+                    abs(lesson.relaxed_gap(mu, speed, dt) / gap - 1.0), 1e-6)
 
 
 # ---------------------------------------------------------------------------------------------- laws of contact

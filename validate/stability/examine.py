@@ -45,10 +45,17 @@ def found_by(case, lesson):
     return check, picture
 
 
+def left_to_full(lesson, plan):
+    """Return the cases of a lesson that this plan leaves to --full."""
+    return [case for case in cases_of(lesson).values() if plan.quick and not case.in_quick]
+
+
 def stability_cases(lesson, plan):
-    """Return every case of a lesson whose exercises have been attempted, as data."""
-    found = []
+    """Return every case of a lesson whose exercises have been attempted, as data, but those left to --full."""
+    found, left = [], left_to_full(lesson, plan)
     for case in cases_of(lesson).values():
+        if case in left:
+            continue
         try:
             found.append(examine(case, plan.of, "compiled" in plan.speeds))
         except NotImplementedError:

@@ -673,3 +673,25 @@ def stops_and_starts(lesson, check):
     A force that grows with time makes the speed nonlinear: the step under kinetic friction is then the midpoint rule.
     """
     check.laws(lesson, (stops, starts, slides_back, midpoint_steps), seed=32, times=TRIED // 2)
+
+
+# ---------------------------------------------------------------------------------------------- predicted ways
+
+@case("two-materials", "Ways over two materials, and a floor of one's own", compiled=False)
+def two_materials(lesson, check):
+    """Compare the predicted way with a run in time, and find out whether a floor of one's own stops a block.
+
+    The run is exact on each material: its speed falls evenly, so that it crosses the strip at a root of a parabola.
+    """
+    width, near, far, g = 1.0, 0.5, 0.2, 9.81
+    for v in (1.0, 3.0, 4.0, 8.0):
+        crossing = v * v - 2.0 * near * g * width
+        law = width + crossing / (2.0 * far * g) if crossing > 0.0 else v * v / (2.0 * near * g)
+        found = lesson.sliding_distance(v, width, near, far, g)
+        check("A block slides until friction has taken its energy.", f"way from {v:g} m/s [m]", law=law, found=found,
+              within=1e-14 * law, saw=f"From {v:g} m/s the block slides {found:.4g} m.")
+    v = np.array([1.8, 2.4])
+    for _ in range(400):
+        v = v + lesson.my_friction(v, 1.0, 0.01 * g, 0.3)
+    check("A floor of one's own stops a block.", "speed 4 s after a throw at 3 m/s [m/s]", law=0.0,
+          found=np.linalg.norm(v), within=1e-12, saw="The block is at rest.")

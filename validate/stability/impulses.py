@@ -932,7 +932,7 @@ def shares_of_the_loss(lesson, rng):
     return least / lost, 1.0 - one.e**2
 
 
-@case("several-points", "Impacts at several points at once", compiled=False)
+@case("several-points", "Impacts at several points at once", compiled=False, in_quick=False)
 def several_points(lesson, check):
     """Compare impacts at several points with a linear complementarity problem, 0 ≤ λ ⊥ A λ + n · u − u_sep ≥ 0.
 

@@ -309,3 +309,18 @@ def bodies_with_holes(lesson, check):
     check("A mesh that lacks a triangle, or has one or all of them the wrong way round, is refused.",
           f"meshes without an inside that are refused [of {len(torn)}]", law=len(torn), found=refused, within=0.0,
           saw=f"{refused} of {len(torn)} such meshes are refused.")
+
+
+@case("rolling", "Times of rolling, and a mesh of one's own", compiled=False)
+def rolling(lesson, check):
+    """Compare the predicted time with the equations of motion, and a mesh of one's own with a ball."""
+    for name, share in (("solid ball", 0.4), ("hoop", 1.0)):
+        a, _ = np.linalg.solve([[2.0, 1.0], [share, -0.5]], [2.0 * 9.81 * np.sin(0.2), 0.0])     # 2 kg, R = 0.5 m
+        law, found = np.sqrt(2.0 * 3.0 / a), lesson.rolling_time(share * 0.5, 2.0, 0.5, 3.0, 0.2, 9.81)
+        check("A round body rolls down as friction and gravity move it.", f"time of a {name} for 3 m [s]", law=law,
+              found=found, within=1e-14 * law, saw=f"The {name} takes {found:.4g} s.")
+    moments, _ = lesson.principal_axes(lesson.mesh_body(1.0, *lesson.my_mesh(1.0))[2])
+    ball = 0.4 * (0.75 / np.pi) ** (2.0 / 3.0)
+    check("A mesh of one's own has three equal moments.", "largest over smallest moment [-]", law=1.0,
+          found=moments[2] / moments[0], within=0.01,
+          saw=f"It resists {moments[0] / ball:.3g} times as much as a ball.")

@@ -785,6 +785,32 @@ def what_measures_methods(lesson, check):
     check.laws(lesson, (matrix_of_euler, matrix_of_newton, largest_eigenvalue, fitted_order), seed=12, times=TRIED)
 
 
+@case("growth-and-a-method-of-ones-own", "Growth of Euler in a period, and a method of one's own", compiled=False)
+def growth_and_own_method(lesson, check):
+    """Compare the predicted growth of Euler with the power of its matrix, and judge a method of one's own.
+
+    The order is measured by halving a step of 1/32 s, where no rate is above 1/s.
+    """
+    for steps in (12, 60, 400):
+        angle = 2.0 * np.pi / steps
+        law = np.linalg.norm(np.linalg.matrix_power(np.array([[1.0, angle], [-angle, 1.0]]), steps)[0])
+        found = lesson.growth_per_period(steps)
+        check("The predicted growth of Euler in one period is that of as many steps.",
+              f"growth of the amplitude with {steps} steps per period [-]", law=law, found=found,
+              within=4e-16 * steps * law, saw=f"With {steps} steps per period the amplitude grows {found:.6g} times.")
+    errors = [np.linalg.norm(own_run(lesson, steps) - [np.cos(1.0), -np.sin(1.0)]) for steps in (32, 64)]
+    order = min(2.0, np.log2(errors[0] / errors[1]))
+    check("A method of one's own has second order, or a higher one.", "order of my_step, at most 2 [-]",
+          law=2.0, found=order, within=0.05, saw=f"Half the step divides the error by {errors[0] / errors[1]:.3g}.")
+
+
+
+def own_run(lesson, steps):
+    """Return (x, v) of a unit oscillator after 1 s of the lesson's own method."""
+    p, begin = lesson.Oscillator(1.0, 0.0), (np.ones(1), np.zeros(1))
+    return np.ravel(lesson.advance(lesson.my_step, lesson.oscillator_acceleration, 0.0, *begin, 1.0 / steps, steps, p))
+
+
 # ---------------------------------------------------------------------------------------------- a million steps
 
 DYADIC = 1.0 / 64.0          # a step [s] whose products with ½ and with itself are exact: a sum is all that is rounded
@@ -822,7 +848,7 @@ def walk_of_energy(dt):
     return np.sqrt(np.mean(np.sum(squares, axis=1)) / 12.0)
 
 
-@case("a-million-steps", "A million steps of a planet")
+@case("a-million-steps", "A million steps of a planet", in_quick=False)
 def a_million_steps(lesson, check):
     """Check that rounding alone changes the energy of a planet on Verlet's discrete circle, as a random walk.
 
@@ -898,7 +924,7 @@ def sampled(lesson, starts, steps):
     return run[1][::steps // SLICES]
 
 
-@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False)
+@case("limit-of-prediction", "Limit of prediction of a double pendulum", compiled=False, in_quick=False)
 def limit_of_prediction(lesson, check):
     """Check that the motion alone decides the growth of a small error from the method, the start or rounding."""
     ts, truth, factor = true_growth()

@@ -334,7 +334,7 @@ def lowest_cosine(spin):
     return (ALONG * spin) ** 2 / (2.0 * ACROSS * MGL) - 1.0
 
 
-@case("sleeping-top", "A sleeping top")
+@case("sleeping-top", "A sleeping top", in_quick=False)
 def sleeping_top(lesson, check):
     """Check that a sleeping top stands if and only if ω₃² > 4I₁Mgl/I₃²: 20 rad/s here.
 

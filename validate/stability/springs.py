@@ -295,3 +295,21 @@ def stiff_cloth_on_a_slope(lesson, check):
     check("With explicit steps of this length every one of these cloths diverges.",
           "cloths that symplectic Euler strains by more than 1 [of 3]", law=len(STIFF), found=exploded, within=0.0,
           saw=f"{exploded} of {len(STIFF)} cloths diverge.")
+
+
+@case("sag", "Sag of a chain, and a body of one's own", compiled=False)
+def sag(lesson, check):
+    """Compare the predicted sag with the solution of the equations of balance, and weigh a body of one's own."""
+    for n in (1, 5, 20):
+        balance = 40.0 * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+        balance[-1, -1] = 40.0
+        law, found = np.linalg.solve(balance, np.full(n, 0.02 * 9.81))[-1], lesson.chain_sag(n, 0.02, 40.0, 9.81)
+        check("A chain sags by the loads of all its springs.", f"sag of {n} points [m]", law=law, found=found,
+              within=1e-12 * law, saw=f"{n} points of 20 g sag by {found:.4g} m.")
+    x, pairs, _ = lesson.my_body(0.4)
+    rows = np.zeros((len(pairs), *np.shape(x)))
+    for row, (i, j) in zip(rows, pairs, strict=True):
+        row[i], row[j] = x[i] - x[j], x[j] - x[i]
+    free = np.size(x) - np.linalg.matrix_rank(rows.reshape(len(pairs), -1))
+    check("A body of one's own moves without a change of its springs in three ways, as a rigid body does.",
+          "motions that change no spring [-]", law=3, found=free, within=0.0, saw=f"There are {free} of them.")

@@ -7,13 +7,17 @@ numba compiles a function again for each function that it is given.  A loop that
 compiled for each choice of them, and so would every function that passes some of them on.  A function that gets the
 address of another one is compiled once, and serves every loop.
 
+A function may also be promised: it is compiled when it is first called.  A loop pays for no function that it never
+calls, such as the test of bodies that are too fast.
+
 Importing this module imports numba.
 """
 
-import dis
+import ctypes
 import hashlib
 from contextlib import contextmanager
 
+from llvmlite import ir
 from numba import typeof
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed
@@ -30,8 +34,6 @@ from numba.extending import (
     unbox,
 )
 from numba.np import arrayobj
-
-WHOLE = "whole_step"         # the step that calls nothing but the parts
 
 
 def short(kind, more):
@@ -131,7 +133,7 @@ class FunctionAddress(types.Callable):
 
 @register_model(FunctionAddress)
 class FunctionModel(models.PrimitiveModel):
-    """An address."""
+    """The address of a Cell."""
 
     def __init__(self, manager, kind):
         super().__init__(manager, kind, cgutils.voidptr_t)
@@ -139,31 +141,58 @@ class FunctionModel(models.PrimitiveModel):
 
 @unbox(FunctionAddress)
 def unbox_function(kind, thing, c):
-    """Read the field `place`."""
-    place = c.pyapi.object_getattr_string(thing, "place")
-    address = c.pyapi.long_as_voidptr(place)
-    c.pyapi.decref(place)
+    """Read the field `cell`."""
+    cell = c.pyapi.object_getattr_string(thing, "cell")
+    address = c.pyapi.long_as_voidptr(cell)
+    c.pyapi.decref(cell)
     return NativeValue(address)
 
 
 @lower_builtin(FunctionAddress, types.VarArg(types.Any))
 def call_function(context, builder, signature, values):
-    """Call a function by its address, and pass on what it raises."""
-    address, *values = values
+    """Call a function by its address, and pass on what it raises; one that is promised is compiled before."""
+    cell, *values = values
     kinds = signature.args[1:]
     pointer = context.call_conv.get_function_type(signature.return_type, kinds).as_pointer()
-    status, result = context.call_conv.call_function(
-        builder, builder.bitcast(address, pointer), signature.return_type, kinds, values)
+    place, find = (builder.bitcast(cell, kind.as_pointer().as_pointer()) for kind in (pointer.pointee, FIND))
+    with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(place))):
+        builder.call(builder.load(cgutils.gep_inbounds(builder, find, 1)), [cell])
+    address = builder.load(place)
+    with cgutils.if_unlikely(builder, cgutils.is_null(builder, address)):
+        context.call_conv.return_user_exc(builder, RuntimeError, ("a function could not be compiled",))
+    status, result = context.call_conv.call_function(builder, address, signature.return_type, kinds, values)
     with cgutils.if_unlikely(builder, status.is_error):
         context.call_conv.return_status_propagate(builder, status)
     return result
 
 
-class Address:
-    """Where a compiled function is, and its type; 0 stands for one that is never called."""
+FIND = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t])       # of the second field of a Cell
 
-    def __init__(self, place, kind):
-        self.place, self.kind, self.kind_name = place, kind, kind.name
+
+class Cell(ctypes.Structure):
+    """What compiled code reads of a function."""
+    _fields_ = (("place", ctypes.c_void_p),          # its machine code; 0: it is not yet compiled
+                ("find", ctypes.c_void_p))           # the function that then compiles it and writes `place`
+
+
+PROMISED: dict[int, tuple] = {}                      # address of a Cell → (cell, twin, kind)
+ADDRESSES: dict[tuple, object] = {}                  # (twin, kind) → its Address
+
+
+@ctypes.CFUNCTYPE(None, ctypes.c_void_p)
+def compile_promised(address):
+    """Compile the function of a Cell; Python prints what fails here, and the caller raises."""
+    cell, twin, kind = PROMISED[address]
+    cell.place = machine_code(twin, kind)
+
+
+class Address:
+    """Where compiled code finds a function, and its type."""
+
+    def __init__(self, twin, kind):
+        cell = Cell(0, ctypes.cast(compile_promised, ctypes.c_void_p).value)
+        self.cell, self.kind, self.kind_name = ctypes.addressof(cell), kind, kind.name
+        PROMISED[self.cell] = cell, twin, kind
 
 
 @typeof_impl.register(Address)
@@ -196,8 +225,8 @@ def short_message_of_shapes():
         arrayobj.raise_with_shape_context = usual
 
 
-def address_of(twin, kind):
-    """Return the Address of a compiled function, which is compiled for this type if it is not yet.
+def machine_code(twin, kind):
+    """Return where the machine code of a compiled function is, which is compiled for this type if it is not yet.
 
     Raises TypeError where it returns something else than the type says: a caller that knows its address only would take
     that for what it expects.
@@ -209,7 +238,21 @@ def address_of(twin, kind):
     code = twin.overloads[arguments]
     if code.signature.return_type != kind.signature.return_type:
         raise TypeError(f"{twin.__name__} returns {code.signature.return_type} and not {kind.signature.return_type}")
-    return Address(code.library.get_pointer_to_function(code.fndesc.llvm_func_name), kind)
+    return code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
+
+
+def promise(twin, kind):
+    """Return the Address of a function that is compiled when it is first called."""
+    if (twin, kind) not in ADDRESSES:
+        ADDRESSES[twin, kind] = Address(twin, kind)
+    return ADDRESSES[twin, kind]
+
+
+def address_of(twin, kind):
+    """Return the Address of a function that is compiled now, so that this raises what is wrong with it."""
+    address = promise(twin, kind)
+    PROMISED[address.cell][0].place = machine_code(twin, kind)
+    return address
 
 
 def function(result, *arguments):
@@ -219,29 +262,23 @@ def function(result, *arguments):
 
 # ---------------------------------------------------------------------------------------------- loops
 
-def names_used(part):
-    """Return the names of the variables that a function reads or writes; one instruction may do so with two."""
-    found = [line.argval for line in dis.get_instructions(part) if "FAST" in line.opname]
-    return {name for one in found for name in (one if isinstance(one, tuple) else (one,))}
-
-
 def functions_of_loop(lesson, loop, parts):
-    """Return the addresses that advance_parts takes: of a step, of six parts, of a load, of bounds and of a search for
-    contacts.
+    """Return the addresses that advance_parts takes: of a step, of six parts, of first_touch, of a load, of bounds and
+    of a search for contacts.
 
     Each is compiled once for all models in the plane, and once for all in space.  What no part calls is not compiled.
     lesson: a lesson of compiled functions;    parts: six functions of it
     """
-    s, p, step = loop.state, loop.p, getattr(lesson, loop.step.step.__name__)
+    s, p = loop.state, loop.p
     x, q, v, omega, contacts, state, record = map(typeof, (s.x, s.q, s.v, s.omega, s.contacts, s, p))
     number, turn = types.float64, types.Array(types.float64, s.x.shape[1], "C")
     load = function(types.Tuple((x, omega)), number, x, q, v, omega, record)
     bounds = function(types.Tuple((x, x, turn)), x, q, typeof(p.half))
     narrow = function(contacts, x, turn, *map(typeof, (p.half, p.planes, p.pairs)), number)
+    touch = function(number, bounds, narrow, state, state, number, record)
     part = function(state, load, bounds, narrow, number, state, number, record)
-    whole = function(state, *[part] * len(parts), *part.signature.args)
-    used = set().union(*(names_used(one.py_func) for one in (*parts, *[step] * (step.__name__ != WHOLE))))
-    called = [address_of(getattr(lesson, one.__name__), kind) if name in used else Address(0, kind)
-              for name, one, kind in (("load", loop.load, load), ("bounds", loop.bounds, bounds),
-                                      ("narrow", loop.narrow, narrow))]
-    return address_of(step, whole), *[address_of(one, part) for one in parts], *called
+    whole = function(state, *[part] * len(parts), touch, *part.signature.args)
+    called = [promise(getattr(lesson, one.__name__), kind)
+              for one, kind in ((loop.touch, touch), (loop.load, load), (loop.bounds, bounds), (loop.narrow, narrow))]
+    step = address_of(getattr(lesson, loop.step.step.__name__), whole)
+    return step, *[address_of(one, part) for one in parts], *called

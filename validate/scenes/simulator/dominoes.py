@@ -33,6 +33,7 @@ ROWS = 4                     # each begins at another moment: see limit
 WINDOW = 0.04                # of these moments [s]; the first impact is later
 KEPT = 250                   # pictures per second of the film of the truth
 AGREED = 1e-3                # a motion is judged where the two codes differ by less, relative to all corners [-]
+FINEST = {"pymunk": 50_000, "loop": 20_000}  # steps per second of the two codes; the error bar has both halved, too
 UNCERTAINTY = 1.2e-4         # the error bar of the first case, rounded up; limits contain that of each case [-]
 SWEEPS = 1                   # of the loop, before it looks whether a sweep still changes something
 CARRIED = 0.3                # hertz of a soft contact times a step [-]: nearly the stiffest that a pile stands
@@ -50,6 +51,7 @@ class Params(NamedTuple):
 
 
 CASES = {"six": Params(), "fifteen": Params(n=15), "six, smoother": Params(mu=0.25)}
+AGREED_CASES = tuple(CASES)
 ABOUT_1 = "about 1"          # an order that four runs do not show well
 LEVELS_OFF = "1, then none"  # an order, towards another limit than pymunk's
 MASS = 1.0                   # of each [kg]; nothing depends on it
@@ -148,13 +150,24 @@ def by_loop(lessons, step, law, p, begins, dt, steps, every):
     return np.array(found)
 
 
+def motion_by_pymunk(p, per_second):
+    """Return (film (k, n, 3), ends (ROWS, n, 3)) by pymunk."""
+    film, ends = (by_pymunk(p, *run) for run in two_runs(per_second))
+    return film[:, 0], ends[-1]
+
+
+def motion_by_loop(lessons, step, law, p, per_second):
+    """Return the same by the loop of lesson 10."""
+    film, ends = (by_loop(lessons, step, law, p, *run) for run in two_runs(per_second))
+    return film[:, 0], ends[-1]
+
+
 @cache
 def reference(p):
     """Return the Motion on which the two codes agree; where none is kept, that of pymunk with no known error."""
     if found := agreed("dominoes", p):
         return Motion(*(np.array(found[name]) for name in ("film", "ends")), found["bar"])
-    film, ends = (by_pymunk(p, *run) for run in two_runs(20 * KEPT))
-    return Motion(film[:, 0], ends[-1], np.inf)
+    return Motion(*motion_by_pymunk(p, 20 * KEPT), np.inf)
 
 
 def two_runs(per_second):

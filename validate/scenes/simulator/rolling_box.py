@@ -116,7 +116,8 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     now = simulator.advance_parts(
         step, simulator.accelerate_in_space, simulator.detect_many, simulator.separate_in_space,
         simulator.contact_impulses_in_space, simulator.move_and_turn_in_space, simulator.leave,
-        simulator.model_load_in_space, simulator.rounded_bounds, simulator.rounded_contacts, 0.0, now, dt, steps, rows)
+        simulator.first_touch, simulator.model_load_in_space, simulator.rounded_bounds, simulator.rounded_contacts, 0.0,
+        now, dt, steps, rows)
     return now, rows
 
 
