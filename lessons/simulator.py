@@ -401,3 +401,19 @@ def may_be_extrapolated():
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.18: may_be_extrapolated")
+
+
+def my_scene(n):
+    """Return (x (n, 2) [m], angles q (n,), v (n, 2) [m/s], half (n, 2) [m], planes (p, 3)) of a scene of n boxes.
+
+    *Make it*: place the boxes, give them velocities, and let them meet.  Many scenes are right: dominoes, a tower that
+    falls, a break in billiards.  The judge runs your loop for 1 s with dt = 1/100 s, g = 9.81 m/s² downwards, 1 kg per
+    box, μ = 0.5, 10 sweeps and a margin of 3 cm, for some n from 5 to 8, and demands:
+
+    - The half sizes are 5 to 50 cm.  No box moves by more than the smallest half size in one step.
+    - At least n/2 pairs of boxes that are farther apart than the margin at the start push each other later.
+    - The overlap is never above 1 cm, at the start and later, between boxes and with planes.
+    - The energy is never higher than at the start by more than what lifts all boxes by 1 mm.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 10.19: my_scene")

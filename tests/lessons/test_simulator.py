@@ -1504,3 +1504,40 @@ def test_a_body_stops_at_the_predicted_depth(lesson, draw):
 def test_the_chosen_result_has_an_error_in_proportion_to_the_step(lesson):
     choice("the letter of the result that may be extrapolated", lesson.may_be_extrapolated(), choices.where(
         "simulator", "times_of_an_event", lambda dt, t: np.ptp(2.0 * t[:-1] - t[1:]) < 1e-12))
+
+
+def judged_run(lesson, x, q, v, half, planes, steps=100, dt=0.01, margin=0.03):
+    """(overlap, fastest way per step, rise of the energy, pairs that meet) of boxes of 1 kg in the lesson's loop."""
+    n, moment = len(x), np.sum(half**2, axis=1) / 3.0
+    state, p = made(lesson, x, 1.0, moment, half, planes, 0.5, 10, margin)
+    state = state._replace(q=np.append(q, np.zeros(len(planes))), v=np.vstack((v, np.zeros((len(planes), 2)))))
+    energies, ways, gaps, pushed = [], [], [0.0], []
+    for k in range(steps):
+        x, _, v, omega = (np.asarray(part)[:n] for part in state[:4])
+        energies.append(0.5 * np.sum(v * v) + 0.5 * np.sum(moment * omega**2) + G * np.sum(x[:, 1]))
+        state = lesson.contact_step_2d(lesson.weight, lesson.box_bounds_2d, lesson.box_contacts_2d, k * dt, state, dt, p)
+        c, J = state.contacts, np.asarray(state.J)
+        ways.append(dt * np.max(np.linalg.norm(np.asarray(state.v), axis=1)))
+        gaps.extend(c.gap)
+        near = [(int(a), int(b), bool(np.any(j))) for a, b, j in zip(c.a, c.b, J, strict=True) if max(a, b) < n]
+        pushed.append({(a, b) for a, b, pushes in near if pushes or k == 0})
+    return -np.min(gaps), np.max(ways), np.max(energies) - energies[0], len(set.union(*pushed) - pushed[0])
+
+
+@exercise("10.19", points=1,
+          hint="begin with a row of dominoes; where boxes come in faster than margin/dt, they stop inside each other")
+def test_a_scene_of_ones_own_meets_and_gains_no_energy(lesson, draw):
+    n = draw.whole(5, 8)
+    given, shapes = f"n = {n}", {"x": (n, 2), "q": (n,), "v": (n, 2), "half": (n, 2)}
+    *boxes, planes = lesson.my_scene(n)
+    x, q, v, half = (numbers(name, part, shape, given)
+                     for (name, shape), part in zip(shapes.items(), boxes, strict=True))
+    planes = numbers("planes", planes, (len(planes), 3), given) if len(planes) else np.zeros((0, 3))
+    between("smallest half size [m]", half.min(), 0.05, 0.5, given)
+    between("largest half size [m]", half.max(), 0.05, 0.5, given)
+    close("lengths of the normals of the planes", np.hypot(*planes.T[:2]), np.ones(len(planes)), ROUND_OFF, given=given)
+    overlap, way, rise, met = judged_run(lesson, x, q, v, half, planes)
+    between("largest overlap [m]", overlap, 0.0, 0.01, given)
+    between("largest way of a box in a step, over the smallest half size", way / half.min(), 0.0, 1.0, given)
+    between("rise of the energy above that at the start [J]", rise, 0.0, 0.001 * n * G, given)
+    between("pairs that are apart at the start and push each other later", met, n / 2.0, n * n, given)

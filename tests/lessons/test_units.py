@@ -279,6 +279,7 @@ RESULTS = {
         "m/s": "support_velocity",
         "m": "stopping_depth",
         "": "may_be_extrapolated",
+        "m; -; m/s; m; … m": "my_scene",
         "s": "slip_time",
         "-; rad/s": "rocking_step advance_rocking",
         "J": "mechanical_energy gain_without_source",

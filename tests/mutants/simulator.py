@@ -1564,3 +1564,31 @@ edit("10.18", "chooses a result of second order: for this one 4/3 t(dt/2) − 1/
      '"B"', '"C"')
 edit("10.18", "chooses equal changes per halving: such a result has no limit",
      '"B"', '"D"')
+
+
+# 10.19 --------------------------------------------------------------------------------------------------------------
+FLOOR = np.array([[0.0, 1.0, 0.0]])
+
+
+@right("10.19", "a heap that falls, one box above the other")
+def my_scene(n):
+    x = np.stack((0.07 * (np.arange(n) % 2), 0.1 + 0.25 * np.arange(n)), axis=1)
+    return x, np.zeros(n), np.zeros((n, 2)), np.full((n, 2), 0.1), FLOOR
+
+
+@right("10.19", "a ring of boxes that fly to its centre, without a floor")
+def ring(n):
+    angle = 2.0 * np.pi * np.arange(n) / n
+    out = np.stack((np.cos(angle), np.sin(angle)), axis=1)
+    return list(out), angle, -1.0 * out, np.full((n, 2), 0.15), np.zeros((0, 3))
+
+
+edit("10.19", "does not move: the first domino stands, too", "return x, q, v,",
+     "v[0, 0], q[0], x[0, 0], x[0, 1] = 0.0, 0.0, 0.0, high\n    return x, q, v,")
+edit("10.19", "pushes the first domino away from the others", "q[0], v[0, 0] = -lean, 1.0", "q[0], v[0, 0] = -lean, -1.0")
+edit("10.19", "places the dominoes too far apart", "0.3 * k", "0.6 * k")
+edit("10.19", "places the dominoes inside each other", "0.3 * k", "0.08 * k")
+edit("10.19", "begins below the floor", "[0.0, 1.0, 0.0]", "[0.0, 1.0, -0.1]")
+edit("10.19", "throws the dominoes so fast that they stop inside each other", "-lean, 1.0", "-lean, 8.0")
+edit("10.19", "always has four boxes", "wide, high, lean = 0.05, 0.2, 0.4", "n, wide, high, lean = 4, 0.05, 0.2, 0.4")
+edit("10.19", "has boxes as thin as paper", "wide, high, lean = 0.05,", "wide, high, lean = 0.001,")
