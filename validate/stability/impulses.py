@@ -953,7 +953,7 @@ def elastic_rest(lesson, check):
     Between impacts ½ v² + g x − ½ g dt v is constant, and on average an impact takes ½ g dt w of it: the speed of
     impact falls by ½ g dt per flight.
     """
-    worst, flights = 0.0, 300
+    worst, flights = 0.0, 60
     for dt in (0.004, 0.01):
         h = (0.5 * flights * G * dt) ** 2 / (2.0 * G)
         x, v, steps, p = np.array([0.0, h]), np.zeros(2), 0, ball(lesson, 1.0)
