@@ -387,7 +387,8 @@ def solve_impacts(body, r, n, e, mu):
 def elastic_rest_time(h, g, dt):
     """Return the time [s] after which position_projection_step lets a perfectly elastic ball lie still.
 
-    The ball, e = 1, falls from rest at the height h > 0 [m] under g > 0 [m/s²].  Its energy should stay for ever.
+    The ball, e = 1, leaves the floor at the speed √(2 g h), h > 0 [m], under g > 0 [m/s²]: its energy should stay for
+    ever.  That speed is no multiple of g dt/2, where the flights would end at the same phase again and again.
     *Find* the time before you run anything, for a step dt > 0 [s] that is short compared with the fall.  By how much
     does the height of a flight fall from one impact to the next, on average over the phases of a step?  And how long
     is a flight?

@@ -1515,7 +1515,8 @@ def judged_run(lesson, x, q, v, half, planes, steps=100, dt=0.01, margin=0.03):
     for k in range(steps):
         x, _, v, omega = (np.asarray(part)[:n] for part in state[:4])
         energies.append(0.5 * np.sum(v * v) + 0.5 * np.sum(moment * omega**2) + G * np.sum(x[:, 1]))
-        state = lesson.contact_step_2d(lesson.weight, lesson.box_bounds_2d, lesson.box_contacts_2d, k * dt, state, dt, p)
+        state = lesson.contact_step_2d(lesson.weight, lesson.box_bounds_2d, lesson.box_contacts_2d, k * dt, state, dt,
+                                       p)
         c, J = state.contacts, np.asarray(state.J)
         ways.append(dt * np.max(np.linalg.norm(np.asarray(state.v), axis=1)))
         gaps.extend(c.gap)

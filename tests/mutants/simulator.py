@@ -1585,7 +1585,8 @@ def ring(n):
 
 edit("10.19", "does not move: the first domino stands, too", "return x, q, v,",
      "v[0, 0], q[0], x[0, 0], x[0, 1] = 0.0, 0.0, 0.0, high\n    return x, q, v,")
-edit("10.19", "pushes the first domino away from the others", "q[0], v[0, 0] = -lean, 1.0", "q[0], v[0, 0] = -lean, -1.0")
+edit("10.19", "pushes the first domino away from the others", "q[0], v[0, 0] = -lean, 1.0",
+     "q[0], v[0, 0] = -lean, -1.0")
 edit("10.19", "places the dominoes too far apart", "0.3 * k", "0.6 * k")
 edit("10.19", "places the dominoes inside each other", "0.3 * k", "0.08 * k")
 edit("10.19", "begins below the floor", "[0.0, 1.0, 0.0]", "[0.0, 1.0, -0.1]")

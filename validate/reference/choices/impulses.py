@@ -11,7 +11,8 @@ SLIPS = 0.6, 0.3, -0.6                                       # of a tip that sti
 def energies_of_a_rod():
     """Return the energy at stake after an impact over that before it, against e.
 
-    Before: ½ u · K⁻¹u.  A tip that sticks leaves ½ e² n · K⁻¹n; one without friction loses ½ (1 − e²)/k_n.
+    Before: ½ u · K⁻¹u.  A tip that sticks leaves ½ e² n · K⁻¹n; one without friction loses ½ (1 − e²)/k_n,
+    and has the third slip.
     """
     e = np.linspace(0.0, 1.0, 101)
     before = [u @ INVERSE @ u for u in (np.array([slip, -1.0]) for slip in SLIPS)]
