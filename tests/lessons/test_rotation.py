@@ -623,7 +623,7 @@ def test_the_chosen_time_grows_as_a_disturbance_that_grows_exponentially(lesson)
 @exercise("5.21", points=1, hint="spin it about its middle axis, a little askew; measure the time between two flips in "
                                  "a run, and multiply ω by what is missing")
 def test_a_thrown_body_of_ones_own_turns_over_in_time(lesson, draw):
-    period = draw(0.5, 2.0)
+    period = draw(1.2, 2.5)
     m, x, size, omega = (np.asarray(part, dtype=float) for part in lesson.my_thrown_body(period))
     truth("whether there are at least two boxes", len(m) >= 2, True)
     truth("whether masses and edges are above 0", bool(np.all(m > 0.0) and np.all(size > 0.0)), True)
