@@ -129,6 +129,10 @@ OTHERWISE = {
     "pose_2d": {"target": "m | m | -"},
     "pose_3d": {"target": "m | m | m | - | - | - | -"},
     "point_at": {"p": "m"},
+    "share_past": {"w": "m"},
+    "my_rule": {"goals": "m"},
+    "elastic_rest_time": {"g": "m/s²", "h": "m"},
+    "stopping_depth": {"speed": "m/s"},
     "jacobian_3d": {"a": "-"},
 }
 
@@ -245,6 +249,8 @@ RESULTS = {
         "-; 1/m": "fold_constraint",
         "rad/s": "turning_rate",
         "m³; m²": "volume_gradient",
+        "m/s": "circling_speed",
+        "": "substeps_are",
         "m/s²": "network_gravity",
         "m; m/s": "rattle_step cloth_step balloon_step constraint_projection_step pbd_step xpbd_step",
         "m; -; m/s; rad/s": "pivoted_body_step",
@@ -271,12 +277,14 @@ RESULTS = {
         "rad/s²": "rods_acceleration",
         "N; N m": "weight",
         "m/s": "support_velocity",
+        "m": "stopping_depth",
+        "": "may_be_extrapolated",
         "s": "slip_time",
         "-; rad/s": "rocking_step advance_rocking",
         "J": "mechanical_energy gain_without_source",
         "kg m/s; kg m²/s": "momenta"},
     "kinematics": {
-        "m": "joint_positions jacobian_2d point_at fabrik_sweep",
+        "m": "joint_positions jacobian_2d point_at fabrik_sweep remaining_distance",
         "m; m; -": "velocity_ellipse",
         "-": "solve_2r solve_3r rotation_error angles_of transpose_step pseudo_inverse_step damped_step ccd_step "
              "fabrik_step limited_step null_space_step advance_reach reach_trajectory",
@@ -287,6 +295,7 @@ RESULTS = {
         "m | m | -; rows m | m | -": "pose_2d",
         "m | m | m | - | - | -; rows m | m | m | - | - | -": "pose_3d",
         "m | m | m | - | - | - | -": "end_pose",
+        "": "newton_is",
         "1/m": "pseudo_inverse",
         "-; -": "contraction_factors",
         "record": "make_arm_2d make_arm_3d"},

@@ -956,3 +956,34 @@ def points_and_times(lesson, check):
     check("Bodies that just touch are in contact, and ties are resolved as defined.",
           f"touches and ties as defined [of {len(exact)}]",
           law=len(exact), found=sum(map(bool, exact.values())), within=0.0, saw=f"Otherwise: {others}.")
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@case("predicted-tunnelling", "The share that gets past a wall, as predicted", compiled=False)
+def predicted_tunnelling(lesson, check):
+    """Throw balls at all phases at walls of random thickness, and count those that the discrete test lets past."""
+    rng, phases, worst = np.random.default_rng(18), (np.arange(2000) + 0.5) / 2000, 0.0
+    for _ in range(200):
+        reach, move = rng.uniform(0.05, 0.2), rng.uniform(0.25, 2.0)
+        w = rng.uniform(0.01, 0.09)
+        ends = phases * move                                  # of the last step in front of the middle
+        caught = np.mean(ends < reach)
+        worst = np.maximum(worst, abs(lesson.share_past(reach - 0.5 * w, w, move / 0.01, 0.01) - (1.0 - caught)))
+    check.agree("The discrete test lets the predicted share past.", "share that gets past: largest error [-]", worst,
+                1.0 / 2000)
+
+
+@case("crossing-crowd", "A crowd that crosses a circle", compiled=False)
+def crossing_crowd(lesson, check):
+    """Let four to sixteen people cross a circle of 4 m by my_rule; nobody is stuck if the speed is as set."""
+    late = 0.0
+    for n in (4, 9, 16):
+        around = 2.0 * np.pi * np.arange(n) / n
+        x, v = 4.0 * np.stack((np.cos(around), np.sin(around)), axis=1), np.zeros((n, 2))
+        goals = -x
+        for _ in range(200):
+            v = v + 0.1 * np.array([lesson.my_rule(i, x, v, goals) for i in range(n)])
+            x = x + 0.1 * v
+        late = np.maximum(late, np.max(np.linalg.norm(x - goals, axis=1)))
+    check.agree("Everybody arrives within 20 s.", "largest distance from a goal [m]", late, 0.01)

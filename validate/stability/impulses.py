@@ -942,3 +942,41 @@ def several_points(lesson, check):
     """
     check.laws(lesson, (speeds_of_separation, approaches, pairs_of_cones, frictionless_impacts, shares_of_the_loss),
                seed=79, times=4)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@case("elastic-rest", "How long an elastic ball bounces by projections", compiled=False)
+def elastic_rest(lesson, check):
+    """Drop an elastic ball and count its steps until it lies still.
+
+    Between impacts ½ v² + g x − ½ g dt v is constant, and on average an impact takes ½ g dt w of it: the speed of
+    impact falls by ½ g dt per flight.
+    """
+    worst, flights = 0.0, 300
+    for dt in (0.004, 0.01):
+        h = (0.5 * flights * G * dt) ** 2 / (2.0 * G)
+        x, v, steps, p = np.array([0.0, h]), np.zeros(2), 0, ball(lesson, 1.0)
+        while x[1] != 0.0 or v[1] > 2.0 * G * dt:
+            x, v = lesson.position_projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+            steps += 1
+        worst = np.maximum(worst, abs(lesson.elastic_rest_time(h, G, dt) / (steps * dt) - 1.0))
+    check.agree("An elastic ball lies still after the predicted time.", "time to rest: relative error [-]", worst,
+                8.0 / flights)
+
+
+@case("stored-slip", "An impact that returns its slip", compiled=False)
+def stored_slip(lesson, check):
+    """Compare the energy of a ball before and after random impacts by my_impulse, from its velocity and its spin."""
+    rng, worst = np.random.default_rng(20), -np.inf
+    for _ in range(500):
+        m, R, v, omega = rng.uniform(0.1, 2.0), rng.uniform(0.02, 0.3), rng.normal(size=3), rng.normal(size=3)
+        r, inertia = -R * UP, 0.4 * m * R * R
+        u = v + np.cross(omega, r)
+        if u @ UP < 0.0:
+            J = lesson.my_impulse(u, UP, lesson.contact_matrix(r, 1.0 / m, np.eye(3) / inertia))
+            v_new, omega_new = v + J / m, omega + np.cross(r, J) / inertia
+            before, after = (0.5 * m * a @ a + 0.5 * inertia * b @ b for a, b in ((v, omega), (v_new, omega_new)))
+            worst = np.maximum(worst, after / before - 1.0)
+    check.agree("Returned slip brings no energy.", "gain of energy over the energy: largest [-]",
+                np.maximum(0.0, worst), ROUND_OFF)

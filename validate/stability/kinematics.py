@@ -666,3 +666,21 @@ def geometry_of_arms(lesson, check):
     check.laws(lesson, (ellipse, missing_rotation, step_between_limits, pull_to_rest, counted_search, base_of_a_sweep,
                         links_of_a_sweep, no_direction, closed_forms, target_in_the_hole, pseudo_inverse,
                         cyclic_descent, history, many_targets, end_in_space, slope_in_space), seed=11, times=TRIED)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@case("distance-left", "The distance that damped steps leave", compiled=False)
+def distance_left(lesson, check):
+    """Compare with the distance to the ring of reachable places, for random arms with a hole and any damping."""
+    rng, worst = np.random.default_rng(17), 0.0
+    for _ in range(200):
+        lengths = np.array([rng.uniform(1.2, 1.5), *rng.uniform(0.2, 0.5, 2)])
+        target = rng.uniform(0.05, 4.0) * np.array([np.cos(1.0), np.sin(1.0)])
+        inner, outer = annulus(lengths)
+        away = np.hypot(*target)
+        nearest = np.clip(away, inner, outer)
+        worst = np.maximum(worst, abs(lesson.remaining_distance(lengths, target, rng.uniform(0.1, 3.0))
+                                      - abs(away - nearest)))
+    check.agree("The damping leaves nothing of the way to the nearest place.", "distance left: largest error [m]",
+                worst, 1e-12)

@@ -898,3 +898,19 @@ def inside_out(lesson, check):
                 "volume in the end, from flat: largest error [m³]", errors[0.0], ROUND_OFF)
     check.agree("If all corners lie on a line, both the volume and its gradient are zero.",
                 "volume and gradient [m³, m²]", errors["line"], 1e2 * ROUND_OFF)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+@case("circling-weight", "The speed that a circling weight keeps", compiled=False)
+def circling_weight(lesson, check):
+    """Let a weight circle by pbd_step without gravity: 1/ω² grows by 2 dt² per step, to leading order in ω dt."""
+    p, worst = network([1.0], g=0.0), 0.0
+    for angle in (0.02, 0.05):
+        x = straight(1)
+        x, v = integrators.advance(lesson.pbd_step, lesson.network_gravity, 0.0, x, np.array([[0.0, 0.0], [1.0, 0.0]]),
+                                   angle, 400, p)
+        worst = np.maximum(worst, abs(lesson.circling_speed(1.0, 1.0, angle, 400 * angle) - np.linalg.norm(v[1]))
+                           / angle**2)
+    check.agree("A circling weight slows down as predicted.", "speed: error over (ω dt)² of the first speed [-]", worst,
+                2.0)

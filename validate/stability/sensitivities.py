@@ -236,7 +236,7 @@ def chaos(lesson, check):
     off = np.abs(differences - truth) / 2.0**n
     last = n[np.argmax(off > 0.1)]
     check("A difference over 10⁻⁶ is of no use after about twenty steps.",
-          "steps until a difference is off by 10 % of 2ⁿ",
+          "steps until a difference is off by 10 % of 2ⁿ [-]",
           law=np.log2(1.0 / apart), found=last, within=2.5, saw=f"It is off by more than a tenth after {last} steps.")
     return Picture("Sensitivities through chaos", "steps [-]", "log₁₀ |∂xₙ/∂x₀| [-]",
                    [series("complex step", n, np.log10(np.abs(tangents)), DOTS),
@@ -284,14 +284,16 @@ def implicit(t, x, v, dt, p):
     return x + dt * new, new
 
 
-@random_law("A tangent step is the derivative of a step of symplectic Euler.", "largest error of the tangents", 1e-13)
+@random_law("A tangent step is the derivative of a step of symplectic Euler.",
+            "largest error of the tangents [m, m/s]", 1e-13)
 def tangent_of_symplectic(lesson, rng):
     t, x, v, dx, dv, dt, p = drawn_state(rng)
     return lesson.tangent_step(pulled, slopes_of_pull, t, x, v, dx, dv, dt, p), \
         through_step(explicit, t, x, v, dx, dv, dt, p)
 
 
-@random_law("An implicit tangent step is the derivative of a step of implicit Euler.", "largest error of its tangents",
+@random_law("An implicit tangent step is the derivative of a step of implicit Euler.",
+            "largest error of its tangents [m, m/s]",
             1e-10)
 def tangent_of_implicit(lesson, rng):
     t, x, v, dx, dv, dt, p = drawn_state(rng)
@@ -329,13 +331,14 @@ def around_impact(rng, before=0.01, behind=0.01):
     return (n, e, v, g, dx, dv, e_s, gap_s), tau, (state[3:], slopes[:3], slopes[3:])
 
 
-@random_law("The time of an impact moves with the inputs, and so does the plane.", "largest error of ∂τ/∂s", 1e-12)
+@random_law("The time of an impact moves with the inputs, and so does the plane.", "largest error of ∂τ/∂s [s]", 1e-12)
 def time_of_impact(lesson, rng):
     (n, _, v, g, dx, dv, _, gap_s), tau, _ = around_impact(rng)
     return lesson.event_time_sensitivity(n, np.zeros(3), gap_s, v, g, dx, dv), tau
 
 
-@random_law("An event may depend on the velocity: a turning point.", "largest error of ∂τ/∂s of a turning point", 1e-12)
+@random_law("An event may depend on the velocity: a turning point.",
+            "largest error of ∂τ/∂s of a turning point [s]", 1e-12)
 def turning_point(lesson, rng):
     n, v, g = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
     v -= (v @ n) / (n @ n) * n                                  # v · n = 0: it turns now
@@ -343,14 +346,15 @@ def turning_point(lesson, rng):
     return lesson.event_time_sensitivity(np.zeros(3), n, gap_s, v, g, dx, dv), -(n @ dv + gap_s) / (n @ g)
 
 
-@random_law("A bounce has the sensitivities of the whole flight through it.", "largest error of dx and dv", 1e-12)
+@random_law("A bounce has the sensitivities of the whole flight through it.",
+            "largest error of dx and dv [m, m/s]", 1e-12)
 def through_bounce(lesson, rng):
     (n, e, v, g, dx, dv, e_s, gap_s), _, truth = around_impact(rng)
     return lesson.bounce(v, g, dx, dv, n, e, gap_s, e_s), truth
 
 
 @random_law("Saltation at a plane where the acceleration changes, too.",
-            "largest error of dx and dv with a jump of a", 1e-12)
+            "largest error of dx and dv with a jump of a [m, m/s]", 1e-12)
 def jump_of_acceleration(lesson, rng):
     """The point passes a plane behind which another force acts: v stays, and a jumps."""
     n, _, _, v, a, dx, dv, _, _ = drawn_impact(rng)
@@ -366,7 +370,8 @@ def jump_of_acceleration(lesson, rng):
     return lesson.saltation(dtau, dx, dv, v, a, v, a_new, np.eye(3), np.zeros((3, 2))), (slopes[:3], slopes[3:])
 
 
-@random_law("A flight over two planes has the sensitivities of the whole flight.", "largest error of a flight", 1e-11)
+@random_law("A flight over two planes has the sensitivities of the whole flight.",
+            "largest error of a flight [m, m/s]", 1e-11)
 def flight_over_planes(lesson, rng):
     n = np.array([(0.0, 1.0), (-np.cos(0.2), np.sin(0.2))])
     feet, e = np.array([(0.0, 0.0), (rng.uniform(2.0, 3.0), 0.0)]), rng.uniform(0.5, 0.9, 2)
@@ -379,7 +384,8 @@ def flight_over_planes(lesson, rng):
     return (x, v, dx, dv), (state[:2], state[2:], slopes[:2], slopes[2:])
 
 
-@random_law("A difference and a complex step have the errors of their series.", "largest error of differences", 1e-11)
+@random_law("A difference and a complex step have the errors of their series.",
+            "largest error of differences [-]", 1e-11)
 def series_of_differences(lesson, rng):
     s, h = rng.uniform(-1.0, 1.0), 10.0 ** rng.uniform(-3.0, -1.0)
     c, odd = series_of(wave, s), np.arange(1, 32, 2)
@@ -397,14 +403,14 @@ def best_of_sum(lesson, rng):
 
 
 @random_law("The horizon is where the tangent of a falling pencil reaches the allowed error.",
-            "largest error of the horizon", 1e-12)
+            "largest error of the horizon [-]", 1e-12)
 def horizon(lesson, rng):
     rate, error, allowed = rng.uniform(0.5, 5.0), 10.0 ** rng.uniform(-9.0, -3.0), rng.uniform(0.01, 1.0)
     T = lesson.predicted_horizon(rate, error, allowed)
     return 0.5 * error * (np.exp(rate * T) + np.exp(-rate * T)) / allowed, 1.0
 
 
-@random_law("Newton's method finds the root of a miss, and doubles its digits.", "largest error of the aim", 1e-11)
+@random_law("Newton's method finds the root of a miss, and doubles its digits.", "largest error of the aim [m]", 1e-11)
 def aimed(lesson, rng):
     root = rng.uniform(-1.0, 1.0, 2)
     A = np.eye(2) + rng.uniform(-0.3, 0.3, (2, 2))

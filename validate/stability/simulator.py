@@ -1025,3 +1025,21 @@ def forces_of_supports(lesson, check):
         series("theory, m g cos θ + m l ω²", swing, tension_at(swing), LINE),
         series("joint_forces_2d, dt = 20 ms", coarse, far, DOTS)],
         "A pendulum that is released at 69° pulls at its lowest position with more than twice its weight.")
+
+
+@case("stopped-below-the-floor", "Where a fast disc is stopped", compiled=False)
+def stopped_below_the_floor(lesson, check):
+    """Throw discs at a floor by the loop, and compare the depth at which they lie with the prediction."""
+    worst, dt = 0.0, 1.0 / 60.0
+    for speed in (0.7, 3.0, 8.0):
+        for margin, above in ((0.02, 0.001), (0.1, 0.37)):
+            gap = margin + above
+            state, p = lesson.make_bodies_2d([(0.0, 0.1 + gap)], [0.0], 1.0, 0.005, [(0.1, 0.1)], [(0.0, 1.0, 0.0)],
+                                             (0.0, 0.0), 0.0, 5, margin)
+            state = state._replace(v=np.array([(0.0, -speed), (0.0, 0.0)]))
+            for k in range(60):
+                state = lesson.contact_step_2d(lesson.weight, lesson.disc_bounds, lesson.round_contacts, k * dt, state,
+                                               dt, p)
+            worst = np.maximum(worst, abs(lesson.stopping_depth(speed, gap, margin, dt)
+                                          - np.maximum(0.0, 0.1 - state.x[0, 1])))
+    check.agree("The loop stops a disc at the predicted depth.", "depth: largest error [m]", worst, 1e-12)
