@@ -102,6 +102,8 @@ OTHERWISE = {
     "world_inertia": {"R": "-"},
     "world_inverse_inertia": {"R": "-"},
     "tumbling_rate": {"k": ""},
+    "precession_rate": {"mgl": "N m", "tilt": "-", "spin": "rad/s"},
+    "my_thrown_body": {"period": "s"},
     "check_over_plane": {"d": ""},
     "make_contacts": {"a": "", "b": ""},
     "skew": {"a": "rad/s"},
@@ -188,7 +190,7 @@ RESULTS = {
         "": "check_inertia check_closed"},
     "rotation": {
         "rad/s²": "angular_acceleration",
-        "rad/s": "angular_velocity skew tumbling_rate",
+        "rad/s": "angular_velocity skew tumbling_rate precession_rate",
         "kg m²/s": "body_angular_momentum",
         "-": "axis_angle_update matrix_update quaternion_product quaternion_update rotation_matrix intermediate_axis "
              "midpoint_free_rotation splitting_free_rotation",
@@ -202,9 +204,10 @@ RESULTS = {
         "N; N m": "total_load supported_weight",
         "J": "kinetic_energy",
         "N m": "no_torque heavy_top_torque",
+        "kg; m; m; rad/s": "my_thrown_body",
         "m/s; rad/s; N; N m": "state_derivative",
         "record": "make_rigid_body",
-        "": "check_moments"},
+        "": "check_moments careful_throw_is"},
     "collisions": {
         "record": "ball_contact cylinder_contact make_plane ball_plane cylinder_hit ball_triangle capsule_capsule "
                   "ball_capsule build_tree points_plane against_face polygon_contacts make_box box_box make_flock "
