@@ -36,11 +36,12 @@ from solutions.vectors import cross, dot, norm
 __all__ = [
     "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall", "Top", "about_axis",
     "angular_acceleration", "angular_velocity", "average_rolling_step", "axis_angle_update",
-    "body_angular_momentum", "body_component", "compose", "exponential", "heavy_top_torque",
+    "body_angular_momentum", "body_component", "careful_throw_is", "compose", "exponential", "heavy_top_torque",
     "intermediate_axis", "kinetic_energy", "matrix_update", "midpoint_free_rotation", "midpoint_step",
-    "no_torque", "point_velocity", "quaternion_product", "quaternion_update", "rigid_body_step", "rolling_step",
-    "rotate", "rotation_matrix", "skew", "solve3", "splitting_free_rotation", "splitting_step",
-    "state_derivative", "supported_weight", "total_load", "tumbling_rate", "unit", "unrotate",
+    "my_thrown_body", "no_torque", "point_velocity", "precession_rate", "quaternion_product",
+    "quaternion_update", "rigid_body_step", "rolling_step", "rotate", "rotation_matrix", "skew", "solve3",
+    "splitting_free_rotation", "splitting_step", "state_derivative", "supported_weight", "total_load",
+    "tumbling_rate", "unit", "unrotate",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
@@ -384,3 +385,47 @@ def compose(step, torque, t, q, L, dt, body):
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.18: compose")
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def precession_rate(I_body, mgl, tilt, spin):
+    """Return the rate Ω [rad/s] at which the axis of a Top goes steadily round the vertical, at a constant tilt [rad].
+
+    *Find* it before you run anything.  The moments I_body (3,) [kg m²] about the pivot are I₁ = I₂ and I₃; mgl is the
+    weight times the distance of the centre of mass from the pivot [N m]; spin is the component of ω along the axis.
+    The tip is released with just the push that it needs, so there is no nutation.  Which Ω turns L as the torque does?
+
+    There are two such rates; return the one nearer to 0.  It exists for the inputs of the test.  The spin may have
+    either sign, and Ω follows it.  The axis may be level (tilt = π/2), and the top may hang (tilt > π/2).
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 5.19: precession_rate")
+
+
+def careful_throw_is():
+    """Return the letter of the law of a careful throw in the figure of the notebook: "A", "B", "C" or "D".
+
+    A brick spins about its middle axis at 3 rad/s.  The thrower's hand disturbs it by 10⁻ⁿ of its spin.  The curves
+    are four ideas of the time until it turns over, over n.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 5.20: careful_throw_is")
+
+
+def my_thrown_body(period):
+    """Return a body of your own and its spin: m (n,) [kg], x (n, 3) [m], size (n, 3) [m] and ω (3,) [rad/s].
+
+    *Make it*: of n boxes with masses m, centres x and edges `size` along the axes x, y and z, and with ω in the same
+    axes.  Nothing acts on it.  Many bodies are right.  The judge demands:
+
+    - There are at least two boxes, and all masses and edges are above 0.
+    - No two of the three principal moments are equal to 5 %.
+    - L starts within 18° of the axis of the middle moment, but not closer than 0.25° to it.
+    - The body turns over again and again: the time between two flips is `period` [s] to 2 %.
+    - |ω| period is below 300 rad.
+
+    A body with twice the ω has the same flips in half the time.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 5.21: my_thrown_body")

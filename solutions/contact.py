@@ -476,7 +476,7 @@ def minimum_map_step(A, b, lam):
     """
     ### BEGIN SOLUTION 9.19
     # u_k = 0 at contacts with u_k < A_kk λ_k, and λ_k = 0 at all others.
-    u, matrix, right = A @ lam + b, np.eye(b.size), np.zeros(b.size)
+    u, matrix, right = A @ lam + b, np.diag(np.diag(A)), np.zeros(b.size)
     for k in range(b.size):
         if u[k] < A[k, k] * lam[k]:
             matrix[k], right[k] = A[k], -b[k]

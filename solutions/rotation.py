@@ -36,11 +36,12 @@ from .vectors import cross, dot, norm
 __all__ = [
     "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall", "Top", "about_axis",
     "angular_acceleration", "angular_velocity", "average_rolling_step", "axis_angle_update",
-    "body_angular_momentum", "body_component", "compose", "exponential", "heavy_top_torque",
+    "body_angular_momentum", "body_component", "careful_throw_is", "compose", "exponential", "heavy_top_torque",
     "intermediate_axis", "kinetic_energy", "matrix_update", "midpoint_free_rotation", "midpoint_step",
-    "no_torque", "point_velocity", "quaternion_product", "quaternion_update", "rigid_body_step", "rolling_step",
-    "rotate", "rotation_matrix", "skew", "solve3", "splitting_free_rotation", "splitting_step",
-    "state_derivative", "supported_weight", "total_load", "tumbling_rate", "unit", "unrotate",
+    "my_thrown_body", "no_torque", "point_velocity", "precession_rate", "quaternion_product",
+    "quaternion_update", "rigid_body_step", "rolling_step", "rotate", "rotation_matrix", "skew", "solve3",
+    "splitting_free_rotation", "splitting_step", "state_derivative", "supported_weight", "total_load",
+    "tumbling_rate", "unit", "unrotate",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
@@ -458,4 +459,64 @@ def compose(step, torque, t, q, L, dt, body):
         q, L = step(torque, t, q, L, share * dt, body)
         t = t + share * dt
     return q, L
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def precession_rate(I_body, mgl, tilt, spin):
+    """Return the rate Ω [rad/s] at which the axis of a Top goes steadily round the vertical, at a constant tilt [rad].
+
+    *Find* it before you run anything.  The moments I_body (3,) [kg m²] about the pivot are I₁ = I₂ and I₃; mgl is the
+    weight times the distance of the centre of mass from the pivot [N m]; spin is the component of ω along the axis.
+    The tip is released with just the push that it needs, so there is no nutation.  Which Ω turns L as the torque does?
+
+    There are two such rates; return the one nearer to 0.  It exists for the inputs of the test.  The spin may have
+    either sign, and Ω follows it.  The axis may be level (tilt = π/2), and the top may hang (tilt > π/2).
+    """
+    ### BEGIN SOLUTION 5.19
+    # The vertical axis has L sin θ across it: Ω (I₃ω₃ − I₁Ω cos θ) sin θ = Mgl sin θ;  no difference of near numbers.
+    along = I_body[2] * spin
+    root = np.sqrt(along * along - 4.0 * I_body[0] * mgl * np.cos(tilt))
+    return 2.0 * mgl / (along + np.copysign(root, along))
+    ### END SOLUTION
+
+
+def careful_throw_is():
+    """Return the letter of the law of a careful throw in the figure of the notebook: "A", "B", "C" or "D".
+
+    A brick spins about its middle axis at 3 rad/s.  The thrower's hand disturbs it by 10⁻ⁿ of its spin.  The curves
+    are four ideas of the time until it turns over, over n.
+    """
+    ### BEGIN SOLUTION 5.20
+    return "A"
+    ### END SOLUTION
+
+
+def my_thrown_body(period):
+    """Return a body of your own and its spin: m (n,) [kg], x (n, 3) [m], size (n, 3) [m] and ω (3,) [rad/s].
+
+    *Make it*: of n boxes with masses m, centres x and edges `size` along the axes x, y and z, and with ω in the same
+    axes.  Nothing acts on it.  Many bodies are right.  The judge demands:
+
+    - There are at least two boxes, and all masses and edges are above 0.
+    - No two of the three principal moments are equal to 5 %.
+    - L starts within 18° of the axis of the middle moment, but not closer than 0.25° to it.
+    - The body turns over again and again: the time between two flips is `period` [s] to 2 %.
+    - |ω| period is below 300 rad.
+
+    A body with twice the ω has the same flips in half the time.
+    """
+    ### BEGIN SOLUTION 5.21
+    # a T, symmetric about two planes, so that its principal axes are x, y and z
+    m, x = np.array([1.0, 0.5]), np.array([[0.0, 0.0, 0.0], [0.0, 0.2, 0.0]])
+    size, askew = np.array([[0.6, 0.1, 0.1], [0.1, 0.3, 0.1]]), 0.05
+    spread = m @ ((x - m @ x / np.sum(m))**2 + size * size / 12.0)
+    I = np.sum(spread) - spread
+    # At 1 rad/s the flips are 2K(k)/n apart (Landau and Lifshitz, § 37); K is half of π over a mean of Gauss.
+    a, b = np.sqrt(I[1] * (I[1] - I[0]) + askew**2 * I[2] * (I[2] - I[0])), askew * np.sqrt(I[2] * (I[2] - I[0]))
+    for _ in range(6):
+        a, b = 0.5 * (a + b), np.sqrt(a * b)
+    between_flips = np.pi / a * np.sqrt(I[0] * I[1] * I[2] / (I[2] - I[1]))
+    return m, x, size, between_flips / period * np.array([0.0, 1.0, askew])
     ### END SOLUTION

@@ -10,10 +10,10 @@ from ..contact import (
     has_left_margin,
     kept_impulses,
     soft_contact,
+    solve,
     velocity_sweep,
     velocity_sweep_2d,
 )
-from ..integrators import solve
 from ..support.arms import (
     apply_impulses,
     apply_impulses_2d,
@@ -206,7 +206,7 @@ def minimum_map_step_with_friction(A, b, J, mu):
 
     Friction that would leave its limit ±μ J_n is set to it, with the J_n of the same step.
     """
-    u, matrix, right = A @ J + b, np.eye(b.size), np.zeros(b.size)
+    u, matrix, right = A @ J + b, np.diag(np.diag(A)), np.zeros(b.size)
     for n in range(0, b.size, 2):
         t = n + 1
         if u[n] >= A[n, n] * J[n]:                                       # it opens, and then nothing rubs
@@ -216,7 +216,7 @@ def minimum_map_step_with_friction(A, b, J, mu):
         if np.abs(free) <= limit:
             matrix[t], right[t] = A[t], -b[t]
         else:
-            matrix[t, n] = -mu[n // 2] if free > 0.0 else mu[n // 2]
+            matrix[t, n] = (-mu[n // 2] if free > 0.0 else mu[n // 2]) * A[t, t]
     return solve(matrix, right)
 
 

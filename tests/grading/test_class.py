@@ -59,7 +59,7 @@ def graded(submissions, out, *more):
 
 
 def test_points_are_given_for_what_is_right_and_reasons_for_the_rest(top, rows):
-    assert [rows[s]["raw_score"] for s in ("ada", "bob", "cem", "dia", "eve")] == ["20", "18", "0", "20", "0"]
+    assert [rows[s]["raw_score"] for s in ("ada", "bob", "cem", "dia", "eve")] == ["20", "19", "0", "20", "0"]
     assert rows["ada"]["max_score"] == "20" and float(rows["ada"]["late_submission_penalty"]) > 0.0
 
     def failing(student):

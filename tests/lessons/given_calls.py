@@ -1,13 +1,14 @@
 """Ordinary calls of given functions that no grading test calls: {lesson: {function: calls}}."""
 
 import functools
+import itertools
 
 import numpy as np
 
 from validate.subject import modules
 
 from . import started as scenes
-from .ordinary import ordinary_calls_of
+from .ordinary import ordinary_calls
 
 collisions, contact, friction, impulses, pbd = map(
     modules.bind, ("collisions", "contact", "friction", "impulses", "pbd"))
@@ -237,6 +238,8 @@ def of_kinematics():
 def of_sensitivities():
     x, v, dx, dv = scenes.throw.x, np.array([3.0, 2.0]), np.zeros((2, 2)), np.eye(2)
     return {
+        "forward_difference": [(lambda s, p: s * s, 1.5, 1e-3, None)],
+        "oscillator_derivatives": [(0.0, x, v, scenes.oscillator)],
         "next_impact": [(x, v, 1.6, scenes.course)],
         "fly": [(x, v, dx, dv, 1.6, scenes.course)],
         "throw_miss": [(v, scenes.throw)],
@@ -263,14 +266,14 @@ def given_calls():
 
 def calls_of_all():
     """{(lesson, function): (function, calls)} of every public function of all lessons."""
-    return {key: found for lesson in modules.lesson_names() for key, found in calls_of(lesson).items()}
+    return calls_of(*modules.lesson_names())
 
 
 @functools.cache
-def calls_of(lesson):
-    """The same for the functions of a lesson: recorded calls, and those written by hand."""
-    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls_of(lesson).items()}
-    for written in (scenes.STARTED, given_calls()):
+def calls_of(*lessons):
+    """The same for the functions of some lessons: recorded calls, and those written by hand."""
+    found = {key: (function, list(calls)) for key, (function, calls) in ordinary_calls(*lessons).items()}
+    for written, lesson in itertools.product((scenes.STARTED, given_calls()), lessons):
         for name, calls in written.get(lesson, {}).items():
             function, recorded = found.get((lesson, name), (getattr(modules.bind(lesson), name), []))
             found[lesson, name] = function, [*recorded, *calls]

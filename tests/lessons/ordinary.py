@@ -12,24 +12,26 @@ from validate.subject import modules
 MOST = 8                     # calls of a function that are kept [-]
 
 
-def ordinary_calls():
-    """{(lesson, function): (function, its first calls)} for every public function of all lessons."""
-    return {key: found for lesson in modules.lesson_names() for key, found in ordinary_calls_of(lesson).items()}
-
-
 @functools.cache
-def ordinary_calls_of(lesson):
-    """The same for the public functions of a lesson and its companion."""
+def ordinary_calls(*lessons):
+    """{(lesson, function): (function, its first calls)} for every public function of these lessons and companions.
+
+    Calls are recorded while all of these lessons are graded: simulator calls functions of rotation, too.
+    """
+    found = {}
     with tempfile.TemporaryDirectory() as room:
         folder = Path(room) / "answers"
         shutil.copytree(modules.SOLUTIONS, folder)
-        module, plain = modules.bind(lesson, folder), modules.bind(lesson)
-        public = public_functions(lesson, module)
-        calls = {name: [] for name in public}
-        for name, function in public.items():
-            function.__globals__[name] = vars(module)[name] = recorded(function, calls[name])
-        points.grade(lesson, module)
-        return {(lesson, name): (getattr(plain, name), some) for name, some in calls.items()}
+        for lesson in lessons:
+            module, plain = modules.bind(lesson, folder), modules.bind(lesson)
+            public = public_functions(lesson, module)
+            calls = {name: [] for name in public}
+            for name, function in public.items():
+                function.__globals__[name] = vars(module)[name] = recorded(function, calls[name])
+            points.grade(lesson, module)
+            for name, some in calls.items():
+                found[lesson, name] = getattr(plain, name), some
+    return found
 
 
 def public_functions(lesson, module):

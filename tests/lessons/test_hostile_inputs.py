@@ -84,7 +84,7 @@ ANOTHER_PROBLEM = {
 def ordinary():
     """{(lesson, function): (function, a few ordinary calls)} for every public function."""
     return {(lesson, name): (function, STARTED[lesson].get(name, some[:2]))
-            for (lesson, name), (function, some) in ordinary_calls().items()}
+            for (lesson, name), (function, some) in ordinary_calls(*modules.lesson_names()).items()}
 
 
 def leaves(value, path=()):

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate.grading.expect import between, close, raises, truth
+from validate.grading.expect import between, choice, close, raises, truth
+from validate.reference import choices
 from validate.reference import orientation as orientations
+from validate.reference.choices.rotation import BRICK, SPIN
 from validate.reference.rotation import freely
 
 exercise = pytest.mark.exercise
@@ -126,7 +128,7 @@ def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- three rotation updates
 
-@exercise("5.6", points=1.5,
+@exercise("5.6", points=1,
           hint="first R + dt ω* R; then its columns: the first to length 1, the second perpendicular "
                "to the first, the third by a cross product")
 def test_the_matrix_update_keeps_a_matrix_orthonormal(lesson, draw):
@@ -142,7 +144,7 @@ def test_the_matrix_update_keeps_a_matrix_orthonormal(lesson, draw):
     close("orientation at ω = 0", lesson.matrix_update(R, np.zeros(3), dt), R, EXACT)
 
 
-@exercise("5.7", points=0.75,
+@exercise("5.7", points=0.5,
           hint="Rodrigues: r cos θ + (n × r) sin θ + n (n·r)(1 − cos θ), for each column "
                "separately; test for |ω| = 0 before dividing")
 def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
@@ -159,7 +161,7 @@ def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
           np.shares_memory(np.asarray(still), R), False)
 
 
-@exercise("5.7", points=0.75,
+@exercise("5.7", points=0.5,
           hint="the body is at rest only if |ω| = 0; use the whole angle in sin θ and cos θ, also beyond one turn and "
                "for dt < 0")
 def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
@@ -260,7 +262,7 @@ def swirling_load(t, x, q, v, omega, body):
     return F, np.array([x[1] - omega[0], v[1] + q[0], np.sin(t) - omega[2]])
 
 
-@exercise("5.12", points=1,
+@exercise("5.12", points=0.5,
           hint="evaluate load at the old state, divide F by m; update v and ω; then x and q with the new v and ω")
 def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
     for m in (draw(0.01, 0.1), draw(1.0, 3.0), draw(20.0, 90.0)):
@@ -291,7 +293,7 @@ def unloaded(t, x, q, v, omega, body):
     return np.zeros(3), np.zeros(3)
 
 
-@exercise("5.12", points=1,
+@exercise("5.12", points=0.5,
           hint="does q turn with the new ω? Is the gyroscopic term there although there is no torque?")
 def test_the_loop_converges_to_the_free_motion_of_a_body(lesson, draw):
     q = orientation(draw)
@@ -359,7 +361,7 @@ def test_the_torque_on_a_top_is_the_derivative_of_its_energy(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- rotations, composed
 
-@exercise("5.16", points=0.75,
+@exercise("5.16", points=0.5,
           hint="w = m/I_body with the m of the last iteration; q on the left, (1, ½dt "
                "w) on the right, because w is in body coordinates")
 def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
@@ -430,7 +432,7 @@ def turn_once(lesson, draw):
           np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
 
 
-@exercise("5.16", points=0.5,
+@exercise("5.16", points=0.25,
           hint="does Newton's method continue until the correction is small? Then a "
                "turn changes the energy only by round-off")
 def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
@@ -502,7 +504,7 @@ def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
               given=f"I_body = {I_body}, ω = {omega}, dt = {dt}")
 
 
-@exercise("5.17", points=1,
+@exercise("5.17", points=0.5,
           hint="half of a, all of c, half of a: compute each component of L with the current "
                "quaternion; a turn by −dt must undo one by dt")
 def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
@@ -575,6 +577,82 @@ def test_five_reversible_substeps_make_fourth_order(lesson, draw):
         errors.append(np.abs(np.log(np.asarray(got) / L) - p.rate * dt).max())
     # The logarithm is rate dt + C dt⁵ + C′ dt⁷ + …: only odd powers, because the step is reversible.
     between("error of one step over that of a step half as long: 2⁵", errors[0] / errors[1], 30.0, 34.0)
+
+
+# ---------------------------------------------------------------------------------------------- why?
+
+def steady_rates(I, mgl, tilt, spin):
+    """Both rates of steady precession, smallest first: the roots of (Ω ẑ × L − τ) · y, which is quadratic in Ω."""
+    e = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
+    tau = np.cross(e, [0.0, 0.0, -mgl])
+
+    def rest(rate):
+        turning = np.array([0.0, 0.0, rate])
+        across = turning - turning @ e * e
+        return (np.cross(turning, I[0] * across + I[2] * spin * e) - tau)[1]
+
+    rates = np.array([-1.0, 0.0, 1.0])
+    return sorted(np.roots(np.polyfit(rates, [rest(rate) for rate in rates], 2)), key=abs)
+
+
+@exercise("5.19", points=1, hint="L stands still in axes that turn with Ω about the vertical: Ω ẑ × L = τ; the part of "
+                                 "L across the vertical is (I₃ω₃ − I₁Ω cos θ) sin θ")
+def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
+    for low, high in ((0.3, 1.2), (1.9, 2.8)):
+        I_body = np.array([draw(3.0, 6.0)] * 2 + [draw(0.8, 1.5)])
+        mgl, tilt = draw(10.0, 30.0), draw(low, high)
+        limit = np.sqrt(4.0 * I_body[0] * mgl) / I_body[2]               # a spin above it is enough at each tilt
+        for spin in (draw(1.1, 1.5) * limit, -draw(1.1, 1.5) * limit, draw(5.0, 9.0) * limit):
+            # np.roots loses a few digits of the small root
+            close("rate of steady precession [rad/s]", lesson.precession_rate(I_body, mgl, tilt, spin),
+                  steady_rates(I_body, mgl, tilt, spin)[0], 1e-10, given=f"I_body = {I_body}, Mgl = {mgl:.4g} N m, "
+                  f"tilt = {tilt:.4g} rad, spin = {spin:.4g} rad/s")
+    close("rate with a level axis [rad/s]", lesson.precession_rate(I_body, mgl, 0.5 * np.pi, limit),
+          mgl / (I_body[2] * limit), 1e-12)
+
+
+@exercise("5.20", points=1, hint="a disturbance grows as e^(λt): how much later does a tenth of it reach the same?")
+def test_the_chosen_time_grows_as_a_disturbance_that_grows_exponentially(lesson):
+    a, b, c = BRICK
+    rate = SPIN * np.sqrt((b - a) * (c - b) / (a * c))
+    right = choices.where("rotation", "times_of_a_flip",
+                          lambda n, time: abs((time[-1] - time[-11]) * rate - np.log(10.0) * (n[-1] - n[-11])) < 1e-3)
+    choice("the letter of a careful throw", lesson.careful_throw_is(), right)
+
+
+@exercise("5.21", points=1, hint="spin it about its middle axis, a little askew; measure the time between two flips in "
+                                 "a run, and multiply ω by what is missing")
+def test_a_thrown_body_of_ones_own_turns_over_in_time(lesson, draw):
+    period = draw(1.2, 2.5)
+    m, x, size, omega = (np.asarray(part, dtype=float) for part in lesson.my_thrown_body(period))
+    truth("whether there are at least two boxes", len(m) >= 2, True)
+    truth("whether masses and edges are above 0", bool(np.all(m > 0.0) and np.all(size > 0.0)), True)
+    I = inertia_of_boxes(m, x, size)
+    moments, axes = np.linalg.eigh(I)
+    for k in (1, 2):
+        between(f"principal moment {k + 1} over moment {k} [-]", moments[k] / moments[k - 1], 1.05, np.inf)
+    L = axes.T @ I @ omega
+    askew = np.degrees(np.arctan2(np.hypot(L[0], L[2]), abs(L[1])))
+    between("angle between L and the middle axis at the start [°]", askew, 0.25, 18.0)
+    between("|ω| period [rad]", np.linalg.norm(omega) * period, 0.0, 300.0)
+    flips = times_of_flips(I, omega, axes[:, 1], 8.0 * period)
+    truth("whether it turns over at least three times in eight periods", len(flips) >= 3, True)
+    between("time between two flips over that which was asked for [-]", np.diff(flips).mean() / period, 0.98, 1.02)
+
+
+def inertia_of_boxes(m, x, size):
+    """The tensor about the common centre: boxes along the axes, with their own ∫ r rᵀ dm = m size²/12."""
+    r = x - m @ x / m.sum()
+    spread = (m[:, None] * r).T @ r + np.diag(m @ size**2) / 12.0
+    return np.trace(spread) * np.eye(3) - spread
+
+
+def times_of_flips(I, omega, axis, T):
+    """The times at which L is across an axis of the body, by DOP853 on Euler's equations."""
+    from scipy.integrate import solve_ivp
+    slope = lambda t, w: np.linalg.solve(I, np.cross(I @ w, w))
+    return solve_ivp(slope, (0.0, T), omega, method="DOP853", rtol=1e-9, atol=1e-9,
+                     events=lambda t, w: axis @ I @ w).t_events[0]
 
 
 # ---------------------------------------------------------------------------------------------- given functions

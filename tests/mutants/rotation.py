@@ -537,3 +537,72 @@ edit("5.18", "advances the time before the substep",
 edit("5.18", "takes 1 − 2γ in the middle", "1.0 - 4.0 * SUZUKI", "1.0 - 2.0 * SUZUKI")
 edit("5.18", "takes the negative substep last", "(SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)",
      "(SUZUKI, SUZUKI, SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI)")
+
+
+# 5.19 -----------------------------------------------------------------------------------------------------------
+@right("5.19", "by small steps towards the root")
+def precession_rate(I_body, mgl, tilt, spin):
+    rate = 0.0
+    for _ in range(2000):
+        rate = mgl / (I_body[2] * spin - I_body[0] * rate * np.cos(tilt))
+    return rate
+
+
+SLOW = "2.0 * mgl / (along + np.copysign(root, along))"
+edit("5.19", "takes the limit of a fast top, Mgl/(I₃ω₃)", SLOW, "mgl / along")
+edit("5.19", "returns the other rate, at which the top goes round without its weight, too",
+     SLOW, "(along + np.copysign(root, along)) / (2.0 * I_body[0] * np.cos(tilt))")
+edit("5.19", "divides a difference of near numbers by the cosine, which is almost 0 where the axis is level", SLOW,
+     "(along - np.copysign(root, along)) / (2.0 * I_body[0] * np.cos(tilt))")
+edit("5.19", "ignores the sign of the spin", "np.copysign(root, along)", "root")
+edit("5.19", "forgets that the axis is tilted", " * np.cos(tilt)", "")
+edit("5.19", "takes the sine of the tilt", "np.cos", "np.sin")
+edit("5.19", "takes the whole torque Mgl sin θ for L = I₃ω₃ along the vertical",
+     "2.0 * mgl / (", "2.0 * mgl * np.sin(tilt) / (")
+edit("5.19", "forgets the 2", "2.0 * mgl / (", "mgl / (")
+edit("5.19", "exchanges the two moments", "along = I_body[2]", "I_body = I_body[::-1]; along = I_body[2]")
+edit("5.19", "adds the weight under the root", "along * along - 4.0", "along * along + 4.0")
+edit("5.19", "turns the other way", "return 2.0", "return -2.0")
+
+
+# 5.20 -----------------------------------------------------------------------------------------------------------
+@right("5.20", "as a small letter")
+def careful_throw_is():
+    return "a"
+
+
+edit("5.20", "takes the time to depend on the spin only", '"A"', '"D"')
+edit("5.20", "takes ten times the care for ten times the time: growth by equal amounts", '"A"', '"C"')
+edit("5.20", "takes a spin that is careful enough for one that never turns over", '"A"', '"B"')
+
+
+# 5.21 -----------------------------------------------------------------------------------------------------------
+@right("5.21", "a hammer, timed in a run")
+def my_thrown_body(period):
+    m, x = np.array([2.0, 1.0]), np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.3]])
+    size = np.array([[0.1, 0.4, 0.1], [0.05, 0.05, 0.5]])
+    return m, x, size, 13.03 / period * np.array([0.0, 1.0, 0.05])        # timed in a run
+
+
+@right("5.21", "two slabs like stairs, with axes that are no edges")
+def stairs(period):
+    m, x = np.array([1.0, 1.0]), np.array([[0.0, 0.0, 0.0], [0.2, 0.3, 0.0]])
+    size = np.array([[0.4, 0.3, 0.1], [0.4, 0.3, 0.1]])
+    return m, x, size, np.array([5.359 / period, 0.0, 0.0])
+
+
+OMEGA = "between_flips / period * np.array([0.0, 1.0, askew])"
+edit("5.21", "has the same ω for each period", OMEGA, "between_flips * np.array([0.0, 1.0, askew])")
+edit("5.21", "turns more slowly where it should turn faster", "between_flips / period", "between_flips * period")
+edit("5.21", "counts a flip there and back as one", "np.pi / a", "2.0 * np.pi / a")
+edit("5.21", "spins exactly about the middle axis, and never turns over", "[0.0, 1.0, askew]", "[0.0, 1.0, 0.0]")
+edit("5.21", "spins about the axis of the largest moment", "[0.0, 1.0, askew]", "[0.0, askew, 1.0]")
+edit("5.21", "spins about the axis of the smallest moment", "[0.0, 1.0, askew]", "[1.0, askew, 0.0]")
+edit("5.21", "spins about a slanting axis, and wobbles", "[0.0, 1.0, askew]", "[0.0, 1.0, 1.0]")
+edit("5.21", "is a single box", "return m, x, size,", "return m[:1], x[:1], size[:1],")
+edit("5.21", "is two cubes, one inside the other, with three equal moments",
+     "return m, x, size,", "return m, 0.0 * x, np.full((2, 3), 0.3),")
+edit("5.21", "forgets that the centre of mass lies between the boxes", "(x - m @ x / np.sum(m))**2", "x**2")
+edit("5.21", "forgets that the boxes are apart", "(x - m @ x / np.sum(m))**2 + size", "size")
+edit("5.21", "does not spin", OMEGA, "np.zeros(3)")
+edit("5.21", "has an edge of no length", "[0.1, 0.3, 0.1]]", "[0.1, 0.3, 0.0]]")

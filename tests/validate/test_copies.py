@@ -81,7 +81,7 @@ def test_the_command_tests_the_lessons_of_the_copy_in_which_it_runs(other, tmp_p
     command = [script, "--of=lessons", "--exercise=1.1", "-p", "no:cacheprovider"]
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     run = subprocess.run(command, cwd=other, capture_output=True, text=True, env=environment)
-    assert "1.1  2 of 2" in run.stdout, run.stdout + run.stderr
+    assert "1.1  1 of 1" in run.stdout, run.stdout + run.stderr
 
 
 def test_lessons_are_those_of_the_copy_around_the_working_folder(other, monkeypatch):
@@ -128,4 +128,4 @@ import pytest
 sys.exit(pytest.main(["tests", "--of=solutions", "--exercise=1.1", "-p", "no:cacheprovider"]))
 """
     said = program(ROOT, f"import sys; sys.path.insert(0, {str(ROOT)!r})\n{code}")
-    assert "1.1  2 of 2" in said
+    assert "1.1  1 of 1" in said

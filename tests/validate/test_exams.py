@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from validate import measure
-from validate.measure import exams
-from validate.measure.selection import select
+from validate.measure import exams, film
+from validate.measure.selection import Plan, select
 from validate.products import PYBULLET, RAPIER
 from validate.reference import exams as reference
 from validate.reference import mechanisms
@@ -191,3 +191,12 @@ def test_the_page_shows_the_quickest_run_of_each_class_and_without_a_class_the_b
 
 def test_a_report_without_an_exam_has_no_such_page():
     assert shown.of([{"scene": "s", "title": "S", "times": {}}]) == []
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_the_film_of_a_full_validation_shows_a_method_that_arrives_with_its_steps():
+    """Runge–Kutta has the highest order, and the governor is too stiff for it with the steps of the film."""
+    chosen = select("governor", Plan(speeds=("plain",), quick=False, live=()))
+    _, p = chosen.first
+    shown = film.picture(chosen, p, {runner.label for runner in chosen.scene.our_runners})["films"]
+    assert [one["label"] for one in shown] == ["truth", "implicit midpoint"]

@@ -9,7 +9,7 @@ from validate.subject import modules
 
 PLAN = measure.Plan(speeds=("plain",), live=(), quick=False)
 EARLIER = [name for name in modules.scene_names()
-           if modules.bind_scene(name).lesson not in ("simulator", "kinematics")]
+           if modules.bind_scene(name).lesson not in ("simulator", "kinematics", "sensitivities")]
 LOOPS = ("rolling_down", "incline", "stopping_block", "heavy_top", "throw", "catenary", "bounces", "point_and_plane",
          "point_and_cylinder", "pendulum", "rope")
 

@@ -29,8 +29,12 @@ def picture(selection, p, agreeing):
     dt = seconds / (per_frame * FRAMES)
     frames = [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]
     shown = {scene.film_of_truth: (Role.TRUTH, frames)}
-    for runner in sorted((r for r in scene.our_runners if r.label in agreeing), key=selection.rank)[:1]:
-        shown[runner.label] = (Role.OURS, our_frames(*selection.fastest(runner), p, dt, per_frame))
+    for runner in sorted((r for r in scene.our_runners if r.label in agreeing), key=selection.rank):
+        try:
+            shown[runner.label] = (Role.OURS, our_frames(*selection.fastest(runner), p, dt, per_frame))
+            break
+        except ArithmeticError:                          # it needs shorter steps than the film has: the next one, then
+            continue
     for runner in scene.engine_runners:
         if selection.is_live(runner) and not runner.departure:
             shown[runner.label] = (Role.ENGINE, engine_frames(runner.who, p, dt, per_frame))

@@ -15,7 +15,7 @@ from validate import methods
 from validate.methods import TURNS
 from validate.reference import turns
 from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
-from validate.reference.rotation import symmetric_top
+from validate.reference.rotation import FreeTop, symmetric_top
 from validate.stability.case import (
     DOTS,
     EDGE,
@@ -455,6 +455,27 @@ def loads_and_derivatives(lesson, check):
     because they are quadratic.
     """
     check.laws(lesson, (load, derivative_of_the_state, growth), seed=55, times=50)
+
+
+@case("going-round-and-over", "Steady precession, and a thrown body of one's own", compiled=False)
+def going_round_and_over(lesson, check):
+    """Compare the predicted precession with  Ω ẑ × L = τ,  and a thrown body with its time between two flips."""
+    I, mgl, spin = np.array([5.0, 5.0, 1.0]), 20.0, 30.0
+    for tilt in (0.3, 2.5):
+        rate, e = lesson.precession_rate(I, mgl, tilt, spin), np.array([np.sin(tilt), 0.0, np.cos(tilt)])
+        turning = np.array([0.0, 0.0, rate])
+        L = I[0] * (turning - turning @ e * e) + I[2] * spin * e
+        found = np.cross(turning, L)[1] / np.cross(e, [0.0, 0.0, -mgl])[1]
+        check("A top goes steadily round as its torque turns L.",
+              f"|Ω ẑ × L| over the torque at a tilt of {tilt:g} rad [-]", law=1.0, found=found, within=1e-13,
+              saw=f"At a tilt of {tilt:g} rad the top goes round at {rate:.4g} rad/s.")
+    m, x, size, omega = lesson.my_thrown_body(1.5)
+    r = x - m @ x / m.sum()
+    spread = (m[:, None] * r).T @ r + np.diag(m @ size**2) / 12.0
+    moments, axes = np.linalg.eigh(np.trace(spread) * np.eye(3) - spread)
+    first, second = FreeTop(moments, axes.T @ omega).flips()
+    check("A thrown body of one's own turns over in time.", "time between two flips [s]", law=1.5, found=second - first,
+          within=0.03, saw=f"It turns over every {second - first:.4g} s.")
 
 
 # ---------------------------------------------------------------------------------------------- one step

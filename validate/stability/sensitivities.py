@@ -71,7 +71,8 @@ def best_step_of_a_difference(lesson, check):
           law=1.0, found=np.exp(at_best) / errors.min(), within=1.0,
           saw="The measured error is smallest where theory says, to within the scatter of round-off.")
     exact = [abs(lesson.complex_step(wave, s, 1e-20, None) / slope - 1.0) for s, slope in zip(places, slopes)]
-    check.agree("A complex step of 10⁻²⁰ has no error but round-off.", "largest relative error [-]", max(exact), 1e-13)
+    check.agree("A complex step of 10⁻²⁰ has no error but round-off.", "largest relative error [-]",
+                np.max(exact), 1e-13)
     return Picture("The step of a difference", "log₁₀ h [-]", "log₁₀ error [-]",
                    [log_series("measured", hs, errors, DOTS), log_series("theory", hs, total(hs), LINE)],
                    "To the right truncation grows as h², to the left round-off as 1/h.")

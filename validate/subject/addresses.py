@@ -17,7 +17,6 @@ import ctypes
 import hashlib
 from contextlib import contextmanager
 
-from llvmlite import ir
 from numba import typeof
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed
@@ -166,7 +165,7 @@ def call_function(context, builder, signature, values):
     return result
 
 
-FIND = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t])       # of the second field of a Cell
+FIND = cgutils.ir.FunctionType(cgutils.ir.VoidType(), [cgutils.voidptr_t])       # of the second field of a Cell
 
 
 class Cell(ctypes.Structure):
