@@ -490,7 +490,7 @@ def stopping_depth(speed, gap, margin, dt):
 def may_be_extrapolated():
     """Return the letter of the result that may be extrapolated by 2 t(dt/2) − t(dt): "A", "B", "C" or "D".
 
-    The figure of the notebook shows the time of an event as four loops compute it, against the step dt.
+    The figure of the notebook shows four laws: the time of an event against the step dt of the loop that computes it.
     """
     ### BEGIN SOLUTION 10.18
     return "B"
