@@ -58,7 +58,7 @@ def test_points_without_threads_fall_freely():
     off, on = films("2.7", "curtain")
     share, k = room.FREE.mean(), 9                       # the drag of the air on a point takes less than a tenth of g
     fall = 0.5 * room.G * TIMES[k] ** 2 * share
-    assert 0.7 * fall < off[0, 1] - off[k, 1] < fall * 1.05 and np.ptp(on[:, 1]) < 0.1
+    assert 0.7 * fall < off[0, 1] - off[k, 1] < fall * 1.05 and np.ptp(on[:, 1]) < 0.09
 
 
 def test_wind_leans_the_curtain():
@@ -131,6 +131,8 @@ def test_friction_turns_the_ball_and_takes_a_third_of_its_slip():
     r = room.ROOM.bodies[room.BALL].shape.radius
     turn = np.unwrap(np.arctan2(on[:, 1], on[:, 0]))
     assert speeds(turn)[70] * -r == pytest.approx(speeds(x)[70], rel=0.02)          # it rolls off: no slip is left
+    before, spin = speeds(x)[8], -r * speeds(turn)[8]    # between rail and floor: it spins backwards
+    assert speeds(x)[13] == pytest.approx(before - (before - spin) / 3.0, rel=0.01)
 
 
 def test_threads_do_not_stretch_and_no_point_is_inside_the_ball(monkeypatch):
@@ -174,6 +176,8 @@ def test_the_hand_takes_the_curtain_along_and_keeps_its_limit():
         angles = actors.arm_angles({**use, number: growing.worked()[number]})
         assert np.linalg.norm([room.joints(theta)[-1] for theta in angles] - wishes, axis=1).max() < miss
         assert (angles[:, 2].min() >= room.WRIST) == (number == "11.15")
+        widest = room.WRIST if number == "11.15" else np.radians(53.0)
+        assert angles[:, 2].min() == pytest.approx(widest, abs=0.01)
     off, on = films("11.11", "curtain")
     assert np.ptp(off[-30:, 0]) < 0.02 and on[-1, 0] < off[-1, 0] - 0.15
 
@@ -198,4 +202,4 @@ def test_the_pair_of_a_lesson_is_small_and_shows_both(monkeypatch):
     monkeypatch.setattr(growing, "display", lambda shown: said.append(shown.data))
     monkeypatch.setenv("WORKBOOK_LESSONS", str(SOLUTIONS))
     growing.grow("2")
-    assert said[0].count('"label":"with') == 2 and len(said[0]) < 200_000
+    assert said[0].count('"label":"with') == 2 and len(said[0]) < 130_000

@@ -2,8 +2,12 @@
 // player.js stands above this text, and its bar serves here, too.
 (() => {
 "use strict";
-const { controls, shade, page, floats } = globalThis.filmPlayer;
+const { controls, shade, page } = globalThis.filmPlayer;
 const NARROW = 520, LABEL = 20;                          // width below which views stand below each other, height of a label [px]
+
+// Places [m]: they come as whole millimetres of 16 bits.
+const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
+const places = text => Float32Array.from(new Int16Array(bytes(text)), n => n / 1000);
 
 function draw(canvas, film, k) {
   const ratio = devicePixelRatio || 1, pen = canvas.getContext("2d"), many = film.views.length;
@@ -48,7 +52,7 @@ document.querySelectorAll("canvas[data-growing]:not([data-playing])").forEach(ca
   canvas.dataset.playing = "";
   const film = JSON.parse(document.getElementById(canvas.dataset.growing).textContent);
   for (const actor of [...film.rest, ...film.views.flatMap(view => view.actors)]) {
-    actor.numbers = floats(actor.frames);
+    actor.numbers = places(actor.frames);
     actor.points = 1 + Math.max(...actor.links.flat());
     actor.pictures = actor.numbers.length / actor.points / 2;
   }
