@@ -1,4 +1,4 @@
-"""Courses of 4, 8 and 15 weeks, and the tables of the page *Plan a course*."""
+"""Courses of 4, 8 and 16 weeks, and the tables of the page *Plan a course*."""
 
 import re
 import subprocess
@@ -71,10 +71,11 @@ COURSES = (
          Week("rotation"), Week("collisions", last=10), Week("impulses"),
          Week("contact", last=11, note="exactly, on small scenes")),),
     Course(
-        "Fifteen weeks: everything", "A course of one term that ends with a simulator and a scene of one's own.",
+        "Sixteen weeks: everything", "A course of one term that ends with a simulator and a scene of one's own.",
         (Week("integrators"), Week("springs"), Week("friction"), Week("inertia_tensors"), Week("rotation"),
          Week("collisions", last=8), Week("collisions", first=9), Week("impulses"),
-         Week("pbd", last=11), Week("pbd", first=12), Week("contact"), Week("simulator"),
+         Week("pbd", last=11), Week("pbd", first=12),
+         Week("contact", last=11), Week("contact", first=12, note="piles, and other solvers"), Week("simulator"),
          Week("", note="a scene of one's own with the simulator: three kinds of parts, contact and friction, judged by "
                        "the invariants of lesson 10"),
          Week("kinematics"), Week("sensitivities"))),

@@ -105,13 +105,22 @@ WEEKS = {
         "A push at one end of a rod: which share moves it, and which share turns it? On paper, before 8.15 to 8.17.",
         "*Break it*: eight sweeps or eight substeps? Predict how much stiffer each makes a chain (8 and 64 times).")),
     "contact": (Week(
-        (1, 8), (9, 0),
+        (1, 8), (9, 11),
         "Ask what is wrong with a solver that lets ten boxes sink. All contacts in one matrix; the complementarity "
         "problem; projected Gauss–Seidel and its contraction.",
         ("stack", "mass_ratio"),
         "Two contacts by hand: each is open or pushes. Compute all four cases; which one obeys the law? Then 9.8.",
         "How fast does the upper one of two boxes sink (g Δt ρᵐ/(1 − ρᵐ))? Predict it, then look at ten boxes and at "
-        "the three cures."),),
+        "the three cures."),
+        Week(
+        (12, 16), (17, 0),
+        "A pile without a matrix: arms, soft contacts, memory. Then other solvers for the same laws: the proximal map, "
+        "Newton's method, and the convex problem that several engines solve instead.",
+        ("piles",),
+        "Put the parts of a step of a pile in order, with what each costs. Which of them may be skipped while nothing "
+        "moves?",
+        "Which residual does the convex relaxation leave on a sliding block, and how high does the block float "
+        "(μ v Δt)? Predict it, then look at the eight solvers.")),
     "simulator": (Week(
         (1, 7), (8, 0),
         "Ask how you would know that the dominoes are right. The loop, and the lesson from which each part comes. A "
