@@ -26,13 +26,14 @@ from .checks import (
     finite_number,
     whole_number,
 )
-from .impulses import kinematic_response
+from .impulses import free_flight, impact_time, kinematic_response
 from .integrators import implicit_euler_step, solve
 
 __all__ = [
     "GRAZING", "MOST_HALVINGS", "aim", "best_step", "bounce", "bounced_curve_is", "central_difference",
-    "checked_search", "complex_step", "event_time_sensitivity", "implicit_euler_step", "kinematic_response",
-    "predicted_horizon", "remainder_orders", "saltation", "solve", "tangent_implicit_step", "tangent_step",
+    "checked_search", "complex_step", "event_time_sensitivity", "free_flight", "impact_time", "implicit_euler_step",
+    "kinematic_response", "predicted_horizon", "remainder_orders", "saltation", "solve", "tangent_implicit_step",
+    "tangent_step",
 ]
 
 GRAZING = 1e-12              # rate of an event over the sizes of its terms [-]: 5000 roundings; below, it is zero

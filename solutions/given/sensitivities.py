@@ -13,9 +13,8 @@ from ..checks import (
     finite_array,
     finite_number,
 )
-from ..impulses import free_flight, impact_time
 from ..sensitivities import *  # noqa: F403    one import has a lesson and its given functions
-from ..sensitivities import bounce
+from ..sensitivities import bounce, free_flight, impact_time
 from ..support.records import check_record
 
 MOST_BOUNCES = 1000          # of one flight [-]: a ball that needs more comes to rest
