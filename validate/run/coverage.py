@@ -176,7 +176,8 @@ def methods_in(nodes):
 def exercises(lesson):
     """Return [(number, function)] of the exercises that wait in lessons/, in the order of the text.
 
-    A function without arguments is not among them.  It returns the letter of a choice, which nothing can run with.
+    A function without arguments is not among them.  It returns the letter of a choice, or a thing of one's own, and no
+    scene computes with either.
     """
     text = (modules.ROOT / "lessons" / f"{lesson}.py").read_text(encoding="utf-8")
     choices = {node.name for node in trees()[lesson].body if isinstance(node, ast.FunctionDef) and not node.args.args}
