@@ -1520,7 +1520,10 @@ def of_normals(A, b):
         for k in range(len(lam)):
             lam[k] = max(0.0, lam[k] - (A[k] @ lam + b[k]) / A[k, k])
         return lam
-    return sweep, lambda lam: np.max(np.abs(np.minimum(np.diag(A) * lam, A @ lam + b))), len(b)
+
+    def left(lam):
+        return max(abs(min(A[k, k] * lam[k], A[k] @ lam + b[k])) for k in range(len(b)))
+    return sweep, left, len(b)
 
 
 def left_by(lesson, sweep, residual, size, calls):
