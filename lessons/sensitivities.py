@@ -99,8 +99,8 @@ def tangent_implicit_step(acceleration, derivatives, t, x, v, dx, dv, dt, p):
         vₙ₊₁ = vₙ + dt a(tₙ + dt, xₙ + dt vₙ₊₁, vₙ₊₁)
     whichever way it was found.  Differentiate this equation with respect to s, and solve it for dvₙ₊₁.
 
-    (a_x, a_v, a_s) = derivatives(t, x, v, p) as in tangent_step; the law need not be linear.  solve(A, B) of lesson 1
-    solves A Y = B for a matrix B (d, m), too.  xₙ₊₁ = xₙ + dt vₙ₊₁ gives dxₙ₊₁.
+    (a_x, a_v, a_s) = derivatives(…), at the time and the state that the differentiated equation has; the law need not
+    be linear.  solve(A, B) of lesson 1 solves A Y = B for a matrix B (d, m), too.  xₙ₊₁ = xₙ + dt vₙ₊₁ gives dxₙ₊₁.
     Raises Diverged as implicit_euler_step does.
     *Source:* the implicit function theorem.
     """
@@ -197,7 +197,8 @@ def aim(miss, s, tolerance, most, p):
     begins with that of the first s.  A miss within the tolerance needs no iteration.
     (s, tolerance, most) = checked_search(s, tolerance, most) comes first, and raises BadInput for what cannot be.
     Raises Diverged("miss of the last throw", |r|, "begin elsewhere, or allow more iterations") after `most` iterations,
-    or if no halved step makes the miss smaller.  solve of lesson 1 raises LinAlgError for a singular J.
+    or if no halved step makes the miss smaller; |r| is that of the last s.
+    solve of lesson 1 raises LinAlgError for a singular J.
     *Source:* Dennis and Schnabel 1983, 6.3.
     """
     # YOUR CODE HERE
