@@ -240,7 +240,7 @@ def test_plain_python_compiles_nothing():
 def test_a_call_from_python_costs_more_than_an_empty_step_of_the_engine():
     one = calls.cost_of_calls(PYMUNK)
     assert one["seconds"] > 0.0 and len(one["called"]) == calls.REPEATS
-    assert not one["alone"] or max(one["alone"]) < min(one["called"])
+    assert not one["alone"] or np.median(one["alone"]) < np.median(one["called"])      # one may be interrupted
 
 
 # ---------------------------------------------------------------------------------------------- which method
