@@ -209,7 +209,7 @@ def judged(scene, runner, p, truth, runs, enough):
     """Return the curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
 
     runs: pairs (number of steps, Outcome), from coarse to fine; none is taken after `enough` that arrive and can be
-    judged, and one more where no theory predicts the error: the order then has to show that the method is right.
+    judged.
     Where the scene gives it its own law, it must follow that law.  Where that is the truth, it departs from nothing.
     """
     departure, order = runner.departure, runner.order
@@ -221,7 +221,7 @@ def judged(scene, runner, p, truth, runs, enough):
                      "error": None if outcome.failure else relative(outcome.observed, truth),
                      "failure": outcome.failure, **bound(runner, p, scene.duration / steps, law)})
         arrived = [r for r in rows if r["error"] is not None and r["steps"] in scene.steps]
-        if sum(r["limit"] < ASYMPTOTIC for r in arrived) >= enough + (not callable(runner.predicted)):
+        if sum(r["limit"] < ASYMPTOTIC for r in arrived) >= enough:
             break
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)

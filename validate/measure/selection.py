@@ -46,12 +46,11 @@ class Plan(NamedTuple):
         return 3 if self.most_steps else REPEATS
 
     def enough(self):
-        """Return how many of a curve's runs are judged before it ends: two in a quick validation, not in a notebook.
+        """Return how many of a curve's runs are judged before it ends: three in a quick validation, not in a notebook.
 
-        Finer runs take most of the time, and the coarser ones show a fault as well.  One more is judged where no theory
-        predicts the error, because three show an order.
+        Finer runs take most of the time, and the coarser ones show a fault as well.  Three runs show an order.
         """
-        return 2 if self.quick and not self.most_steps else np.inf
+        return 3 if self.quick and not self.most_steps else np.inf
 
 
 class Selection(NamedTuple):
@@ -190,7 +189,7 @@ def notes_of(scene, plan, ours):
         return omitted
     slow = [r.label for r in scene.our_runners if r not in ours]
     plain = [r.label for r in ours if speeds_of(scene, plan, r) != plan.speeds]
-    finest = "finer steps, where two runs can be judged already, or three where no theory predicts the error"
+    finest = "finer steps, where three runs of a method or an engine can be judged already"
     short = [r.label for r in ours if r.most_in_quick]
     slow_cases = [case for case in scene.cases if any(case in r.slow_cases for r in scene.our_runners)]
     several = len(scene.cases) > 1 and scene.moves and scene.engine_runners
