@@ -5,10 +5,14 @@ Each function returns {name: places (pictures, points, 2) to draw [m]}, and LINE
 *Left out:* what things do to each other beside what a function names; a box that tips over the edge of the sill.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from solutions.collisions import Plane
+from solutions.given.bodies import Bodies
+from solutions.rotation import Top
 from solutions.support.contact_points import ContactSet, box_bounds_2d, box_contacts_2d
 from solutions.support.quaternions import rotate
 from solutions.support.scenes import PileState
@@ -146,17 +150,12 @@ def hanging(step, rings=None):
 
 def moved(use):
     """The curtain, by a step of lesson 1 (1.5); its forces are given."""
-    return {"curtain": flat(hanging(lambda t, x, v, dt, net: use["1.5"](given_law, t, x, v, dt, net)))}
+    return {"curtain": flat(hanging(partial(use["1.5"], given_law)))}
 
 
 def curtain(use):
     """The curtain, by the air (2.2) and the threads (2.7) of lesson 2."""
-    law = curtain_law(use)
-
-    def step(t, x, v, dt, net):
-        v = v + dt * law(t, x, v, net)
-        return x + dt * v, v
-    return {"curtain": flat(hanging(step))}
+    return {"curtain": flat(hanging(partial(velocity_first, curtain_law(use))))}
 
 
 def cloth(use):
@@ -170,6 +169,12 @@ def cloth(use):
     rim = room.CUSHION * circle(ROUND)
     balls = np.array([flat(room.cushion(k * FRAME)) + rim for k in range(PICTURES)])
     return {"curtain": flat(hanging(step)), "cushion": balls}
+
+
+def velocity_first(law, t, x, v, dt, p):
+    """Given.  Advance by the new velocity."""
+    new = v + dt * law(t, x, v, p)
+    return x + dt * new, new
 
 
 def given_law(t, x, v, net):
@@ -186,12 +191,6 @@ GIVEN_CLOTH = {"2.2": blown, "2.7": threads_pull}
 
 
 # ---------------------------------------------------------------------------------------------- the ball
-
-class Wall(NamedTuple):
-    """All points x with n · x + d = 0."""
-    n: np.ndarray
-    d: float
-
 
 THROWN_DT = 0.05                                 # step of the ball in lesson 1, which is long [s]
 
@@ -233,7 +232,7 @@ def first_touch(use, t, x, x_1, r):
     rail = ROOM.bodies[room.RAIL]
     from_rail = [np.append(0.0, place - rail.x) for place in (x, x_1)]
     at_rail = use["6.4"](t, FRAME, *from_rail, r, rail.shape.radius)
-    at_floor = use["6.2"](t, FRAME, x, x_1, r, Wall(np.array([0.0, 1.0]), 0.0))
+    at_floor = use["6.2"](t, FRAME, x, x_1, r, Plane(np.array([0.0, 1.0]), 0.0))
     first = min(at_rail, at_floor)
     if not first <= t + FRAME:
         return None
@@ -387,15 +386,9 @@ def die(use):
     return {"die": np.array(seen)}
 
 
-class Spinning(NamedTuple):
-    """The top, as functions of lesson 5 read it."""
-    I_body: np.ndarray
-    mgl: float
-
-
 def top(use):
     """The top that gravity makes go round (5.15)."""
-    body = Spinning(room.TOP_I, room.TOP_MGL)
+    body = Top(room.TOP_I, room.TOP_MGL)
     R = about(np.array([0.0, 1.0, 0.0]), room.LEAN)                  # z is up here
     L, seen, dt = room.SPIN * room.TOP_I[2] * R[:, 2], [], FRAME / 16
     for k in range(16 * PICTURES):
@@ -478,31 +471,19 @@ def remembered(now, old, J, near):
 
 # ---------------------------------------------------------------------------------------------- the loop
 
-class Boxes(NamedTuple):
-    """Bodies of the Model that are boxes, and the floor, as functions of lesson 10 read them."""
-    inv_mass: np.ndarray
-    inv_inertia: np.ndarray
-    half: np.ndarray
-    planes: np.ndarray
-    gravity: np.ndarray
-    mu: float
-    sweeps: int
-    margin: float
-
-
 BOXES = (room.SILL, room.BOX, room.PARCEL, *range(room.PILE, room.PILE + room.STACK))
 LOOP_DT = FRAME / 4                              # [s]
 
 
 def boxes():
-    """Return (PileState, Boxes) of the Model's boxes at the start, and of the floor in the last row."""
+    """Return (PileState, Bodies) of the Model's boxes at the start, and of the floor in the last row."""
     bodies = [ROOM.bodies[k] for k in BOXES]
     pad = lambda rows: np.concatenate((rows, np.zeros((1, *np.shape(rows)[1:]))))
     empty = ContactSet(np.zeros(len(bodies) + 2, np.int64), np.zeros(0, np.int64), np.zeros(0, np.int64),
                        np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
     state = PileState(*(pad(np.array([getattr(b, name) for b in bodies], float)) for name in ("x", "q", "v", "omega")),
                       empty, np.zeros((0, 2)))
-    p = Boxes(pad(np.array([1.0 / b.m for b in bodies])), pad(np.array([1.0 / b.inertia for b in bodies])),
+    p = Bodies(pad(np.array([1.0 / b.m for b in bodies])), pad(np.array([1.0 / b.inertia for b in bodies])),
               np.array([b.shape.half for b in bodies]), np.array([(0.0, 1.0, 0.0)]), DOWN, room.RUBS, 10, 0.02)
     return state, p
 
@@ -577,13 +558,7 @@ def arm(use, threads=None):
     held = np.linalg.norm(hands[round(room.GRIP / FRAME), -1] - room.wish(room.GRIP)) < 0.05
     rings = lambda t: np.interp(max(t, room.GRIP), times, np.clip(spread, 0.1, 1.0)) if held else room.SPREAD
     rings_from = lambda t: room.SPREAD if t < room.GRIP else rings(t)
-    return {"curtain": flat(hanging(threads or hanging_threads, rings_from)), "arm": hands}
-
-
-def hanging_threads(t, x, v, dt, net):
-    """Given.  Advance the curtain by the springs of lesson 2."""
-    v = v + dt * given_law(t, x, v, net)
-    return x + dt * v, v
+    return {"curtain": flat(hanging(threads or partial(velocity_first, given_law), rings_from)), "arm": hands}
 
 
 def stay(task, theta, target, arm):

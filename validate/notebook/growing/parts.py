@@ -20,12 +20,6 @@ def euler(law, t, x, v, dt, p):
     return x + dt * v, v + dt * law(t, x, v, p)
 
 
-def velocity_first(law, t, x, v, dt, p):
-    """Given.  Advance by the new velocity."""
-    new = v + dt * law(t, x, v, p)
-    return x + dt * new, new
-
-
 def point_mass(I, m, d):
     """Given.  Return the tensor about a point at the offset d."""
     return I + m * (d @ d * np.eye(3) - np.outer(d, d))
@@ -69,7 +63,7 @@ def unmoved(surface, x, w, solid):
 
 
 PARTS = {
-    "1.5": Part(actors.moved, euler, velocity_first, "without it: Euler's step"),
+    "1.5": Part(actors.moved, euler, actors.velocity_first, "without it: Euler's step"),
     "1.6": Part(actors.thrown, euler, actors.flight, "without it: Euler's step"),
     "2.2": Part(actors.curtain, lambda v, wind, k_v: 0.0 * v, actors.blown, "without it: no air"),
     "2.7": Part(actors.curtain, lambda x, v, net: 0.0 * x, actors.threads_pull, "without it: no threads"),
