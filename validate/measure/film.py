@@ -28,13 +28,7 @@ def picture(selection, p, agreeing):
     seconds = scene.film_seconds or scene.duration
     dt = seconds / (per_frame * FRAMES)
     frames = [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]
-    shown = {scene.film_of_truth: (Role.TRUTH, frames)}
-    for runner in sorted((r for r in scene.our_runners if r.label in agreeing), key=selection.rank):
-        try:
-            shown[runner.label] = (Role.OURS, our_frames(*selection.fastest(runner), p, dt, per_frame))
-            break
-        except ArithmeticError:                          # it needs shorter steps than the film has: the next one, then
-            continue
+    shown = {scene.film_of_truth: (Role.TRUTH, frames)} | our_run(selection, p, agreeing, dt, per_frame)
     for runner in scene.engine_runners:
         if selection.is_live(runner) and not runner.departure:
             shown[runner.label] = (Role.ENGINE, engine_frames(runner.who, p, dt, per_frame))
@@ -101,6 +95,16 @@ def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False, walls=(
 def links(scene, p):
     """Return pairs of points that the picture joins."""
     return [list(map(int, pair)) for pair in scene.links(p)] if scene.links else []
+
+
+def our_run(selection, p, agreeing, dt, per_frame):
+    """Return {label: (role, frames)} of our method of highest order that does not diverge with these steps, or {}."""
+    for runner in sorted((r for r in selection.scene.our_runners if r.label in agreeing), key=selection.rank):
+        try:
+            return {runner.label: (Role.OURS, our_frames(*selection.fastest(runner), p, dt, per_frame))}
+        except ArithmeticError:                          # it needs shorter steps than the film has: the next one, then
+            continue
+    return {}
 
 
 def our_frames(scene, step, p, dt, per_frame):
