@@ -18,6 +18,7 @@ from validate.book import __main__ as book
 from validate.book import api, course, execute, pages, plan, sheets, weeks
 from validate.book.site import files
 from validate.grading import choice, release
+from validate.notebook import growing
 from validate.subject import modules
 from validate.subject.modules import ROOT
 
@@ -441,6 +442,21 @@ def test_a_book_of_one_notebook_shows_a_figure_as_wide_as_its_type_needs(one_not
         page.evaluate(ADDED, PAGE)
         wide, text, figures = page.evaluate(SIZES)
         assert wide == window and text <= 46 * 17.6 and min(figures) >= least, f"{window}: {wide}, {text}, {figures}"
+    page.close()
+
+
+@pytest.mark.long
+def test_all_films_of_the_scene_that_grows_play_where_their_script_is_loaded_once(browser, tmp_path, monkeypatch):
+    """A page of the book loads a script where it stands first, above the canvases of all later films."""
+    shown = []
+    monkeypatch.setattr(growing, "display", lambda html: shown.append(html.data))
+    for part in ("3.7", "7.4"):
+        growing.grow(part)
+    (tmp_path / "page.html").write_text("<meta charset=utf-8>" + shown[0] + pages.INLINE.sub("", shown[1]))
+    page = browser.new_page()
+    page.goto((tmp_path / "page.html").as_uri())
+    page.wait_for_function("document.querySelectorAll('canvas[data-playing]').length === 2", timeout=20_000)
+    assert page.locator(".film-bar").count() == 2
     page.close()
 
 

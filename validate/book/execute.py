@@ -120,7 +120,8 @@ def fingerprint(path):
     sources = [path, *sorted(SOLUTIONS.rglob("*.py")), *sorted((ROOT / "tests" / "lessons").glob("test_*.py"))]
     sources += [file for file in sorted((ROOT / "validate").rglob("*.py"))
                 if file.parent.name != "book" or file.stem == "execute"]
-    sources += sorted((ROOT / "validate" / "report").glob("*.js"))
+    sources += sorted(file for folder in ("report", "notebook") for file in (ROOT / "validate" / folder).rglob("*.js")
+                      if "node_modules" not in file.parts)
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in sources)).hexdigest()[:16]
 
 

@@ -118,6 +118,9 @@ def work_precision(path, result):
         axes.hlines(y, low, high, color=look[label]["color"], lw=0.8, alpha=0.5)
     if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
+    errors = {r["error"] for r in rows}
+    if len(errors) == 1:                                             # the axis would have no length
+        axes.set_ylim(0.1 * min(errors), 10.0 * min(errors))
     _ground(axes, bottom)
     time_label = "run time of the stepping loop [s]" if result["moves"] else "run time [s]"
     axes.set(xlabel=time_label, ylabel=error_label(result))

@@ -442,7 +442,8 @@ def _ours(result):
             waiting.setdefault(c["message"], {})[c["label"]] = None
     for why, labels in waiting.items():
         yield f"{', '.join(labels)}: {why}."
-    shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and is_right(c)]
+    shown = [c for c in next(iter(result["cases"].values()))["ours"]
+             if c["order"] is not None and c["expected"] != EXACT and is_right(c)]
     if shown:
         orders = "; ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown)
         yield f"Measured orders of convergence, with the expected order in brackets: {orders}."

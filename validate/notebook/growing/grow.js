@@ -48,7 +48,7 @@ function draw(canvas, film, k) {
   });
 }
 
-document.querySelectorAll("canvas[data-growing]:not([data-playing])").forEach(canvas => {
+const start = () => document.querySelectorAll("canvas[data-growing]:not([data-playing])").forEach(canvas => {
   canvas.dataset.playing = "";
   const film = JSON.parse(document.getElementById(canvas.dataset.growing).textContent);
   for (const actor of [...film.rest, ...film.views.flatMap(view => view.actors)]) {
@@ -61,4 +61,6 @@ document.querySelectorAll("canvas[data-growing]:not([data-playing])").forEach(ca
   canvas.tabIndex = 0;
   new ResizeObserver(bar.show).observe(canvas);
 });
+// A page of the book loads this text once, above all but the first of its canvases.
+document.readyState === "complete" ? start() : addEventListener("DOMContentLoaded", start);
 })();

@@ -226,10 +226,9 @@ def departure(why, kept, whose=Whose.LAW):
     return Departure(why, partial(in_fixed_steps, kept=kept), whose)
 
 
-SET_DOWN = ("a bounce stays in its step when the height changes, and the ball is set on the floor, which forgets the "
-            "height")
-LEFT_BELOW = ("a bounce stays in its step when the height changes, and the ball is hardly moved: so its height grows "
-              "with the first one")
+SAME_STEP = "its bounce stays in the same step when the first height changes a little, and there it "
+SET_DOWN = SAME_STEP + "sets the ball on the floor: the height behind the bounce no longer depends on the first one"
+LEFT_BELOW = SAME_STEP + "hardly moves the ball: the height behind the bounce grows with the first one"
 
 
 def late(kept, rule, **about):
