@@ -27,7 +27,7 @@ def filled(value, x):
         return np.full(value.shape, x, value.dtype if np.isfinite(x) else float)
     if isinstance(value, bool | int | float):
         return type(value)(x) if np.isfinite(x) else x
-    return value
+    return "" if isinstance(value, str) else value
 
 
 class Shaped:
@@ -157,6 +157,8 @@ def test_senseless_answers_earn_nothing(name):
         count = len(inspect.signature(module[function]).parameters)
         arguments = {f"return argument {n}": argument(n) for n in range(count)}
         for text, make in {**BODIES, **arguments}.items():
+            if make in LEARNED and not count:                # there is one answer for every seed: to know it is right
+                continue
             body, key = make(module[function]), f"{exercise}: {text}"
             changed = types.SimpleNamespace(**{**module, function: body})
             subjects[key] = changed, lambda number, test, exercise=exercise: number == exercise
