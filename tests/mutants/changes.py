@@ -96,7 +96,7 @@ def edits_of(node):
         field = "attr" if isinstance(node, ast.Attribute) else "id"
         if getattr(node, field) in NAMES:
             yield lambda n: setattr(n, field, NAMES[getattr(n, field)])
-        if getattr(node, field) == "T":
+        if getattr(node, "attr", "") == "T":
             yield lambda n: become(n, n.value)
     if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load) and len(node.elts) > 1:
         yield lambda n: n.elts.insert(0, n.elts.pop())
