@@ -448,8 +448,8 @@ def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, d
 @exercise("12.8", points=0.5, hint="e_s moves only the velocity: R_s = −(v · n) n e_sᵀ; 0 ≤ e ≤ 1")
 def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
     for d in (1, 2, 3):
-        for e in (0.0, 1.0):
-            n, v, a = unit(draw, d), draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
+        for e, n in ((0.0, unit(draw, d)), (1.0, unit(draw, d)), (draw(0.2, 0.8), np.eye(d)[-1])):     # a level floor
+            v, a = draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
             v -= (v @ n + draw(1.0, 3.0)) * n
             still, e_s = np.zeros((d, 2)), np.array([0.0, draw(0.5, 2.0)])
             _, dx, dv = lesson.bounce(v, a, still, still, n, e, np.zeros(2), e_s)
