@@ -221,6 +221,7 @@ NOT_IN_CI = {                    # files with long tests, and why CI does not ru
     "tests/validate/test_live_kernel.py": "it needs Chromium",
     "tests/validate/test_live_page.py": "it needs Chromium",
     "tests/validate/test_live_site.py": "it needs Chromium and Pyodide",
+    "tests/validate/test_workflow.py": "it runs the workflow that publishes the book, and needs Chromium and Pyodide",
     "tests/validate/test_worlds.py": "it compiles the loops of all models, which takes minutes",
     "tests/validate/test_worlds_in_space.py": "it compiles the loops of all models, which takes minutes",
 }
