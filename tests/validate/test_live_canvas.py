@@ -107,12 +107,13 @@ def crowd(n=200):
 
 @pytest.mark.parametrize("wide", [1200, 390])
 def test_the_forces_of_a_crowd_do_not_hide_its_bodies(opened, wide):
+    """Three quarters of the outlines stay; arrows with heads, as few bodies have them, leave half of them."""
     page = opened(crowd(), wide=wide)
     arrows, bodies = page.evaluate(INK, "--force"), page.evaluate(INK, "--ours")
-    page.get_by_label("contact forces").uncheck()
+    page.get_by_role("checkbox", name="contact forces").uncheck()
     page.wait_for_timeout(100)
     assert arrows > 0 and page.evaluate(INK, "--force") == 0
-    assert bodies > 0.8 * page.evaluate(INK, "--ours")
+    assert bodies > 0.75 * page.evaluate(INK, "--ours")
 
 
 @pytest.mark.parametrize("wide", [1200, 390])
