@@ -328,6 +328,12 @@ def place(tmp_path_factory):
     return out
 
 
+@pytest.mark.long
+def test_no_name_begins_with_a_dot(place):
+    """GitHub's action for pages leaves such files out."""
+    assert [path for path in place.rglob("*") if path.name.startswith(".")] == []
+
+
 @pytest.fixture(scope="module")
 def server(place):
     """(address of the host, path of the site on it): of the whole book, where the site lies in one."""
