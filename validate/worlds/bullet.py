@@ -12,6 +12,7 @@ from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     BallJoint,
+    Drag,
     Hinge,
     State,
     Weld,
@@ -31,6 +32,7 @@ from .derived import (
     bounces,
     carries,
     fastest,
+    forces_of,
     grip,
     pressed_in,
     round_only,
@@ -55,6 +57,7 @@ class Settings(NamedTuple):
     iterations: int | None = None    # of the solver; None: 10 per joint, at least 100
     ahead: float = 0.0       # share of a step by which the first velocities lag; ½ makes leapfrog
     damped: bool = False     # keep the engine's default damping
+    own_drag: bool = False   # bodies damp, v e^(−k dt/m) before the forces, in place of a force −k v
     overlap: float = OVERLAP  # of touching bodies at the start, where nothing bounces [m]
     slop: float = OVERLAP    # overlap that it leaves, where nothing bounces [m]
     erp: float = 1.0         # share of a joint's error that it takes back per step [-]
@@ -85,6 +88,9 @@ def refuses(model):
 def build(model, dt, **settings):
     """Make a World.  Raises BadInput for joints that reduced coordinates do not have here."""
     settings, model = Settings(**settings), with_plain_springs(model)
+    drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
+    if settings.own_drag:
+        model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
     world = Bullet(dt)
     parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies))
     configure(parts, dt)
@@ -95,22 +101,17 @@ def build(model, dt, **settings):
             add_body(parts, k, x[k])
     if settings.maximal and settings.weighed:
         parts.pb.stepSimulation()
+    if drag:
+        let_damp(parts, drag)
     release(parts, x, settings.ahead * dt, linked)
     parts.pb.setGravity(*parts.space.point(model.gravity).tolist())
     join(parts)
-    clock = [0]
-
-    def step():
-        if model.springs or model.loads:
-            push(parts, clock[0] * dt)
-        clock[0] += 1
-        parts.pb.stepSimulation()
 
     def close():
         parts.pb.setPhysicsEngineParameter(erp=0.2, contactERP=CONTACT_ERP, contactSlop=1e-5,
                                            restitutionVelocityThreshold=0.2)
         world.close()
-    return World(step, lambda: state(parts), lambda: pushes(parts), close)
+    return World(step_of(parts, world.step, dt), lambda: state(parts), lambda: pushes(parts), close)
 
 
 def configure(parts, dt):
@@ -196,6 +197,13 @@ def describe(parts, k):
     parts.pb.changeDynamics(one, link, **change)
     if can_move(body) and not parts.settings.damped and not parts.settings.maximal:
         parts.pb.changeDynamics(one, link, maxJointVelocity=1e9)     # apart: a call with it changes the base
+
+
+def let_damp(parts, drag):
+    """Let the bodies damp as much as a drag [N s/m]: linearDamping is the share that is lost in one second."""
+    for body, (one, link) in zip(parts.model.bodies, parts.handles):
+        if can_move(body):
+            parts.pb.changeDynamics(one, link, linearDamping=-np.expm1(-drag / body.m))
 
 
 def release(parts, x, age, linked):
@@ -351,6 +359,45 @@ def state(parts):
         if not can_move(body):
             now.x[k], now.q[k] = start.x[k], start.q[k]
     return now
+
+
+def step_of(parts, advance, dt):
+    """Return the step: the engine's own where no load and no spring acts."""
+    model, clock = parts.model, [0]
+    forces = forces_of(model, springs=True) if model.d == 2 else None
+    if not (model.loads or model.springs):
+        return advance
+    acts = [acting(parts, k, F, of) for k, (F, of) in forces.items()] if forces else [lambda t: push(parts, t)]
+
+    def step():
+        t = clock[0] * dt
+        clock[0] += 1
+        for act in acts:
+            act(t)
+        advance()
+    return step
+
+
+def acting(parts, k, F, of):
+    """Return the function of t that applies a force of floats to body k of a Model in the plane in the next step."""
+    pb, (body, link) = parts.pb, parts.handles[k]
+    place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
+                                  pb.WORLD_FRAME)
+
+    def of_velocity(here, t):
+        v = speed(body)[0]
+        return F((v[0], v[2]))
+
+    def of_both(here, t):
+        v = speed(body)[0]
+        return F((here[0], here[2]), (v[0], v[2]))
+    read = {"t": lambda here, t: F(t), "x": lambda here, t: F((here[0], here[2])), "v": of_velocity, "xv": of_both}[of]
+
+    def act(t):
+        here = place(body)[0]
+        along, up = read(here, t)
+        apply(body, link, (along, 0.0, up), here, frame)
+    return act
 
 
 def push(parts, t):

@@ -4,6 +4,7 @@ The geometry is independent of the lessons.  It tries every direction in which t
 """
 
 from itertools import product
+from math import sqrt
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from solutions.support.model import (
     WORLD,
     Distance,
     Drag,
+    Force,
     Spring,
     State,
     can_move,
@@ -157,6 +159,40 @@ def acceleration_at_start(model):
             a[k] = np.asarray(model.gravity) + F[k] / body.m
             alpha[k] = tau[k] / body.inertia if model.d == 2 else 0.0
     return a, alpha
+
+
+def forces_of(model, springs):
+    """Return {number of a body: (F, of)}, as in a Force, if that is all that loads do; None otherwise.
+
+    springs: the engine has none; then each may only hold the centre of a body to a place in the plane.
+    """
+    free = [k for k, body in enumerate(model.bodies) if can_move(body)]
+    held = model.springs if springs else ()
+    if (any(not isinstance(load, Drag | Force) for load in model.loads)
+            or any(one.b != WORLD or model.d == 3 or any(one.place_a) for one in held)):
+        return None
+    found = [(load.a, load.F, load.of) for load in model.loads if isinstance(load, Force)]
+    found += [(k, dragging(load.k, model.d), "v") for load in model.loads if isinstance(load, Drag) for k in free]
+    found += [(one.a, pull_of(one), "xv") for one in held]
+    return {a: how for a, *how in found} if len({a for a, *_ in found}) == len(found) else None
+
+
+def dragging(k, d):
+    """Return v → −k v [N], of floats."""
+    k = -k
+    return (lambda v: (k * v[0], k * v[1])) if d == 2 else (lambda v: (k * v[0], k * v[1], k * v[2]))
+
+
+def pull_of(spring):
+    """Return (x, v) → (2,) [N] of a Spring in the plane between the centre of a body and a place, of floats."""
+    (right, high), rest, k, c = spring[3:]
+
+    def pull(x, v):
+        along, up = x[0] - right, x[1] - high
+        length = sqrt(along * along + up * up)
+        share = -(k * (length - rest) + c * (along * v[0] + up * v[1]) / length) / length
+        return share * along, share * up
+    return pull
 
 
 def with_plain_springs(model):
