@@ -39,6 +39,11 @@ class Described(NamedTuple):
     shown: str = ""          # why an engine is shown here and not judged
 
 
+def of(scene):
+    """Return the Described of a scene that has its Model."""
+    return Described(scene, scene.model, scene.read)
+
+
 def arrays(rows):
     """Return an array as a tuple of floats."""
     return tuple(map(float, rows))
@@ -48,10 +53,6 @@ def arrays(rows):
 
 def thrown(p):
     return make_model([Body((0.0, 0.0, 0.0), 1.0, v=(p.vx, p.vy, p.vz))], (0.0, 0.0, -p.g))
-
-
-def falls_through_air(p):
-    return make_model([Body((0.0, 0.0), 1.0, v=(p.vx, p.vy))], (0.0, -p.g), loads=[Drag(p.k)])
 
 
 def on_a_spring(p):
@@ -218,7 +219,7 @@ def top_on_its_tip(p):
 SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
     "throw": Described(throw.SCENE, thrown, lambda s, p: s.x[0]),
-    "linear_drag": Described(linear_drag.SCENE, falls_through_air, lambda s, p: s.x[0]),
+    "linear_drag": of(linear_drag.SCENE),
     "oscillator": Described(oscillator.SCENE, on_a_spring, lambda s, p: s.x[0, :1]),
     "kepler": Described(kepler.SCENE, planet_and_sun, lambda s, p: s.x[0]),
     "spring_net": Described(spring_net.SCENE, net_of_springs, lambda s, p: s.x.ravel()),
