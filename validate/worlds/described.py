@@ -51,10 +51,6 @@ def arrays(rows):
 
 # ---------------------------------------------------------------------------------------------- points and springs
 
-def thrown(p):
-    return make_model([Body((0.0, 0.0, 0.0), 1.0, v=(p.vx, p.vy, p.vz))], (0.0, 0.0, -p.g))
-
-
 def on_a_spring(p):
     """Make a point on a spring whose other end is two metres away, so that it pulls along x only."""
     return make_model([Body((p.x0, 0.0), p.m)], (0.0, 0.0),
@@ -218,7 +214,7 @@ def top_on_its_tip(p):
 
 SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
-    "throw": Described(throw.SCENE, thrown, lambda s, p: s.x[0]),
+    "throw": of(throw.SCENE),
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": Described(oscillator.SCENE, on_a_spring, lambda s, p: s.x[0, :1]),
     "kepler": Described(kepler.SCENE, planet_and_sun, lambda s, p: s.x[0]),
