@@ -51,12 +51,6 @@ def arrays(rows):
 
 # ---------------------------------------------------------------------------------------------- points and springs
 
-def on_a_spring(p):
-    """Make a point on a spring whose other end is two metres away, so that it pulls along x only."""
-    return make_model([Body((p.x0, 0.0), p.m)], (0.0, 0.0),
-                      springs=[Spring(0, WORLD, (0.0, 0.0), (-2.0, 0.0), 2.0, p.k, p.c)])
-
-
 def planet_and_sun(p):
     x, v = planet(p)
 
@@ -216,7 +210,7 @@ SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
     "throw": of(throw.SCENE),
     "linear_drag": of(linear_drag.SCENE),
-    "oscillator": Described(oscillator.SCENE, on_a_spring, lambda s, p: s.x[0, :1]),
+    "oscillator": of(oscillator.SCENE),
     "kepler": Described(kepler.SCENE, planet_and_sun, lambda s, p: s.x[0]),
     "spring_net": Described(spring_net.SCENE, net_of_springs, lambda s, p: s.x.ravel()),
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
