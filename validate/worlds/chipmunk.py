@@ -60,7 +60,8 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
     if own_drag:
         model = let_damp(space, model)
     space.collision_slop = slop
-    space.iterations = iterations or max(100, 10 * len(model.joints))
+    if iterations or touches(model) or model.joints:
+        space.iterations = iterations or max(100, 10 * len(model.joints))
     bodies = add_bodies(space, model, ahead * dt, overlap)
     add_joints(space, model, bodies, bias)
     add_springs(space, model, bodies)
