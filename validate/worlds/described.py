@@ -20,7 +20,6 @@ from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
-from ..scenes.integrators._common import planet
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
@@ -50,14 +49,6 @@ def arrays(rows):
 
 
 # ---------------------------------------------------------------------------------------------- points and springs
-
-def planet_and_sun(p):
-    x, v = planet(p)
-
-    def attraction(t, x, q, v, omega):
-        return -p.mu * x / np.sum(x * x, axis=1)[:, None] ** 1.5, np.zeros(omega.shape)
-    return make_model([Body(arrays(x), 1.0, v=arrays(v))], (0.0, 0.0), loads=[attraction])
-
 
 def net_of_springs(p):
     net = square_net(p)
@@ -211,7 +202,7 @@ DESCRIBED = {                # name of the scene: Described
     "throw": of(throw.SCENE),
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
-    "kepler": Described(kepler.SCENE, planet_and_sun, lambda s, p: s.x[0]),
+    "kepler": of(kepler.SCENE),
     "spring_net": Described(spring_net.SCENE, net_of_springs, lambda s, p: s.x.ravel()),
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),

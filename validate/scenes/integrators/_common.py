@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.support.model import start_of
+from solutions.support.model import Body, Force, make_model, start_of
 from validate.methods import (
     BLANES_MOAN,
     EXPLICIT,
@@ -113,6 +113,26 @@ def planet(p):
     return perihelion(p)
 
 
+def planet_model(p):
+    """Make a planet of one kilogram, which a sun in the origin attracts with −μ x/|x|³."""
+    (x, v), strength = planet(p), -p.mu
+
+    def attraction(place):
+        x, y = place
+        pull = strength / (x * x + y * y) ** 1.5
+        return pull * x, pull * y
+    return make_model([Body(tuple(x), 1.0, v=tuple(v))], (0.0, 0.0), loads=[Force(0, attraction, "x")])
+
+
+def read_planet(state, p):
+    """Return the place of the planet."""
+    return state.x[0]
+
+
+PLANET = {"model": planet_model, "read": read_planet}       # fields of a Scene, and what `built` takes
+planet_world = partial(built, **PLANET)
+
+
 def planet_in_space(p):
     """Return the same motion with an unused z coordinate."""
     x, v = planet(p)
@@ -124,14 +144,14 @@ def sun_and_planet(observed, p):
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
-def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_steps, compiled=EXPLICIT):
+def planet_runners(motion, methods, most_steps, compiled=EXPLICIT, world=planet_world):
     """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
 
     The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
     symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
-    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large; MuJoCo's needs none
-    most_steps             of an engine of order 1
-    compiled               methods that a quick run compiles
+    most_steps    of an engine of order 1
+    compiled      methods that a quick run compiles
+    world         (Product, ahead) → make(p, dt) of a runner, whose first velocity is ahead dt too old
     """
     T, limits = motion.T, kepler_limits(motion.T)
     symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
@@ -142,13 +162,13 @@ def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_
     return (
         *(ours(m, limit=limits, predicted=errors[m], order=LATE_LEAPFROG if m is SYMPLECTIC_EULER else m.order,
                in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in compiled) for m in errors),
-        engine(PYMUNK, "", pymunk_make, "attraction in velocity_func",
+        engine(PYMUNK, "", world(PYMUNK), "attraction in velocity_func",
                order=LATE_LEAPFROG, limit=early_limit(T), predicted=pymunk_errors, most_steps=most_steps),
-        engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
-        engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+        engine(PYMUNK, "leapfrog start", world(PYMUNK, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
+        engine(PYBULLET, "", world(PYBULLET), "useMaximalCoordinates=1, no damping; force applied each step",
                order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
-        engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
-        engine(MUJOCO, "", mujoco_make, "slide joints, attraction in mjcb_passive, in every stage; Runge–Kutta 4",
+        engine(PYBULLET, "leapfrog start", world(PYBULLET, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
+        engine(MUJOCO, "", world(MUJOCO), "slide joints, attraction in mjcb_passive, in every stage; Runge–Kutta 4",
                order=4, limit=limits, predicted=errors[RK4], most_steps=MOST_OF_ORDER_4,
                most_in_quick=MOST_OF_ORDER_4 // 2),
     )
