@@ -34,6 +34,7 @@ from .derived import (
     fastest,
     forces_of,
     grip,
+    net_of,
     pressed_in,
     round_only,
     smallest,
@@ -364,10 +365,13 @@ def state(parts):
 def step_of(parts, advance, dt):
     """Return the step: the engine's own where no load and no spring acts."""
     model, clock = parts.model, [0]
-    forces = forces_of(model, springs=True) if model.d == 2 else None
+    links = any(link >= 0 for _, link in parts.handles)
+    forces = forces_of(model, springs=True) if model.d == 2 and not links else None
     if not (model.loads or model.springs):
         return advance
-    acts = [acting(parts, k, F, of) for k, (F, of) in forces.items()] if forces else [lambda t: push(parts, t)]
+    pull = None if links else net_of(model)
+    acts = ([acting(parts, k, F, of) for k, (F, of) in forces.items()] if forces else
+            [acting_net(parts, pull)] if pull else [lambda t: push(parts, t)])
 
     def step():
         t = clock[0] * dt
@@ -397,6 +401,23 @@ def acting(parts, k, F, of):
         here = place(body)[0]
         along, up = read(here, t)
         apply(body, link, (along, 0.0, up), here, frame)
+    return act
+
+
+def acting_net(parts, pull):
+    """Return the function of t that applies the forces of a net of springs in the next step."""
+    pb, space = parts.pb, parts.space
+    free = [(k, parts.handles[k][0]) for k, body in enumerate(parts.model.bodies) if can_move(body)]
+    place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
+                                  pb.WORLD_FRAME)
+    x, v = (np.array([space.point(row) for row in rows]) for rows in (parts.start.x, parts.start.v))
+
+    def act(t):
+        for k, body in free:
+            x[k], v[k] = place(body)[0], speed(body)[0]
+        F = pull(x, v)
+        for k, body in free:
+            apply(body, -1, F[k], x[k], frame)
     return act
 
 

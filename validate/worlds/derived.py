@@ -177,6 +177,29 @@ def forces_of(model, springs):
     return {a: how for a, *how in found} if len({a for a, *_ in found}) == len(found) else None
 
 
+def net_of(model):
+    """Return (x, v) → F, both (n, …) in any coordinates, of a Model whose springs join centres of bodies; else None.
+
+    Its loads may be drag only.  F = −k_v v − Bᵀ T n,  n = Bx/|Bx|,  T = k (|Bx| − rest) + c n · Bv.
+    """
+    springs = model.springs
+    if (any(not isinstance(load, Drag) for load in model.loads) or not springs
+            or any(one.b == WORLD or any(one.place_a) or any(one.place_b) for one in springs)):
+        return None
+    B, drag = np.zeros((len(springs), len(model.bodies))), sum(load.k for load in model.loads)
+    for row, one in zip(B, springs):
+        row[one.a], row[one.b] = 1.0, -1.0
+    rest, k, c = (np.array([getattr(one, name) for one in springs])[:, None] for name in ("rest", "k", "c"))
+
+    def pull(x, v):
+        r = B @ x
+        length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
+        n = r / length
+        tension = k * (length - rest) + c * np.sum(n * (B @ v), axis=1, keepdims=True)
+        return -drag * v - B.T @ (tension * n)
+    return pull
+
+
 def dragging(k, d):
     """Return v → −k v [N], of floats."""
     k = -k

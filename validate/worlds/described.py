@@ -15,7 +15,6 @@ from solutions.support.shapes import Ball, Box, HalfSpace
 from ..products import PYBULLET
 from ..reference.impulses import APART, COPIES
 from ..reference.orientation import about, quaternion
-from ..reference.springs import square_net
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
@@ -46,19 +45,6 @@ def of(scene):
 def arrays(rows):
     """Return an array as a tuple of floats."""
     return tuple(map(float, rows))
-
-
-# ---------------------------------------------------------------------------------------------- points and springs
-
-def net_of_springs(p):
-    net = square_net(p)
-    bodies = [Body(arrays(x), np.inf if n in net.fixed else net.m, v=arrays(v))
-              for n, (x, v) in enumerate(zip(net.x, net.v))]
-    springs = [Spring(i, j, (0.0, 0.0), (0.0, 0.0), rest, net.k, net.k_d)
-               for (i, j), rest in zip(net.pairs.tolist(), net.rest) if not {i, j} <= set(net.fixed)]
-    free = np.array([n not in net.fixed for n in range(len(net.x))])[:, None]
-    wind = lambda t, x, q, v, omega: (free * net.wind, np.zeros(omega.shape))
-    return make_model(bodies, arrays(net.gravity), springs=springs, loads=[wind, *([Drag(net.k_v)] if net.k_v else [])])
 
 
 # ---------------------------------------------------------------------------------------------- friction
@@ -203,7 +189,7 @@ DESCRIBED = {                # name of the scene: Described
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
-    "spring_net": Described(spring_net.SCENE, net_of_springs, lambda s, p: s.x.ravel()),
+    "spring_net": of(spring_net.SCENE),
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
     "slide_then_roll": Described(slide_then_roll.SCENE, bowled, see_bowled),
