@@ -35,6 +35,7 @@ from .derived import (
     forces_of,
     grip,
     net_of,
+    only_holds,
     pressed_in,
     round_only,
     smallest,
@@ -98,7 +99,7 @@ def build(model, dt, **settings):
     x = pressed_in(model, settings.overlap) if touches(model) and not bounces(model) else parts.start.x
     linked = [] if settings.maximal else add_linked(parts, x)
     for k in range(len(model.bodies)):
-        if k not in linked:
+        if k not in linked and not only_holds(model, k):
             add_body(parts, k, x[k])
     if settings.maximal and settings.weighed:
         parts.pb.stepSimulation()
@@ -349,7 +350,9 @@ def state(parts):
     """Return the State; a fixed body stays where the Model has it."""
     pb, start, rows = parts.pb, parts.start, []
     for body, link in parts.handles:
-        if link < 0:
+        if body < 0:                                         # it only holds springs
+            rows.append(((0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3))
+        elif link < 0:
             rows.append((*pb.getBasePositionAndOrientation(body), *pb.getBaseVelocity(body)))
         else:
             seen = pb.getLinkState(body, link, 1, 1)
@@ -388,20 +391,25 @@ def acting(parts, k, F, of):
     place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
                                   pb.WORLD_FRAME)
 
-    def of_velocity(here, t):
-        v = speed(body)[0]
-        return F((v[0], v[2]))
+    def of_time(t):
+        along, up = F(t)
+        apply(body, link, (along, 0.0, up), place(body)[0], frame)
 
-    def of_both(here, t):
-        v = speed(body)[0]
-        return F((here[0], here[2]), (v[0], v[2]))
-    read = {"t": lambda here, t: F(t), "x": lambda here, t: F((here[0], here[2])), "v": of_velocity, "xv": of_both}[of]
-
-    def act(t):
+    def of_place(t):
         here = place(body)[0]
-        along, up = read(here, t)
+        along, up = F((here[0], here[2]))
         apply(body, link, (along, 0.0, up), here, frame)
-    return act
+
+    def of_velocity(t):
+        v = speed(body)[0]
+        along, up = F((v[0], v[2]))
+        apply(body, link, (along, 0.0, up), place(body)[0], frame)
+
+    def of_both(t):
+        here, v = place(body)[0], speed(body)[0]
+        along, up = F((here[0], here[2]), (v[0], v[2]))
+        apply(body, link, (along, 0.0, up), here, frame)
+    return {"t": of_time, "x": of_place, "v": of_velocity, "xv": of_both}[of]
 
 
 def acting_net(parts, pull):

@@ -212,8 +212,8 @@ def pull_of(spring):
 
     def pull(x, v):
         along, up = x[0] - right, x[1] - high
-        length = sqrt(along * along + up * up)
-        share = -(k * (length - rest) + c * (along * v[0] + up * v[1]) / length) / length
+        near = 1.0 / sqrt(along * along + up * up)
+        share = k * (rest * near - 1.0) - c * near * near * (along * v[0] + up * v[1])
         return share * along, share * up
     return pull
 
@@ -227,6 +227,13 @@ def with_plain_springs(model):
         springs.append(Spring(*joint[:4], float(length), 1.0 / joint.compliance))
     return model._replace(springs=model.springs + tuple(springs),
                           joints=tuple(joint for joint in model.joints if joint not in soft))
+
+
+def only_holds(model, k):
+    """Return whether body k is nothing but a place where springs end: it is fixed, without a shape and without joints.
+    """
+    body = model.bodies[k]
+    return not can_move(body) and body.shape is None and not any(k in (one.a, one.b) for one in model.joints)
 
 
 def tree(model):

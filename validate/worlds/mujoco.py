@@ -29,7 +29,18 @@ from ..engines.mujoco import IMPEDANCE, TIME_CONSTANT, module, text
 from ..engines.switches import made
 from ..reference.orientation import quaternion
 from . import Push, World, unsupported
-from .derived import STICKY, Embedding, bounces, carries, forces_of, rubs, touches, tree, with_plain_springs
+from .derived import (
+    STICKY,
+    Embedding,
+    bounces,
+    carries,
+    forces_of,
+    only_holds,
+    rubs,
+    touches,
+    tree,
+    with_plain_springs,
+)
 
 WIDE = 1e9                   # stands for an infinite moment of inertia [kg m²]
 SLIPPERY = 1e-9              # stands for friction 0 [-], which it does not take
@@ -63,7 +74,8 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     world = made(mujoco.MjModel.from_xml_string(xml_of(parts, dt, integrator, time_constant)))
     data = mujoco.MjData(world)
     first_velocities(parts, world, data)
-    order = [mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}") for k in range(len(model.bodies))]
+    order = [0 if only_holds(model, k) else mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}")
+             for k in range(len(model.bodies))]
 
     def state():
         mujoco.mj_kinematics(world, data)
@@ -150,6 +162,8 @@ def own(parts, k, place):
 def element(parts, k):
     """Return the XML of body k and of all that hang on it."""
     above, body = parts.above[k][0], parts.model.bodies[k]
+    if only_holds(parts.model, k):
+        return sites(parts, k)
     place, turn = own(parts, above, parts.start.x[k]), frame(parts, above).T @ frame(parts, k)
     inside = ""
     if can_move(body):
@@ -213,21 +227,30 @@ def lines(model):
     return [(f"l{n}", spring) for n, spring in enumerate(model.springs)] + rods
 
 
+def site_names(model):
+    """Return {(number of a body, place on it): name of the point} of all points where springs and rods end."""
+    ends = [end for _, line in lines(model) for end in ((line.a, line.place_a), (line.b, line.place_b))]
+    return {end: f"p{n}" for n, end in enumerate(dict.fromkeys(ends))}
+
+
 def sites(parts, k):
-    """Return the XML of the points of body k where springs and rods end."""
-    return "".join(f'<site name="{name}{end}" pos="{text(parts.space.point(place))}"/>'
-                   for name, line in lines(parts.model)
-                   for end, number, place in (("a", line.a, line.place_a), ("b", line.b, line.place_b)) if number == k)
+    """Return the XML of the points of body k where springs and rods end; they are the world's where it is no more."""
+    base, R = np.zeros(3), np.eye(3)
+    if k != WORLD and only_holds(parts.model, k):
+        base, R = parts.space.point(parts.start.x[k]), frame(parts, k)
+    return "".join(f'<site name="{name}" pos="{text(base + R @ parts.space.point(place))}"/>'
+                   for (number, place), name in site_names(parts.model).items() if number == k)
 
 
 def strings(parts, dt):
     """Return the XML (tendons, constraints) of springs and rods."""
-    tendons, equal = "", ""
+    tendons, equal, names = "", "", site_names(parts.model)
     for name, line in lines(parts.model):
         rod = isinstance(line, Distance)
         more = "" if rod else (f'springlength="{text(line.rest)}" stiffness="{text(line.k)}" '
                                f'damping="{text(line.c)}"')
-        tendons += f'<spatial name="{name}" {more}><site site="{name}a"/><site site="{name}b"/></spatial>'
+        tendons += (f'<spatial name="{name}" {more}><site site="{names[line.a, line.place_a]}"/>'
+                    f'<site site="{names[line.b, line.place_b]}"/></spatial>')
         equal += f'<tendon tendon1="{name}" solref="{text(2.0 * dt)} 1"/>' if rod else ""
     return tendons, equal
 
@@ -278,7 +301,11 @@ def seen(parts, world, data, order):
         mujoco.mj_objectVelocity(world, data, mujoco.mjtObj.mjOBJ_XBODY, i, velocity, 0)
         both.append(velocity.copy())
     both = np.array(both)
-    return parts.space.back(data.xpos[order], data.xquat[order], both[:, 3:], both[:, :3])
+    now = parts.space.back(data.xpos[order], data.xquat[order], both[:, 3:], both[:, :3])
+    for k in range(len(order)):
+        if only_holds(parts.model, k):
+            now.x[k], now.q[k] = parts.start.x[k], parts.start.q[k]
+    return now
 
 
 def forced_by(parts, world, data, order):
