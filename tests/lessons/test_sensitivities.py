@@ -94,6 +94,8 @@ def test_the_best_step_of_a_parabola_is_infinite(lesson, draw):
     for value in (draw(0.1, 9.0), -draw(0.1, 9.0)):
         h = float(lesson.best_step(value, 0.0, 1e-15))
         truth("the best step is infinite where the third derivative is 0", h == np.inf, True, given=f"f = {value}")
+        h = float(lesson.best_step(value, draw(0.1, 9.0), 1e-15))
+        between("best step where the third derivative is not 0", h, 1e-8, 1.0, given=f"f = {value}")
 
 
 @exercise("12.3", points=0.5, hint="np.imag(f(s + 1j * h, p)) / h: no difference, so no digits are lost")
@@ -453,8 +455,8 @@ def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, d
 @exercise("12.8", points=0.5, hint="e_s moves only the velocity: R_s = −(v · n) n e_sᵀ; 0 ≤ e ≤ 1")
 def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
     for d in (1, 2, 3):
-        for e in (0.0, 1.0):
-            n, v, a = unit(draw, d), draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
+        for e, n in ((0.0, unit(draw, d)), (1.0, unit(draw, d)), (draw(0.2, 0.8), np.eye(d)[-1])):     # a level floor
+            v, a = draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
             v -= (v @ n + draw(1.0, 3.0)) * n
             still, e_s = np.zeros((d, 2)), np.array([0.0, draw(0.5, 2.0)])
             _, dx, dv = lesson.bounce(v, a, still, still, n, e, np.zeros(2), e_s)
@@ -644,6 +646,8 @@ def test_an_error_that_is_too_large_from_the_start_helps_for_no_time(lesson, dra
     for share in (1.0, *draw.within()):
         close("time for which the start is known well enough [s]", lesson.predicted_horizon(3.0, error, share * error),
               0.0, 0.0, given=f"error {error} m, allowed {share * error} m")
+    known = lesson.predicted_horizon(3.0, error, 2.0 * error)
+    between("time until the error has doubled [s]", known, 0.4, 0.5, given=f"error {error} m, rate 3 1/s")
 
 
 def bounced_once(heights, x):
