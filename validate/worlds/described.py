@@ -168,11 +168,6 @@ def cradle_on_rods(p):
 
 # ---------------------------------------------------------------------------------------------- in space
 
-def free_top(p):
-    return make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=arrays(p.moments()), omega=arrays(p.omega()))],
-                      (0.0, 0.0, 0.0))
-
-
 def top_on_its_tip(p):
     R, m = about(np.array([1.0, 0.0, 0.0]), p.tilt), heavy_top.mass(p)
     across = p.I1 - m * heavy_top.LENGTH**2
@@ -201,6 +196,6 @@ DESCRIBED = {                # name of the scene: Described
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
     "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),
     "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
-    "asymmetric_top": Described(asymmetric_top.SCENE, free_top, lambda s, p: rotation_of(s.q[0]).ravel()),
+    "asymmetric_top": of(asymmetric_top.SCENE),
     "heavy_top": Described(heavy_top.SCENE, top_on_its_tip, lambda s, p: rotation_of(s.q[0])[:2, 2]),
 }
