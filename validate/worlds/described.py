@@ -18,6 +18,7 @@ from ..reference.orientation import about, quaternion
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
+from ..scenes.impulses._common import copies_of
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
@@ -77,17 +78,6 @@ def see_bowled(s, p):
 
 # ---------------------------------------------------------------------------------------------- impacts
 
-def row_of_balls(p):
-    x, v, _ = cradle.start(p)
-    return make_model([Body((x[k, i, 0], APART * k), 1.0, Ball(p.R), e=1.0, v=arrays(v[k, i]))
-                       for k in range(COPIES) for i in range(cradle.BALLS)], (0.0, 0.0))
-
-
-def see_row(s, p):
-    x, v = copies(s, cradle.BALLS)
-    return cradle.seen(x[:, :, 0], v[:, :, 0], p)
-
-
 def two_discs(p):
     """Make the copies of two discs.  Each disc has √e, so that the pair has e."""
     x, v, _ = oblique_discs.start(p)
@@ -96,13 +86,7 @@ def two_discs(p):
 
 
 def see_discs(s, p):
-    return np.concatenate(copies(s, 2), axis=2).ravel()
-
-
-def copies(s, bodies):
-    """Return (x, v), each (COPIES, bodies, 2), of copies that stand APART."""
-    x = s.x - np.outer(np.repeat(np.arange(COPIES), bodies), (0.0, APART))
-    return x.reshape(COPIES, bodies, 2), s.v.reshape(COPIES, bodies, 2)
+    return np.concatenate(copies_of(s, 2), axis=2).ravel()
 
 
 # ---------------------------------------------------------------------------------------------- many contacts
@@ -188,7 +172,7 @@ DESCRIBED = {                # name of the scene: Described
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
     "slide_then_roll": Described(slide_then_roll.SCENE, bowled, see_bowled),
-    "cradle": Described(cradle.SCENE, row_of_balls, see_row),
+    "cradle": of(cradle.SCENE),
     "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
     "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
                               {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
