@@ -67,15 +67,6 @@ def driven(p):
     return block((0.0, -p.g), p.mu, 0.0, [push])
 
 
-def bowled(p):
-    return make_model([Body((0.0, p.R), p.m, Ball(p.R), p.mu, v=(p.v0, 0.0), inertia=p.shape * p.m * p.R**2), FLOOR],
-                      (0.0, -p.g))
-
-
-def see_bowled(s, p):
-    return np.array([s.x[0, 0], s.v[0, 0], -p.R * s.omega[0]])
-
-
 # ---------------------------------------------------------------------------------------------- impacts
 
 def two_discs(p):
@@ -171,7 +162,7 @@ DESCRIBED = {                # name of the scene: Described
     "spring_net": of(spring_net.SCENE),
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
-    "slide_then_roll": Described(slide_then_roll.SCENE, bowled, see_bowled),
+    "slide_then_roll": of(slide_then_roll.SCENE),
     "cradle": of(cradle.SCENE),
     "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
     "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
