@@ -50,6 +50,7 @@ class Allowed(NamedTuple):
     slop: float = 0.0        # overlap up to which its solver lets bodies approach: a named tolerance [m]
     recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
     rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
+    rests: bool = True       # False: bodies may still move when the run ends, so that nothing is judged at rest
 
 
 class Whose(StrEnum):
@@ -66,7 +67,8 @@ class Role(StrEnum):
     ENGINE = "engine"
 
 
-JUDGED_RIGHT = Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN
+BY_LAWS = Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN
+JUDGED_RIGHT = Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, *BY_LAWS
 
 
 def is_right(curve):

@@ -54,6 +54,7 @@ class EngineRun(NamedTuple):
     read: Callable           # () → what a scene observes
     close: Callable          # () → None: free its resources
     watched: Callable | None = None      # () → [Step, …] of validate/reference/contact_laws.py that it kept
+    watched_step: Callable | None = None     # () → Step: advance by dt, and return what it reports of this step
 
 
 class Departure(NamedTuple):
@@ -81,6 +82,7 @@ class Runner:
     unfinished: Callable | None = None   # (p) → why it does not come to its end in this case, or ""; it is not run then
     supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
     laws: Allowed | None = None          # where no theory gives its error: the laws of contact judge its watched steps
+    watched: int | None = None           # the number of steps of the run that is watched; None: of every run
     is_truth: Callable | None = None     # (p) → bool: whether a run of its engine is the truth of this case
     in_quick: bool = True                # False: only --full runs it
     slow_cases: tuple = ()               # names of cases in which only --full runs it
@@ -116,6 +118,10 @@ class Runner:
         """Return the largest relative error that theory allows it with steps of dt."""
         limit = self.limit(p, dt)
         return limit[self.order] if isinstance(limit, dict) else limit
+
+    def judged_by(self, steps):
+        """Return what the laws of contact allow it in its run with so many steps; None where that is not watched."""
+        return self.laws if self.watched in (None, steps) else None
 
     def prediction(self, p, dt):
         """Return the Prediction of its error with steps of dt, or None."""
@@ -180,6 +186,8 @@ class Scene:
     truth_uncertainty: float  # of the truth, relative [-]
     runners: tuple           # of Runner: ours first
     points: Callable         # (observed, p) → (n, 2) drawing coordinates [m]
+    model: Callable | None = None            # (p) → its Model, from which every world is built
+    read: Callable | None = None             # (State of the Model, p) → the same quantities as truth(p, t)
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
     full_loop: str = ""      # why the whole loop of lesson 10 cannot stand for a method here; else it is measured
@@ -188,6 +196,7 @@ class Scene:
     slow_cases: tuple = ()                   # names of cases that only --full runs
     moves: bool = True                       # False: nothing moves; no start is compared with the truth
     refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
+    reports: Callable | None = None          # (state, the next one, p, dt) → Step of our loop, for the laws of contact
     quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers
     published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
     sanity_checks: Callable | None = None    # () → Findings about the truth alone
@@ -215,6 +224,8 @@ class Scene:
             check_known(f"a case of {runner.label!r} in scene {self.title!r}", runner.slow_cases, self.cases)
         check_known(f"a slow case of scene {self.title!r}", self.slow_cases, self.cases)
         check_known(f"field 'link_look' of scene {self.title!r}", (self.link_look,), LINK_LOOKS)
+        if (self.model is None) != (self.read is None):
+            raise BadInput(f"fields 'model' and 'read' of scene {self.title!r}", "only one of them", "give both")
         if self.cases and self.bodies and not self.poses:
             raise BadInput(f"field 'poses' of scene {self.title!r}", "missing", "say where each body of `bodies` is")
 

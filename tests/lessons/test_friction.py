@@ -249,6 +249,11 @@ def slope(draw, lesson, mu_s_over, mu_k_over, d=3):
     return p, down, np.tan(theta), G * np.cos(theta)
 
 
+def tethered_acceleration(t, x, v, p):
+    """The load of a Block at the place p.n; from any other place a strong spring pulls it back there."""
+    return p.gravity + np.cos(p.omega * t) * p.drive - 1000.0 * (x - p.n)
+
+
 def run(lesson, step, p, x, v, dt, steps, t=0.0):
     for n in range(steps):
         x, v = step(lesson.driven_acceleration, t + n * dt, x, v, dt, p)
@@ -314,6 +319,8 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     close("speed lost to friction in a step, over dt [m/s²]", (np.linalg.norm(free) - np.linalg.norm(v_new)) / dt,
           mu * (G - now @ axes[0]), 1e-10, given=given)
     close("displacement over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
+    close("velocity under the load of its place [m/s]",
+          lesson.sliding_step(tethered_acceleration, t, p.n, v, dt, p)[1], v_new, ROUND_OFF, given=given)
     close("input x and v after the call: return new arrays", np.array((x, v)), np.array(before), 0.0)
 
 
@@ -346,9 +353,12 @@ def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(l
           lesson.sliding_step(pull, 0.0, np.zeros(2), np.zeros(2), dt, edge)[1], np.zeros(2), 0.0, given=f"{edge}")
 
 
-def on_the_line(draw, lesson, mu, amplitude, omega):
-    """(Block on a level floor, unit vector): along it a force oscillates with `amplitude` times the friction limit."""
-    axes = frame(draw, 2)
+def on_the_line(draw, lesson, mu, amplitude, omega, turned=True):
+    """(Block on a floor, unit vector): along it a force oscillates with `amplitude` times the friction limit.
+
+    turned: in drawn coordinates; False: the floor lies along the x axis
+    """
+    axes = frame(draw, 2) if turned else np.array([[0.0, 1.0], [1.0, 0.0]])
     to = along_surface(draw, axes, 1.0)
     return block(lesson, axes[0], mu, mu, -G * axes[0], amplitude * mu * G * to, omega), to
 
@@ -376,7 +386,7 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     omega = draw(1.0, 3.0)
     p, to = on_the_line(draw, lesson, draw(0.3, 0.9), draw(1.1, 2.0), omega)
     for turn, expected in ((0.0, to), (0.5 * np.pi, 0.0 * to), (np.pi, -to)):
-        got = lesson.slip_direction(pull, turn / omega, np.zeros(2), np.zeros(2), p)
+        got = lesson.slip_direction(tethered_acceleration, turn / omega, p.n, np.zeros(2), p)
         close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
               expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
@@ -433,16 +443,17 @@ def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, 
 def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     """The block holds from |cos ωt| = 1/amplitude until the reversed force reaches the same size."""
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
-    p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
     holds, slips = np.arccos(1.0 / amplitude) / omega, (np.pi - np.arccos(1.0 / amplitude)) / omega
     t = holds + draw(0.1, 0.5) * (slips - holds)
     rest = np.zeros(2)
     late = slips - t + draw(0.2, 0.8) * (np.pi / omega - slips)
-    for dt, expected, tolerance in ((late, slips - t, 1e-13), (1.01 * (slips - t), slips - t, 1e-13),
-                                    *((share * (slips - t), None, 0.0) for share in draw.within())):
-        got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, dt, p)
+    level, p = (on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega, turned)[0] for turned in (False, True))
+    for floor, dt, expected, tolerance in ((level, late, slips - t, 1e-13), (p, late, slips - t, 1e-13),
+                                           (p, 1.01 * (slips - t), slips - t, 1e-13),
+                                           *((p, share * (slips - t), None, 0.0) for share in draw.within())):
+        got = lesson.breakaway_time(tethered_acceleration, t, floor.n, rest, dt, floor)
         close("time to the slip [s], or the whole step if it holds", got,
-              dt if expected is None else expected, tolerance, given=f"{p}, t = {t} s, dt = {dt} s")
+              dt if expected is None else expected, tolerance, given=f"{floor}, t = {t} s, dt = {dt} s")
     # a_n = g − lift cos ωt: the block slips where A |cos| = μ_s (g + lift |cos|), with A = amplitude μ_s g.
     lift = draw(0.2, 0.8) * (amplitude - 1.0) * G
     both = p._replace(drive=p.drive + lift * p.n, mu_k=0.5 * p.mu_s)
@@ -481,6 +492,10 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     close("velocity after that step [m/s]", v, a * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
     close("displacement in that step [m]", x - begin, 0.5 * a * dt * dt * down, ROUND_OFF,
           given=f"{steep}, dt = {dt} s")
+    level, along = on_the_line(draw, lesson, draw(0.3, 0.9), 0.0, 0.0, turned=False)
+    stop = speed / (level.mu_k * G)
+    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin[:2], speed * along, 2.0 * stop, level)
+    close("time to the stop on a level floor [s]", tau, stop, ROUND_OFF, given=f"{level}, v = {speed} m/s")
 
 
 @exercise("3.11", points=0.5,
@@ -489,14 +504,14 @@ def test_a_block_at_rest_waits_for_its_breakaway(lesson, draw):
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
     p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
     slips = (np.pi - np.arccos(1.0 / amplitude)) / omega
-    begin = draw(-1.0, 1.0, 2)
+    begin = p.n
     t = np.arccos(1.0 / amplitude) / omega * draw(1.05, 1.2)
     t = min(t, 0.5 * np.pi / omega)
-    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, t, begin, np.zeros(2), slips - t + 0.01, p)
+    tau, x, v = lesson.advance_to_event(tethered_acceleration, t, begin, np.zeros(2), slips - t + 0.01, p)
     close("time to the breakaway [s]", tau, slips - t, ROUND_OFF, given=f"{p}, t = {t} s")
     close("position and velocity meanwhile", np.array((x, v)), np.array((begin, np.zeros(2))), 0.0,
           given=f"{p}, t = {t} s")
-    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, t, begin, np.zeros(2), 0.5 * (slips - t), p)
+    tau, x, v = lesson.advance_to_event(tethered_acceleration, t, begin, np.zeros(2), 0.5 * (slips - t), p)
     close("time of a step that ends before the breakaway [s]", tau, 0.5 * (slips - t), 0.0, given=f"{p}, t = {t} s")
 
 
@@ -577,7 +592,7 @@ def above(lesson, draw, mu, e, theta=0.0, d=3):
 
 
 def swinging_acceleration(t, x, v, p):
-    return np.cos(t) * p.gravity
+    return np.cos(t) * p.gravity - 10.0 * (x - p.point)
 
 
 def fly(lesson, step, p, x, v, dt, steps):
@@ -612,8 +627,8 @@ def check_fall(lesson, step, draw, grips):
 
     t = draw(0.3, 1.0)
     x, v_new = step(swinging_acceleration, lesson.particle_plane_gap, t, begin, v, dt, p)
-    close("velocity where gravity varies, a(t) = g cos t [m/s]", v_new, v + dt * np.cos(t) * p.gravity, ROUND_OFF,
-          given=f"{p}, v = {v} m/s, t = {t} s")
+    close("velocity where a = g cos t − 10 (x − point) [m/s]", v_new,
+          v + dt * (np.cos(t) * p.gravity - 10.0 * height * p.n), ROUND_OFF, given=f"{p}, v = {v} m/s, t = {t} s")
     x, v_new = fly(lesson, step, p, p.point + 5e-4 * p.n, 3.0 * down - 1e-3 * dt * p.gravity, dt * 1e-3, 1)
     close("height of a particle that passes half a millimetre above the plane [m]", (x - p.point) @ p.n, 5e-4, 1e-11,
           given=f"{p}")

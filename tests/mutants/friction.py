@@ -262,6 +262,8 @@ edit("3.7", "exchanges holding and sliding", "<= cone_radius", "> cone_radius")
 edit("3.7", "computes the friction of the velocity before the forces act", "friction_impulse(v, 1.0",
      "friction_impulse(v - dt * a_t, 1.0")
 edit("3.7", "tests whether static friction holds a moving block, too", "not np.any(v) and ", "")
+edit("3.7", "exchanges place and velocity in the call of the acceleration", "acceleration(t, x, v, p)",
+     "acceleration(t, v, x, p)")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -298,6 +300,8 @@ edit("3.8", "divides by the square of the speed", "np.sqrt(v @ v)", "v @ v")
 edit("3.8", "exchanges holding and slipping", "pull > cone", "pull < cone")
 edit("3.8", "returns the velocity itself", "return v / speed", "return v")
 edit("3.8", "returns zeros for a moving block", "return v / speed", "return 0.0 * v")
+edit("3.8", "exchanges place and velocity in the call of the acceleration", "acceleration(t, x, v, p)",
+     "acceleration(t, v, x, p)")
 GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
 edit("3.8", "lets the block slip exactly on the edge of the cone", "pull > cone", "pull >= cone")
 
@@ -371,6 +375,8 @@ edit("3.10", "exchanges the two halves",
 edit("3.10", "returns the rest of the step, after the slip", "return slips", "return dt - slips")
 edit("3.10", "returns zero if the block still holds", "return dt", "return 0.0")
 edit("3.10", "returns infinity if the block still holds", "return dt", "return np.inf")
+edit("3.10", "takes a slip along an axis for rest", "np.any(", "np.all(")
+edit("3.10", "exchanges place and velocity", "t + dt, x, v, p", "t + dt, v, x, p")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -389,6 +395,7 @@ def event(exactly=True, whole=False, waits=True, rest=False, moves=True):
 
 
 right("3.11", "with new names")(event())
+edit("3.11", "takes a slip along an axis for rest", "np.any(", "np.all(")
 wrong("3.11", "leaves a round-off velocity after a stop")(event(exactly=False))
 wrong("3.11", "slides for the whole step")(event(whole=True))
 wrong("3.11", "never breaks away")(event(waits=False))

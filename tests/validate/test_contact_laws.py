@@ -1,5 +1,6 @@
 """Laws of contact judge an engine by what it reports, and notice an engine whose impulses are wrong by 10 %."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -8,11 +9,15 @@ import pytest
 from validate.check import Verdict
 from validate.engines import watched
 from validate.engines.bullet import Rigid
+from validate.engines.switches import worlds_made
+from validate.measure.accuracy import run_ours
 from validate.products import PYBULLET
 from validate.reference import contact_laws
 from validate.reference.contact_laws import Law, Touching, judged, verdict_on
 from validate.report import audit
 from validate.scenes.contact import arch, critical_friction, galperin, mass_ratio, piles, stack
+from validate.scenes.simulator import card_house, dominoes, machine
+from validate.subject import modules
 
 LADDER = critical_friction.CASES["ladder at 60°"]
 ENGINES = pytest.mark.parametrize("engine", [
@@ -164,3 +169,143 @@ def test_a_step_without_contacts_keeps_all_laws():
     bullet.close()
     assert isinstance(steps[0].touching, Touching) and len(steps[0].touching.a) == 0
     assert verdict_on(judged(steps, watched.bullet_rules(50)))[0] is Verdict.KEEPS_LAWS
+
+
+# ---------------------------------------------------------------------------------------------- bodies that meet
+
+def grip(factor):
+    """Return a change that multiplies the friction of all pairs, of which each body has the square root."""
+    def change(world):
+        if hasattr(world, "shapes"):
+            for shape in world.shapes:
+                shape.friction *= factor**0.5
+        else:
+            for body in map(world.pb.getBodyUniqueId, range(world.pb.getNumBodies())):
+                world.pb.changeDynamics(body, -1, lateralFriction=factor**0.5 * world.pb.getDynamicsInfo(body, -1)[1])
+    return change
+
+
+def bounce(world):
+    """Give all pairs the restitution 0.1."""
+    if hasattr(world, "shapes"):
+        for shape in world.shapes:
+            shape.elasticity = 0.1**0.5
+    else:
+        for body in map(world.pb.getBodyUniqueId, range(world.pb.getNumBodies())):
+            world.pb.changeDynamics(body, -1, restitution=0.1**0.5)
+
+
+def fall_faster(world):
+    if hasattr(world, "shapes"):
+        world.gravity = tuple(1.1 * np.array(world.gravity))
+    else:
+        world.pb.setGravity(*(1.1 * g for g in world.gravity))
+
+
+def weigh_more(world):
+    """Make the last body 10 % heavier."""
+    if hasattr(world, "shapes"):
+        body = [body for body in world.bodies if body.body_type == body.DYNAMIC][-1]
+        body.mass *= 1.1
+    else:
+        body = world.pb.getBodyUniqueId(world.pb.getNumBodies() - 1)
+        world.pb.changeDynamics(body, -1, mass=1.1 * world.pb.getDynamicsInfo(body, -1)[0])
+
+
+WRONG_WORLDS = {"friction 10 % too large": grip(1.1), "friction 10 % too small": grip(0.9), "restitution 0.1": bounce,
+                "gravity 10 % too large": fall_faster, "one body 10 % too heavy": weigh_more}
+MEETING = {"dominoes": (dominoes, "six", 0.6), "card_house": (card_house, "too smooth", 0.5),
+           "machine": (machine, "places", 1.2)}               # the scene, a case, and how long it is watched here [s]
+MEET = pytest.mark.parametrize("name", [
+    pytest.param(name, marks=pytest.mark.skipif(name == "dominoes" and not PYBULLET.installed(), reason="no pybullet"))
+    for name in MEETING])
+
+
+def judged_runner(name, is_engine):
+    scene = MEETING[name][0].SCENE
+    return next(r for r in scene.runners if r.is_engine == is_engine and r.laws), scene.duration
+
+
+def judged_world(name, change=lambda world: None):
+    """Return the Verdict on an engine in the first steps of its watched run, after a change of its world."""
+    home, case, seconds = MEETING[name]
+    runner, T = judged_runner(name, True)
+    with worlds_made() as worlds:
+        run = runner.who.make(home.CASES[case], T / runner.watched)
+    change(worlds[-1])
+    steps = [run.watched_step() for _ in range(round(seconds / T * runner.watched))]
+    run.close()
+    return verdict_on(judged(steps, runner.laws))[0]
+
+
+@MEET
+def test_an_engine_in_which_bodies_meet_breaks_no_law_but_by_its_own_rule(name):
+    assert judged_world(name) in (Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN)
+
+
+@MEET
+@pytest.mark.parametrize("wrong", WRONG_WORLDS)
+def test_an_engine_whose_physics_is_wrong_by_10_percent_departs(name, wrong):
+    assert judged_world(name, WRONG_WORLDS[wrong]) is Verdict.DEPARTS
+
+
+def heavier(bodies):
+    inverse = bodies.inv_mass.copy()
+    inverse[np.flatnonzero(inverse)[-1]] /= 1.1
+    return bodies._replace(inv_mass=inverse)
+
+
+WRONG_LOOPS = {"friction 10 % too large": lambda bodies: bodies._replace(mu=1.1 * bodies.mu),
+               "friction 10 % too small": lambda bodies: bodies._replace(mu=0.9 * bodies.mu),
+               "gravity 10 % too large": lambda bodies: bodies._replace(gravity=1.1 * bodies.gravity),
+               "one body 10 % too heavy": heavier}
+LOOPS = pytest.mark.parametrize("name", ["card_house", "machine"])
+
+
+@cache
+def loop(name, wrong=None):
+    """Return the steps that our loop reports of the beginning of its watched run, and what is allowed."""
+    home, case, seconds = MEETING[name]
+    (runner, T), scene, p = judged_runner(name, False), modules.bind_scene(name), home.CASES[case]
+    change, start = WRONG_LOOPS.get(wrong, lambda bodies: bodies), home.start(p)
+    start = start._replace(rows=change(start.rows)) if hasattr(start, "rows") else (start[0], change(start[1]))
+    steps = round(0.5 * seconds / T * runner.watched)
+    scene = replace(scene, start=lambda p: start, duration=steps * T / runner.watched)
+    step = getattr(scene.lessons.simulator, runner.who.function)
+    return run_ours(scene, step, p, steps, range(steps))[1], runner.laws
+
+
+@LOOPS
+def test_our_loop_breaks_no_law_but_by_its_sweeps(name):
+    assert verdict_on(judged(*loop(name)))[0] in (Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN)
+
+
+@LOOPS
+@pytest.mark.parametrize("wrong", WRONG_LOOPS)
+def test_our_loop_with_physics_that_is_wrong_by_10_percent_departs(name, wrong):
+    assert verdict_on(judged(*loop(name, wrong)))[0] is Verdict.DEPARTS
+
+
+@LOOPS
+@pytest.mark.parametrize("wrong", ["normal ones 10 % too large", "10 % too small"])
+def test_our_loop_with_wrong_impulses_departs(name, wrong):
+    """The normal impulse of an impact that is 10 % too large is a restitution of 0.1."""
+    steps, allowed = loop(name)
+    assert verdict_on(judged([really(step, WRONG[wrong]) for step in steps], allowed))[0] is Verdict.DEPARTS
+
+
+@pytest.mark.parametrize("scene", [dominoes, card_house, machine])
+def test_a_run_that_the_laws_judge_is_one_of_the_sweep(scene):
+    for runner in scene.SCENE.runners:
+        assert (runner.laws is None) == (runner.watched is None)
+        assert runner.laws is None or runner.watched in scene.SCENE.steps
+        if runner.laws and runner.is_engine and runner.most_in_quick:
+            assert runner.watched <= runner.most_in_quick
+
+
+@pytest.mark.parametrize("scene", [dominoes, card_house, machine])
+def test_no_curve_of_bodies_that_meet_is_left_undecided(scene):
+    for runner in scene.SCENE.runners:
+        for p in scene.CASES.values():
+            if (runner.supports is None or runner.supports(p)) and not np.isfinite(runner.largest_error(p, 1e-3)):
+                assert runner.laws or runner.is_reference(p), runner.label

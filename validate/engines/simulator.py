@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from validate.engines import watched
 from validate.engines.bullet import Impacts, Rigid
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.reference.orientation import about
@@ -189,9 +190,9 @@ class PymunkBoxes:
     def __init__(self, parts, dt, iterations, slop):
         import pymunk
         (x, angles, halves, m, v, omega), spring, drag, mu, g, belt = parts
-        self.dt, self.space, self.boxes = dt, pymunk_space((0.0, -g)), []
+        self.dt, self.space, self.boxes, self.spring, self.drag = dt, pymunk_space((0.0, -g)), [], spring, drag
         self.space.iterations, self.space.collision_slop = iterations, slop
-        floor = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        self.floor = floor = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         floor.velocity = float(belt), 0.0
         self.space.add(floor, pymunk.Segment(floor, (-1000.0, -5.0), (1000.0, -5.0), 5.0))
         for place, angle, half, mass, speed, spin in zip(x, angles, halves, m, v, omega):
@@ -207,17 +208,37 @@ class PymunkBoxes:
             self.boxes.append(body)
         if spring is not None:
             number, anchor, rest, k, damper = spring
-            self.space.add(pymunk.DampedSpring(self.space.static_body, self.boxes[number], tuple(map(float, anchor)),
-                                               (0.0, 0.0), rest, k, damper))
+            self.damped = pymunk.DampedSpring(self.space.static_body, self.boxes[number], tuple(map(float, anchor)),
+                                              (0.0, 0.0), rest, k, damper)
+            self.space.add(self.damped)
         for shape in self.space.shapes:
             shape.friction = np.sqrt(mu)                                 # pymunk multiplies the two
 
     def read(self, corners):
         return corners(np.array([body.position for body in self.boxes]), np.array([body.angle for body in self.boxes]))
 
-    def run(self, corners):
-        """Return the EngineRun."""
-        return EngineRun(lambda: self.space.step(self.dt), lambda: self.read(corners), lambda: None)
+    def run(self, corners, physics):
+        """Return the EngineRun; the laws of contact judge it by the Physics of the boxes and the floor."""
+        world = watched.Pymunk(self.space, self.dt, [*self.boxes, self.floor], physics,
+                               lambda before, after: self.pushed(physics, before, after))
+        return EngineRun(lambda: self.space.step(self.dt), lambda: self.read(corners), lambda: None,
+                         watched_step=world.watched)
+
+    def pushed(self, physics, before, after):
+        """Return the impulses (n, 2) [N s] of the spring and of the air on boxes and floor in a step.
+
+        The engine reports the impulse of its spring.  It moves the boxes, pulls with the new length of the spring, asks
+        for the air, and finds what the damper gives last.
+        *Source:* Chipmunk's cpDampedSpring.c and cpSpaceStep.c.
+        """
+        moves, v, J = 1.0 * (physics.inv_mass[:, None] > 0.0), before.v.copy(), np.zeros_like(before.v)
+        if self.spring is not None:
+            number, anchor, rest, k, _ = self.spring
+            way = after.x[number] - anchor
+            length = np.linalg.norm(way)
+            v[number] += physics.inv_mass[number] * self.dt * k * (rest - length) * way / length
+            J[number] = self.damped.impulse * way / length
+        return J - self.drag * self.dt * moves * v
 
     def film(self, steps, every, corners):
         """Return its readings at the start and after every `every` steps."""

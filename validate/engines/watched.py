@@ -1,39 +1,49 @@
 """Steps of an engine with all that it reports of them, for the laws of contact in `validate/reference/contact_laws.py`.
 
-A run is watched in its first steps, in which nothing is remembered yet, and in some later ones.
+A run is watched in its first steps, in which nothing is remembered yet, and in some later ones.  Where bodies meet on
+the way, one run is watched in all its steps, or in all that belong to the impacts.
 """
 
 import numpy as np
 
 from ..check import Allowed
-from ..reference.contact_laws import ITERATED, Motion, Step, Touching
+from ..reference.contact_laws import ITERATED, Motion, Physics, Step, Touching
 from ..reference.orientation import quaternion_matrix
 from .bullet import CONTACT_ERP, WARM
 
 SLOP = 1e-5                  # of pybullet, by default [m]
 FIRST, LATER = 2, 8          # number of watched steps at the beginning of a run, and afterwards
+MOTION = 60, 12              # the same of a run in which bodies meet
 
 
 def ends_early(iterations):
     """Return the rules of a solver that makes so many iterations per step, whatever is left."""
     why = f"its {iterations} iterations per step end before the impulses are found"
-    return ("gain", f"{why}; the largest was measured as 0.018"), *((name, why) for name in ITERATED)
+    measured = {"bounce": 0.003, "gain": 0.018, "short": 0.0063}
+    return (*((name, f"{why}; the largest was measured as {largest:g}") for name, largest in measured.items()),
+            *((name, why) for name in ITERATED))
 
 
-def pymunk_rules(iterations, creeps=""):
+def sweeps_rules(sweeps):
+    """Return what is Allowed to a loop of ours that makes so many sweeps, whose bodies may still move at the end."""
+    return Allowed(sweeps, rules=ends_early(sweeps), rests=False)
+
+
+def pymunk_rules(iterations, creeps="", rests=True):
     """Return what is Allowed to pymunk.
 
     creeps: why its contacts still have a residual at the end; empty where bodies come to rest
+    rests: whether they do; False: they may still move
 
     *Source:* Chipmunk's cpArbiter.c: cpArbiterUpdate takes over the impulses of a contact that it still remembers, and
     cpArbiterApplyCachedImpulse returns at the first step of a collision.
     """
     why = "a contact that comes back within three steps reports its old impulse, which is not applied again"
     rules = ("unapplied", why), *ends_early(iterations)
-    return Allowed(iterations, rules=(*rules, ("rest", creeps)) if creeps else rules)
+    return Allowed(iterations, rules=(*rules, ("rest", creeps)) if creeps else rules, rests=rests)
 
 
-def bullet_rules(iterations, creeps=False):
+def bullet_rules(iterations, creeps=False, rests=True):
     """Return what is Allowed to pybullet.
 
     creeps: its solver begins with a tenth of the last impulses, as by default, and does not finish a tower at rest
@@ -44,12 +54,18 @@ def bullet_rules(iterations, creeps=False):
     why = "it leaves the friction of a contact as it was when its normal impulse falls to zero"
     rules = ("loose", why), *ends_early(iterations)
     slow = f"with warmStartingFactor {WARM} its sweeps do not accumulate over the steps, so that a tower creeps"
-    return Allowed(iterations, SLOP, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules)
+    return Allowed(iterations, SLOP, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules, rests)
 
 
-def watched_steps(steps):
+def watched_steps(steps, first=FIRST, later=LATER):
     """Return numbers of the steps of a run that are watched."""
-    return {*range(min(FIRST, steps)), *np.linspace(FIRST, steps - 1, LATER).astype(int).tolist()}
+    begin = range(min(first, steps))
+    return {*begin, *np.linspace(len(begin), steps - 1, later).astype(int).tolist()} & set(range(steps))
+
+
+def steps_of_motion(steps):
+    """Return the same of a run in which bodies meet on the way."""
+    return watched_steps(steps, *MOTION)
 
 
 def run(world, steps, kept, watched=None):
@@ -85,20 +101,33 @@ class NearTheEdge:
         return [step for stands in sorted(self.kept) for step in self.kept[stands]]
 
 
-def touching(rows, d):
-    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes)."""
+def touching(rows, d, stated=None):
+    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes); stated: a friction that replaces μ."""
     a, b, n, p_a, p_b, gap, J, mu, ghosts, axes = zip(*rows) if rows else ((),) * 10
+    mu = mu if stated is None else np.full(len(a), stated)
     n, p_a, p_b, J, ghosts = (np.reshape(np.array(each, float), (-1, d)) for each in (n, p_a, p_b, J, ghosts))
     return Touching(np.array(a, int), np.array(b, int), n, p_a, p_b, np.array(gap, float), J, np.array(mu, float),
                     ghosts, np.reshape(np.array(axes, float), (-1, 2, 3)) if d == 3 else None)
 
 
 class Pymunk:
-    """A space whose bodies move or are static."""
+    """A space whose bodies move or are static.
 
-    def __init__(self, space, dt):
-        self.space, self.dt, self.remembered = space, dt, {}
-        self.bodies = [body for body in space.bodies if body.body_type == body.DYNAMIC]
+    bodies, physics: those that count, in the order of the Physics by which they are judged; without them all that
+    move, by the engine's own numbers.    pushed: (before, after) → impulses (n, d) of springs and air in a step
+    """
+
+    def __init__(self, space, dt, bodies=None, physics=None, pushed=None):
+        self.space, self.dt, self.remembered, self.pushed = space, dt, {}, pushed
+        self.bodies = bodies or [body for body in space.bodies if body.body_type == body.DYNAMIC]
+        self.physics = physics
+
+    def stated(self):
+        """Return the Physics of the scene, or else the engine's own, without its frictions."""
+        if self.physics is not None:
+            return self.physics
+        inverse = np.array([(1.0 / body.mass, 1.0 / body.moment) for body in self.bodies])
+        return Physics(np.array(tuple(self.space.gravity)), inverse[:, 0], inverse[:, 1], None)
 
     def step(self):
         self.space.step(self.dt)
@@ -117,9 +146,9 @@ class Pymunk:
         self.space.on_collision(pre_solve=self.remember)
         self.step()
         self.space.on_collision(pre_solve=None)
-        inverse, after = np.array([(1.0 / body.mass, 1.0 / body.moment) for body in self.bodies]), self.motion()
-        return Step(self.dt, np.array(tuple(self.space.gravity)), inverse[:, 0], inverse[:, 1], before, after, after.x,
-                    overlap, touching(self.contacts(), 2))
+        stated, after = self.stated(), self.motion()
+        return Step(self.dt, stated.gravity, stated.inv_mass, stated.inv_inertia, before, after, after.x, overlap,
+                    touching(self.contacts(), 2, stated.mu), self.pushed and self.pushed(before, after))
 
     def remember(self, arbiter, space, data):
         """Note the impulses that a contact has before it is solved, where they are not applied: in its first step."""
@@ -152,20 +181,25 @@ class Pymunk:
                 rows[id(first), id(second), k] = (*ends[::-1], n, *places[::-1], float(n @ (places[1] - places[0])), J,
                                                   mu, np.array(ghosts[k] if ghosts else (0.0, 0.0)) @ axes, None)
         for body in self.bodies:
-            body.each_arbiter(add)
+            if body.body_type == body.DYNAMIC:
+                body.each_arbiter(add)
         return list(rows.values())
 
 
 class Bullet:
-    """A client whose bodies are in maximal coordinates."""
+    """A client whose bodies are in maximal coordinates.
 
-    def __init__(self, pb, dt, gravity):
-        self.pb, self.dt, self.gravity = pb, dt, np.array(gravity, float)
+    physics: of the bodies that move, in the order in which they were made; without it the engine's own numbers count.
+    """
+
+    def __init__(self, pb, dt, gravity, physics=None):
+        self.pb, self.dt = pb, dt
         every = [pb.getBodyUniqueId(k) for k in range(pb.getNumBodies())]
         about = {body: pb.getDynamicsInfo(body, -1) for body in every}
         self.bodies = [body for body in every if about[body][0] > 0.0]
-        self.inv_mass = np.array([1.0 / about[body][0] for body in self.bodies])
-        self.moments = np.array([about[body][2] for body in self.bodies])
+        self.physics = physics or Physics(
+            np.array(gravity, float), np.array([1.0 / about[body][0] for body in self.bodies]),
+            1.0 / np.array([about[body][2] for body in self.bodies]), None)
         self.mu = {body: about[body][1] for body in every}
 
     def step(self):
@@ -180,9 +214,9 @@ class Bullet:
         """Make a step, and return it."""
         q, before = self.motion()
         self.step()
-        R = np.array([quaternion_matrix(*one) for one in q])
-        return Step(self.dt, self.gravity, self.inv_mass, (R / self.moments[:, None]) @ R.transpose(0, 2, 1), before,
-                    self.motion()[1], before.x, 0.0, touching(self.contacts(), 3))
+        R, stated = np.array([quaternion_matrix(*one) for one in q]), self.physics
+        return Step(self.dt, stated.gravity, stated.inv_mass, (R * stated.inv_inertia[:, None]) @ R.transpose(0, 2, 1),
+                    before, self.motion()[1], before.x, 0.0, touching(self.contacts(), 3, stated.mu))
 
     def contacts(self):
         """Return rows of all contact points that could push in the last step."""

@@ -7,7 +7,8 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from ..check import Role, Verdict, jsonable
+from ..check import BY_LAWS, Role, Verdict, jsonable
+from ..engines.watched import steps_of_motion
 from ..methods import engine_look
 from ..reference import contact_laws
 from ..reference.stored import agreed
@@ -80,17 +81,17 @@ def unfinished_curve(runner, why):
 
 # ---------------------------------------------------------------------------------------------- runs
 
-def run_to_end(scene, step, p, steps, asked=False):
+def run_to_end(scene, step, p, steps, asked=False, allowed=None):
     """Return the Outcome of one of our methods at T.
 
+    allowed: the laws of contact then judge its watched steps, with what they allow it
     asked: whether a user changed the parameters.  Only then BadInput is raised again.  For the scene's own parameters
     a refusal is a failure of the method.
     """
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            dt = scene.duration / steps
-            state = scene.run(scene.lessons, step, scene.law, scene.start(p), p, dt, steps)
+            state, kept = run_ours(scene, step, p, steps, steps_of_motion(steps) if allowed else ())
             observed = scene.observe(state, p)
     except ArithmeticError as e:
         return Outcome(None, str(e))
@@ -104,7 +105,23 @@ def run_to_end(scene, step, p, steps, asked=False):
         return Outcome(None, f"refused: {e}")
     except (Exception, SystemExit) as e:  # a subject's code may raise anything: report it, and go on
         return Outcome(None, f"{type(e).__name__}: {str(e).strip().splitlines()[0] if str(e).strip() else ''}")
-    return finite(observed)
+    return finite(observed)._replace(laws=laws_of(kept, allowed) if allowed else None)
+
+
+def run_ours(scene, step, p, steps, watched):
+    """Return (state at T, [Step, …] that our loop reports of the steps with these numbers)."""
+    dt, state, kept, now = scene.duration / steps, scene.start(p), [], 0
+    run = lambda state, steps: scene.run(scene.lessons, step, scene.law, state, p, dt, steps)
+    for n in sorted(watched):
+        before = run(state, n - now) if n > now else state
+        state, now = run(before, 1), n + 1
+        kept.append(scene.reports(before, state, p, dt))
+    return run(state, steps - now) if steps > now else state, kept
+
+
+def laws_of(kept, allowed):
+    """Return the fields of each Law of contact, for the Steps that a run has kept."""
+    return [law._asdict() for law in contact_laws.judged(kept, allowed)]
 
 
 def run_engine_to_end(scene, engine, p, steps, allowed=None):
@@ -112,17 +129,19 @@ def run_engine_to_end(scene, engine, p, steps, allowed=None):
 
     allowed: the laws of contact then judge its watched steps, with what they allow it
     """
-    laws = None
-    world = engine.make(p, scene.duration / steps)
+    world, kept = engine.make(p, scene.duration / steps), []
+    watched = steps_of_motion(steps) if allowed and world.watched_step else ()
     try:
-        for _ in range(steps // engine.substeps):
-            world.step()
+        for n in range(steps // engine.substeps):
+            if n in watched:
+                kept.append(world.watched_step())
+            else:
+                world.step()
         observed = np.array(world.read(), dtype=float)
-        if allowed:
-            laws = [law._asdict() for law in contact_laws.judged(world.watched(), allowed)]
+        kept += world.watched() if allowed and world.watched else []
     finally:
         world.close()
-    return finite(observed)._replace(laws=laws)
+    return finite(observed)._replace(laws=laws_of(kept, allowed) if allowed else None)
 
 
 def finite(observed):
@@ -149,7 +168,8 @@ def relative_to(truth, a, b):
 def our_curve(selection, runner, p, truth):
     """Return the errors of one of our methods over the sweep."""
     scene, step = selection.fastest(runner)
-    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(runner, p))
+    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides), runner.judged_by(n)))
+            for n in selection.steps_of(runner, p))
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
     return {**found, **our_look(runner)}
 
@@ -168,7 +188,7 @@ def engine_curve(selection, case, runner, p, truth):
              "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
         source = f"live, {engine.product} {engine.product.installed()}"
-        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.laws)) for n in selection.steps_of(runner, p))
+        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.judged_by(n))) for n in selection.steps_of(runner, p))
     else:
         record = traces.recorded(selection.name, case, engine)
         if record is None:
@@ -215,8 +235,9 @@ def judged(scene, runner, p, truth, runs, enough):
     departure, order = runner.departure, runner.order
     law = truth if departure is None else np.array(departure.own_law(p, scene.duration), dtype=float)
     departure = None if np.array_equal(law, truth) else departure
-    rows = []
+    rows, laws = [], []
     for steps, outcome in runs:
+        laws = outcome.laws or laws
         rows.append({"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed,
                      "error": None if outcome.failure else relative(outcome.observed, truth),
                      "failure": outcome.failure, **bound(runner, p, scene.duration / steps, law)})
@@ -226,7 +247,7 @@ def judged(scene, runner, p, truth, runs, enough):
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
-    laws = outcome.laws if verdict is Verdict.UNDECIDED and outcome.laws else []
+    laws = laws if verdict is Verdict.UNDECIDED else []
     if laws:
         verdict, message = contact_laws.verdict_on([contact_laws.Law(**law) for law in laws])
     if runner.is_reference(p):
@@ -317,8 +338,8 @@ def labels_that_agree(result):
 
 
 def labels_to_film(result):
-    """Return the same; where no theory judges any of them, those that came to the end."""
+    """Return the same; where no theory gives the error of any of them, those that came to the end."""
     first = next(iter(result["cases"].values()))
-    ended = {c["label"] for c in first["ours"] if c["verdict"] == Verdict.UNDECIDED and c["rows"]
+    ended = {c["label"] for c in first["ours"] if c["verdict"] in (Verdict.UNDECIDED, *BY_LAWS) and c["rows"]
              and c["rows"][-1]["failure"] is None}
     return labels_that_agree(result) or ended

@@ -143,12 +143,10 @@ def relative_motion(bodies, a, b, p_a, p_b):
     return v[a] + np.cross(omega[a], p_a - x[a]) - v[b] - np.cross(omega[b], p_b - x[b])
 
 
-def natural_parts(inverse, x, u, contacts, gap, J, mu, dt, axes=None):
-    """Return the residuals (c,), (c,) [m/s] of Signorini's and of Coulomb's law at each contact: see natural_residual.
+def inverse_masses_at(inverse, x, contacts):
+    """Return (k_n (c,), k_t (c,)) [1/kg] of contacts: effective inverse masses along n, and at most across it.
 
-    inverse = (inverse masses (n,), inverse moments (n, 3, 3));    u (c, 3) relative velocities after the step;
-    contacts = (a, b, n, p_a, p_b), where the impulses act on a and on b;    axes (c, 2, 3): friction is a pyramid,
-    with each component at most μ J_n;    None: it is a cone
+    The arguments are those of natural_parts.  k_t is the trace of the contact's matrix minus k_n.
     """
     (inv_mass, inv_inertia), (a, b, n, p_a, p_b) = inverse, contacts
     k_n, trace = np.zeros(len(n)), np.zeros(len(n))
@@ -159,7 +157,18 @@ def natural_parts(inverse, x, u, contacts, gap, J, mu, dt, axes=None):
         around = np.trace(inv_inertia[body], axis1=1, axis2=2)
         trace += (3.0 * inv_mass[body] + np.sum(r**2, axis=1) * around
                   - np.einsum("ki,kij,kj->k", r, inv_inertia[body], r))
-    k_t, J_n, u_n = trace - k_n, np.sum(n * J, axis=1), np.sum(n * u, axis=1)
+    return k_n, trace - k_n
+
+
+def natural_parts(inverse, x, u, contacts, gap, J, mu, dt, axes=None):
+    """Return the residuals (c,), (c,) [m/s] of Signorini's and of Coulomb's law at each contact: see natural_residual.
+
+    inverse = (inverse masses (n,), inverse moments (n, 3, 3));    u (c, 3) relative velocities after the step;
+    contacts = (a, b, n, p_a, p_b), where the impulses act on a and on b;    axes (c, 2, 3): friction is a pyramid,
+    with each component at most μ J_n;    None: it is a cone
+    """
+    n, (k_n, k_t) = contacts[2], inverse_masses_at(inverse, x, contacts)
+    J_n, u_n = np.sum(n * J, axis=1), np.sum(n * u, axis=1)
     J_t, u_t = J - J_n[:, None] * n, u - u_n[:, None] * n
     pushed = np.maximum(0.0, J_n - (u_n + np.maximum(gap, 0.0) / dt) / k_n)
     stuck, limit = J_t - u_t / k_t[:, None], mu * np.maximum(J_n, 0.0)

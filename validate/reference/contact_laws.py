@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..check import Allowed, Verdict
-from .contact import in_space, natural_parts, relative_motion, turning
+from .contact import in_space, inverse_masses_at, natural_parts, relative_motion, turning
 
 EPS = 2.3e-16                # spacing of floats around 1, rounded up [-]
 ROUNDINGS = 8.0              # of a velocity or an impulse in one visit of a contact: four products and their sums [-]
@@ -19,8 +19,23 @@ CLAMPED = 1000.0 * EPS       # of impulses that a solver clamps [-]: reported ax
 # the power that early ends of iterations leave, over impulses and g dt [-]: it was measured as 0.018 at most on the
 # engines of lesson 9; impulses that are 10 % too large give 0.1
 GAINED = 0.05
+# friction short of Coulomb's limit where contacts slide, over the largest impulse, that early ends of iterations leave:
+# it was measured as 0.0063 at most on the engines of lesson 10; friction that is 10 % too small gives 0.02 or more
+UNREACHED = 0.01
+# mean restitution that early ends of iterations leave: it was measured as 0.003 at most on the engines of lesson 10; a
+# restitution of 0.1 gives 0.04 or more, because a step that ends an approach has a gap left
+BOUNCED = 0.02
 FINISHED = 1e-2              # residual of a solver that has finished, over g dt [-]: forces are then right to 1 %
+SLIDES = 2.0                 # times friction at its limit that does not stop a contact which slides [-]
 PRESSED = 1e-9               # normal impulse over the largest one, below which nothing presses [-]
+
+
+class Physics(NamedTuple):
+    """What a scene says of its bodies.  An engine is judged by this, however it was set up."""
+    gravity: np.ndarray      # (d,) [m/s²]
+    inv_mass: np.ndarray     # (n,) [1/kg]; 0: a support, which moves as it likes
+    inv_inertia: np.ndarray  # (n,), or (n, 3) about the principal axes [1/(kg m²)]
+    mu: float                # friction of each pair [-]
 
 
 class Motion(NamedTuple):
@@ -55,6 +70,7 @@ class Step(NamedTuple):
     centres: np.ndarray      # (n, d) of the bodies when it found the contacts [m]
     overlap: float           # the deepest one that its last correction of positions has seen [m]
     touching: Touching
+    pushed: np.ndarray | None = None     # (n, d) impulses of springs and air, through the centres [N s]; None: of none
 
     def in_space(self):
         """Return the same step in space, with a last row for everything that never moves."""
@@ -63,8 +79,15 @@ class Step(NamedTuple):
                    for one in (self.before, self.after)]
         t = self.touching
         vectors = {name: in_space(getattr(t, name)) for name in ("n", "p_a", "p_b", "J", "ghosts")}
+        pushed = np.zeros_like(self.centres) if self.pushed is None else self.pushed
         return Step(self.dt, in_space([self.gravity])[0], np.append(self.inv_mass, 0.0), still_below(inverse), *moments,
-                    still_below(in_space(self.centres)), self.overlap, t._replace(**vectors))
+                    still_below(in_space(self.centres)), self.overlap, t._replace(**vectors),
+                    still_below(in_space(pushed)))
+
+    @property
+    def moves(self):
+        """Return which bodies (n, 1) impulses can move, as 1 and 0: a support moves as it likes."""
+        return 1.0 * (self.inv_mass[:, None] > 0.0)
 
 
 class Law(NamedTuple):
@@ -115,7 +138,8 @@ def rounding(step, iterations):
     """
     fall, _, fastest = scales(step)
     t = step.touching
-    crowd = int(np.max(np.bincount(np.concatenate((t.a, t.b)), minlength=1)[:len(step.inv_mass) - 1], initial=1))
+    contacts = np.bincount(np.concatenate((t.a, t.b)), minlength=len(step.inv_mass))
+    crowd = int(np.max(contacts[step.inv_mass > 0.0], initial=1))
     return ROUNDINGS * iterations * crowd * EPS * fastest / fall
 
 
@@ -139,14 +163,14 @@ def unexplained(step):
 
     A free body in space changes ω by −I⁻¹ (ω × I ω) dt; that is the rate of gyration.
     """
-    moves = np.append(np.ones(len(step.inv_mass) - 1), 0.0)[:, None]
-    omega, spin = step.before.omega, np.zeros_like(step.before.omega)
-    for k, inverse in enumerate(step.inv_inertia):
-        if np.trace(inverse) > 0.0 and np.linalg.matrix_rank(inverse) == 3:
-            spin[k] = step.dt * inverse @ np.cross(omega[k], np.linalg.solve(inverse, omega[k]))
+    omega, moves = step.before.omega, step.moves
+    turns = np.linalg.matrix_rank(step.inv_inertia, hermitian=True) == 3
+    L = np.einsum("nij,nj->ni", np.linalg.pinv(step.inv_inertia, hermitian=True), omega)
+    spin = step.dt * turns[:, None] * np.einsum("nij,nj->ni", step.inv_inertia, np.cross(omega, L))
     dv, domega = jumps(step, step.touching.J - step.touching.ghosts)
+    dv = dv + step.inv_mass[:, None] * step.pushed
     return (moves * (step.after.v - step.before.v - step.dt * step.gravity) - dv,
-            step.after.omega - omega + spin - domega, spin)
+            moves * (step.after.omega - omega) + spin - domega, spin)
 
 
 def balances(step):
@@ -163,23 +187,27 @@ def balances(step):
 def energy(step, spin):
     """Return the change of the kinetic energy that neither gravity nor applied impulses explain, over its terms [-].
 
-    Impulses between two velocities do the work J · (u + u')/2, exactly.  Gyration does no work, but a step of it does
+    Impulses between two velocities do the work J · (u + u')/2, exactly.  Of a support, which does work on others, the
+    velocities do not count.  Gyration does no work, but a step of it does
     some; at most |I ω| times the change of ω is left out.
     """
-    m = 1.0 / step.inv_mass[:-1, None]
+    moves = step.moves[:-1]
+    m = moves / np.where(moves > 0.0, step.inv_mass[:-1, None], 1.0)
     inertia = np.linalg.pinv(step.inv_inertia[:-1], hermitian=True)
     turned = lambda omega: np.einsum("ni,nij,nj->n", omega, inertia, omega)
     gyration = float(np.sum(np.linalg.norm(np.einsum("nij,nj->ni", inertia, step.before.omega[:-1]), axis=1)
                             * np.linalg.norm(spin[:-1], axis=1)))
-    v, v_new, omega, omega_new = (rows[:-1] for one in zip(step.before[1:], step.after[1:]) for rows in one)
+    v, v_new, omega, omega_new = (moves * rows[:-1] for one in zip(step.before[1:], step.after[1:]) for rows in one)
     change = 0.5 * (np.sum(m * (v_new**2 - v**2)) + np.sum(turned(omega_new) - turned(omega)))
     by_gravity = 0.5 * step.dt * np.sum(m * step.gravity * (v + v_new))
-    twice = motion(step, step.before) + motion(step, step.after)
+    twice = sum(motion(step, one._replace(v=step.moves * one.v, omega=step.moves * one.omega))
+                for one in (step.before, step.after))
     by_contacts = 0.5 * np.sum((step.touching.J - step.touching.ghosts) * twice)
-    largest = max(abs(change), abs(by_gravity), abs(by_contacts),
+    by_pushes = 0.5 * np.sum(step.pushed[:-1] * (v + v_new))
+    largest = max(abs(change), abs(by_gravity), abs(by_contacts), abs(by_pushes),
                   float(np.sum(m[:, 0] * np.linalg.norm(step.dt * step.gravity) * np.linalg.norm(v + v_new, axis=1))),
                   float(np.sum(m)) * float(np.linalg.norm(step.dt * step.gravity)) ** 2)
-    return max(0.0, float(abs(change - by_gravity - by_contacts)) - gyration) / largest
+    return max(0.0, float(abs(change - by_gravity - by_contacts - by_pushes)) - gyration) / largest
 
 
 def motion(step, one):
@@ -214,23 +242,45 @@ def shift(step):
 def laws_of_contacts(step, allowed):
     """Return {quantity: value} of the laws of Signorini and Coulomb for the reported impulses.
 
-    A contact may open by what recovers its overlap in this step, and close by what is left of the slop.
+    A contact may open by what recovers its overlap in this step, and close by what is left of the slop.  No scene that
+    these laws judge has restitution: after a push a contact is closed at the end of the step.
     """
     t, fall = step.touching, scales(step)[0]
     u, gap = motion(step, step.after), t.gap + allowed.slop
     opening = np.clip(np.sum(t.n * u, axis=1), 0.0, allowed.recovers * np.maximum(-gap, 0.0) / step.dt)
     u = u - opening[:, None] * t.n
-    normal, slip = natural_parts((step.inv_mass, step.inv_inertia), step.centres, u, (t.a, t.b, t.n, t.p_a, t.p_b), gap,
-                                 t.J, t.mu, step.dt, t.axes)
+    inverse, contacts = (step.inv_mass, step.inv_inertia), (t.a, t.b, t.n, t.p_a, t.p_b)
+    normal, slip = natural_parts(inverse, step.centres, u, contacts, gap, t.J, t.mu, step.dt, t.axes)
     J_n = np.sum(t.n * t.J, axis=1)
     J_t, most = t.J - J_n[:, None] * t.n, float(np.max(np.abs(t.J), initial=0.0)) or 1.0
     size = (np.linalg.norm(J_t, axis=1) if t.axes is None else
             np.max(np.abs(np.einsum("cad,cd->ca", t.axes, J_t)), axis=1, initial=0.0))
-    beyond, pressed = np.maximum(0.0, size - t.mu * np.maximum(J_n, 0.0)) / most, J_n > PRESSED * most
+    limit = t.mu * np.maximum(J_n, 0.0)
+    closing = np.maximum(0.0, -np.sum(t.n * motion(step, step.before), axis=1))
+    parting = np.sum(t.n * u, axis=1) + np.maximum(gap, 0.0) / step.dt
+    beyond, pressed = np.maximum(0.0, size - limit) / most, J_n > PRESSED * most
+    short = short_of_limit(t, u, J_t, limit, inverse_masses_at(inverse, step.centres, contacts)[1])
     largest = lambda rows: float(np.max(rows, initial=0.0))
     return {"pull": largest(-J_n) / most, "cone": largest(beyond[pressed]), "loose": largest(beyond[~pressed]),
+            "short": largest(short[pressed]) / most,
+            "bounce": max(0.0, float(np.sum(J_n * parting))) / (float(np.sum(np.abs(J_n) * (fall + closing))) or 1.0),
             "gain": max(0.0, float(np.sum(t.J * u))) / (float(np.sum(np.abs(J_n))) * fall or 1.0),
             "normal": largest(normal) / fall, "slip": largest(slip[pressed]) / fall}
+
+
+def short_of_limit(t, u, J_t, limit, k_t):
+    """Return by how much (c,) [N s] the friction of a contact that slides is less than its limit; zero of all others.
+
+    A contact slides, however little its solver has finished, where SLIDES times its friction at the limit could not
+    stop it.  In a pyramid each axis has its own limit.
+    """
+    u_t = u - np.sum(t.n * u, axis=1)[:, None] * t.n
+    if t.axes is None:
+        speed, size = (np.linalg.norm(rows, axis=1)[:, None] for rows in (u_t, J_t))
+    else:
+        speed, size = (np.abs(np.einsum("cad,cd->ca", t.axes, rows)) for rows in (u_t, J_t))
+    slides = speed > SLIDES * (k_t * limit)[:, None]
+    return np.max(np.where(slides, limit[:, None] - size, 0.0), axis=1, initial=0.0)
 
 
 QUANTITIES = {               # as a page shows them, in the order in which they are judged
@@ -242,6 +292,8 @@ QUANTITIES = {               # as a page shows them, in the order in which they 
     "pull": "impulse that pulls, over the largest impulse [-]",
     "cone": "friction beyond Coulomb's limit, over the largest impulse [-]",
     "loose": "friction without a normal impulse, over the largest impulse [-]",
+    "short": "friction of a contact that slides, short of Coulomb's limit, over the largest impulse [-]",
+    "bounce": "speed at which pushed contacts part, over their approach and g dt [-]",
     "gain": "power from contacts at the end of a step, over impulses and g dt [-]",
     "normal": "residual of Signorini's law, over g dt [-]",
     "slip": "residual of Coulomb's law, over g dt [-]",
@@ -260,7 +312,9 @@ def values(step, allowed):
 
 
 def judged(steps, allowed: Allowed):
-    """Return the Laws of some steps, the last of which is at rest: the largest value of each quantity, and its limit.
+    """Return the Laws of some steps: the largest value of each quantity, and its limit.
+
+    Where bodies rest at the end (`allowed.rests`), the last step has a law of its own.
 
     The residual of iterations that end early is bounded by a step in which contacts carry nothing.  Friction without a
     normal impulse is at most the largest impulse.  Impulses that are not applied have no bound, but the balances must
@@ -268,13 +322,15 @@ def judged(steps, allowed: Allowed):
     """
     found, roundings, nothing = zip(*(values(step, allowed) for step in steps))
     rules, early = dict(allowed.rules), dict.fromkeys((*ITERATED, "rest"), max(nothing))
-    known = {"loose": 1.0, "gain": GAINED, **early}
-    within = {**dict.fromkeys(QUANTITIES, max(roundings)), "pull": CLAMPED, "cone": CLAMPED, "loose": CLAMPED,
-              "shift": 1.0, **dict.fromkeys(("gain", *ITERATED, "rest"), FINISHED)}
+    known = {"loose": 1.0, "gain": GAINED, "short": UNREACHED, "bounce": BOUNCED, **early}
+    within = {**dict.fromkeys(QUANTITIES, max(roundings)), "shift": 1.0,
+              **dict.fromkeys(("pull", "cone", "loose", "short"), CLAMPED),
+              **dict.fromkeys(("bounce", "gain", *ITERATED, "rest"), FINISHED)}
     largest = {name: float(np.max([one[name] for one in found])) for name in QUANTITIES if name != "rest"}
-    largest["rest"] = max(found[-1][name] for name in ITERATED)
-    return [Law(quantity, largest[name], within[name], known.get(name) if name in rules else None,
-                rules.get(name, "")) for name, quantity in QUANTITIES.items()]
+    if allowed.rests:
+        largest["rest"] = max(found[-1][name] for name in ITERATED)
+    return [Law(QUANTITIES[name], value, within[name], known.get(name) if name in rules else None,
+                rules.get(name, "")) for name, value in largest.items()]
 
 
 def verdict_on(laws):
@@ -286,7 +342,7 @@ def verdict_on(laws):
     broken = [law for law in laws if not law.holds]
     left = max(law.found for law in laws if law.quantity in [QUANTITIES[name] for name in ITERATED])
     if not broken:
-        return Verdict.KEEPS_LAWS, f"keeps all {len(laws)} laws of contact; its iterations leave {left:.2g} of g dt"
+        return Verdict.KEEPS_LAWS, f"keeps all laws of contact; its iterations leave {left:.2g} of g dt"
     by_reason = {law.reason: [said(one) for one in broken if one.reason == law.reason] for law in broken}
     return Verdict.BREAKS_AS_KNOWN, "; ".join(f"{', '.join(what)}, because {why}" for why, what in by_reason.items())
 

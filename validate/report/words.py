@@ -26,7 +26,7 @@ LEGEND = {                   # every verdict has one name and one sign
                     "with the same scheme computes it: the run must miss the truth by just that error.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
-    Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. What the engine reports of its own steps keeps the "
+    Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. What it reports of its own steps keeps the "
                         "laws that hold for every solver: balances of momentum, angular momentum and energy, "
                         "no impulse that pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of "
                         "g dt.",

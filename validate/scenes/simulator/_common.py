@@ -4,8 +4,26 @@ import numpy as np
 
 from solutions.simulator import make_bodies, make_bodies_2d, make_joints
 from solutions.support.model import WORLD, Body, Hinge, make_model
+from validate.reference.contact_laws import Motion, Physics, Step, Touching
 
 SIZE = 0.01                  # half size of a body that touches nothing [m]
+
+
+def physics_of_boxes(m, half, g, mu):
+    """Return the Physics of boxes in the plane, and of the floor as a last row; those of infinite mass are supports."""
+    inverse = np.stack((1.0 / m, 3.0 / (m * np.sum(half**2, axis=1))), axis=1)
+    return Physics(np.array([0.0, -g]), *np.vstack((inverse, np.zeros(2))).T, mu)
+
+
+def reported_by_loop(before, after, dt, physics, pushed=None):
+    """Return the Step between two PileStates in the plane: the places, gaps and impulses of contacts are in the second.
+
+    The loop does not push overlapping bodies apart, and moves them by their new velocities.
+    """
+    c, J = after.contacts, after.J
+    touching = Touching(c.a, c.b, c.n, c.p, c.p, c.gap, J, np.full(len(c.a), physics.mu), np.zeros_like(J))
+    motions = (Motion(now.x, now.v, now.omega) for now in (before, after))
+    return Step(dt, *physics[:3], *motions, before.x, 0.0, touching, pushed)
 
 
 def joined_2d(made, gravity):

@@ -12,17 +12,21 @@ import numpy as np
 from solutions.checks import BadInput, check_friction
 from solutions.simulator import make_bodies_2d
 from validate.check import states
+from validate.engines import watched
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
 from validate.scenes._common import check_positives
 from validate.scenes.drawing import outlines
+from validate.scenes.simulator._common import physics_of_boxes, reported_by_loop
 
 T = 1.0                      # [s]
 STEPS = (8, 20, 60, 120, 240, 480, 960)
 FINE, KEPT = 6_000, 30       # steps of the reference run in T; it keeps one of this many
 SWEEPS, MARGIN = 60, 0.01    # of the loop [-], [m]
+ITERATIONS = 100             # of pymunk [-]
+WATCHED = 120                # steps of the run that the laws of contact judge [-]
 HALF_LENGTH, HALF_THICK = 0.2, 0.01             # of a card [m]
 ROOF, HALF_ROOF = 4, 0.36    # number of the roof, and half of its length [m]
 APART = 0.5                  # of the tents [m]
@@ -155,16 +159,26 @@ def limit(p, dt):
     return stands if not falls(p) and first < MARGIN else np.inf
 
 
+def physics(p):
+    return physics_of_boxes(masses(), halves(), p.g, p.rough * least(p))
+
+
+def reports(before, after, p, dt):
+    return reported_by_loop(before[0], after[0], dt, physics(p))
+
+
 def pymunk_make(p, dt):
-    return PymunkBoxes(parts(p), dt, 100, 1e-5).run(corners)
+    return PymunkBoxes(parts(p), dt, ITERATIONS, 1e-5).run(corners, physics(p))
 
 
 UNPREDICTED = "a standing house has the error of its sweeps, and no theory predicts the motion of a falling one"
 RUNNERS = (
-    # a house that falls needs short steps, and is not judged
-    ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("too smooth",), most_in_quick=60),
+    # a house that falls needs short steps
+    ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("too smooth",), most_in_quick=60,
+         laws=watched.sweeps_rules(SWEEPS), watched=WATCHED),
     engine(PYMUNK, "", pymunk_make, "boxes; 100 iterations, collision_slop 1e-5",
-           order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, is_truth=falls),
+           order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, is_truth=falls,
+           laws=watched.pymunk_rules(ITERATIONS, rests=False), watched=WATCHED),
 )
 
 
@@ -210,7 +224,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15,
+    reports=reports, truth=truth, truth_uncertainty=1e-15,
     slow_cases=("barely",),
     omitted_methods="the house was not set up in pybullet",
     sanity_checks=sanity_checks,

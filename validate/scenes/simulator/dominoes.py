@@ -16,9 +16,11 @@ from solutions.checks import BadInput, check_friction, check_positive
 from solutions.contact import make_pile_2d
 from solutions.given.bodies import Bodies
 from validate.check import states
+from validate.engines import watched
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import PILE, SETTLED_LOOP
+from validate.reference.contact_laws import Physics
 from validate.reference.impulses import delays
 from validate.reference.orientation import about
 from validate.reference.simulator import rocking
@@ -36,6 +38,8 @@ AGREED = 1e-3                # a motion is judged where the two codes differ by 
 FINEST = {"pymunk": 50_000, "loop": 20_000}  # steps per second of the two codes; the error bar has both halved, too
 UNCERTAINTY = 1.2e-4         # the error bar of the first case, rounded up; limits contain that of each case [-]
 SWEEPS = 1                   # of the loop, before it looks whether a sweep still changes something
+ITERATIONS = 50              # of pybullet [-]
+WATCHED = 50                 # steps of the run that the laws of contact judge [-]
 CARRIED = 0.3                # hertz of a soft contact times a step [-]: nearly the stiffest that a pile stands
 ZETA, MARGIN = 10.0, 0.01    # damping ratio [-] and margin [m] of the pile
 
@@ -54,6 +58,7 @@ CASES = {"six": Params(), "fifteen": Params(n=15), "six, smoother": Params(mu=0.
 AGREED_CASES = tuple(CASES)
 ABOUT_1 = "about 1"          # an order that four runs do not show well
 LEVELS_OFF = "1, then none"  # an order, towards another limit than pymunk's
+AROUND = 10.0                # pybullet's moments about x and z over that about y, about which dominoes turn [-]
 MASS = 1.0                   # of each [kg]; nothing depends on it
 
 
@@ -264,15 +269,22 @@ def pymunk_make(p, dt, iterations, slop):
     return pymunk_world(space, dt, lambda: all_corners(seen_in_pymunk(dominoes, p, ROWS), p))
 
 
-def pybullet_make(p, dt, iterations, residual):
-    bullet = Rigid(dt, (0.0, 0.0, -p.g), iterations)
+def physics_in_space(p):
+    """Return the Physics of the dominoes of all rows in pybullet, which turn about y only."""
+    about = 1.0 / (inertia(p) * np.array([AROUND, 1.0, AROUND]))
+    n = ROWS * p.n
+    return Physics(np.array([0.0, 0.0, -p.g]), np.full(n, 1.0 / MASS), np.tile(about, (n, 1)), p.mu)
+
+
+def pybullet_make(p, dt, residual):
+    bullet = Rigid(dt, (0.0, 0.0, -p.g), ITERATIONS)
     pb = bullet.pb
     pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-6)
     slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[50.0, 5.0, 1.0])
     ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
     pb.changeDynamics(ground, -1, lateralFriction=np.sqrt(p.mu), restitution=0)
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * p.width, 0.2, 0.5 * p.height])
-    inertias = (10.0 * inertia(p), inertia(p), 10.0 * inertia(p))        # it turns about y only
+    inertias = inertia(p) * np.array([AROUND, 1.0, AROUND])
     dominoes = [bullet.body(MASS, inertias, (x[0], k - 0.5 * ROWS, x[1]), (0.0, -omega, 0.0), True, v=(v[0], 0.0, v[1]),
                             R=about((0.0, 1.0, 0.0), -angle), shape=shape, mu=np.sqrt(p.mu))
                 for k, t in enumerate(moments()) for x, angle, v, omega in zip(*begin(p, t))]
@@ -281,7 +293,9 @@ def pybullet_make(p, dt, iterations, residual):
         x = np.array([bullet.position(body) for body in dominoes])[:, [0, 2]]
         turned = np.array([bullet.R(body) for body in dominoes])
         return corners(x, np.arctan2(turned[:, 2, 0], turned[:, 0, 0]), p)
-    return EngineRun(bullet.begin().step, read, bullet.close)
+    bullet.begin()
+    world = watched.Bullet(pb, dt, bullet.gravity, physics_in_space(p))
+    return EngineRun(bullet.step, read, bullet.close, watched_step=world.watched)
 
 
 BY_CHANCE = "the phase of an impact in its step is random, and each impact passes this error on"
@@ -294,12 +308,14 @@ RUNNERS = (
            order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
     engine(PYMUNK, "default", partial(pymunk_make, iterations=10, slop=0.1), "10 iterations, collision_slop 0.1",
            order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
-    engine(PYBULLET, "", partial(pybullet_make, iterations=50, residual=0),
+    engine(PYBULLET, "", partial(pybullet_make, residual=0),
            "boxes 0.4 m deep, maximal coordinates; solverResidualThreshold 0, contactSlop 1e-6, 50 iterations",
-           order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED),
-    engine(PYBULLET, "default", partial(pybullet_make, iterations=50, residual=1e-7),
+           order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED,
+           laws=watched.bullet_rules(ITERATIONS, rests=False), watched=WATCHED),
+    engine(PYBULLET, "default", partial(pybullet_make, residual=1e-7),
            "boxes 0.4 m deep, maximal coordinates; contactSlop 1e-6, 50 iterations",
-           order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED),
+           order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED,
+           laws=watched.bullet_rules(ITERATIONS, rests=False), watched=WATCHED),
 )
 
 

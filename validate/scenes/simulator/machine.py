@@ -17,12 +17,14 @@ from solutions.simulator import (
     mechanical_energy_2d,
 )
 from validate.check import states
+from validate.engines import watched
 from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.stored import agreed
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
 from validate.scenes._common import check_positives
 from validate.scenes.drawing import outlines
+from validate.scenes.simulator._common import physics_of_boxes, reported_by_loop
 
 T = 10.0                     # [s]
 UNKNOWN = "unknown"          # an order
@@ -32,6 +34,8 @@ KEPT = 20                   # pictures per second of the film of the truth
 FINEST = {"pymunk": 16_000, "loop": 16_000}     # steps per second of the two codes; the bar has both halved, too
 AGREED_CASES = "places",
 SWEEPS, MARGIN = 20, 0.02    # of the loop [-], [m]
+ITERATIONS = 100             # of pymunk [-]
+WATCHED = 300                # steps of the run that the laws of contact judge [-]
 SPRING, REST, DAMPER = 20.0, 0.5, 0.5           # of the hammer [N/m], [m], [N s/m]
 ANCHOR = np.array([-2.9, 0.3])                  # [m]
 DRAG = 0.3                                      # of everything that moves [N s/m]
@@ -238,8 +242,22 @@ def parts(p):
     return (PLACES, ANGLES, HALF, MASS, v, omega), (HAMMER, ANCHOR, REST, SPRING, DAMPER), DRAG, p.mu, p.g, p.belt
 
 
+def physics(p):
+    return physics_of_boxes(MASS, HALF, p.g, p.mu)
+
+
+def reports(before, after, p, dt):
+    """Return the Step of our loop, with what spring and air give: it takes both from the state before the step."""
+    x, v = before.now.x, before.now.v
+    way = x[HAMMER] - ANCHOR
+    length = np.linalg.norm(way)
+    F = -DRAG * v * (physics(p).inv_mass[:, None] > 0.0)
+    F[HAMMER] += (SPRING * (REST - length) - DAMPER * (way @ v[HAMMER]) / length) * way / length
+    return reported_by_loop(before.now, after.now, dt, physics(p), dt * F)
+
+
 def pymunk_make(p, dt):
-    return PymunkBoxes(parts(p), dt, 100, 1e-5).run(corners)
+    return PymunkBoxes(parts(p), dt, ITERATIONS, 1e-5).run(corners, physics(p))
 
 
 def is_alone(p):
@@ -255,10 +273,12 @@ def tells_places(p):
 UNPREDICTED = "it depends on the order in which dominoes and crates come to rest, and no theory predicts that"
 RUNNERS = (
     # the positions need shorter steps than a quick run has, and are not judged
-    ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("places",), most_in_quick=120),
+    ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("places",), most_in_quick=120,
+         laws=watched.sweeps_rules(SWEEPS), watched=WATCHED),
     engine(PYMUNK, "", pymunk_make, "boxes on a kinematic floor, a DampedSpring, air by a velocity function; 100 "
            "iterations, collision_slop 1e-5", order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, most_in_quick=600,
-           supports=tells_places, is_truth=is_alone),
+           laws=watched.pymunk_rules(ITERATIONS, rests=False), watched=WATCHED, supports=tells_places,
+           is_truth=is_alone),
 )
 
 
@@ -296,7 +316,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15,
+    reports=reports, truth=truth, truth_uncertainty=1e-15,
     slow_cases=("overlap", "residual"),
     omitted_methods="the machine was not set up in pybullet: its belt and its crank are bodies without mass that carry "
                     "others along, which pybullet has only in reduced coordinates",
