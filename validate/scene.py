@@ -275,7 +275,9 @@ def field_names(required=False):
 
 
 def no_limit(p, dt):
-    """No theory says how far some curves may be off.  Their errors are shown and not judged."""
+    """No theory says how far some curves may be off.  Their errors are shown.  Where the scene has laws of contact for
+    them, these judge what is reported of their steps; all others are not judged.
+    """
     return np.inf
 
 

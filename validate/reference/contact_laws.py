@@ -22,7 +22,7 @@ GAINED = 0.05
 # friction short of Coulomb's limit where contacts slide, over the largest impulse, that early ends of iterations leave:
 # it was measured as 0.0063 at most on the engines of lesson 10; friction that is 10 % too small gives 0.02 or more
 UNREACHED = 0.01
-# mean restitution that early ends of iterations leave: it was measured as 0.003 at most on the engines of lesson 10; a
+# mean restitution that early ends of iterations leave: it was measured as 0.013 at most on the engines of lesson 10; a
 # restitution of 0.1 gives 0.04 or more, because a step that ends an approach has a gap left
 BOUNCED = 0.02
 FINISHED = 1e-2              # residual of a solver that has finished, over g dt [-]: forces are then right to 1 %
