@@ -119,9 +119,9 @@ class Runner:
         limit = self.limit(p, dt)
         return limit[self.order] if isinstance(limit, dict) else limit
 
-    def judged_by(self, steps):
+    def judged_by(self, p, steps):
         """Return what the laws of contact allow it in its run with so many steps; None where that is not watched."""
-        return self.laws if self.watched in (None, steps) else None
+        return self.laws if self.watched in (None, steps) and not self.is_reference(p) else None
 
     def prediction(self, p, dt):
         """Return the Prediction of its error with steps of dt, or None."""
