@@ -188,7 +188,8 @@ def engine_curve(selection, case, runner, p, truth):
              "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
         source = f"live, {engine.product} {engine.product.installed()}"
-        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.judged_by(p, n))) for n in selection.steps_of(runner, p))
+        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.judged_by(p, n)))
+                for n in selection.steps_of(runner, p))
     else:
         record = traces.recorded(selection.name, case, engine)
         if record is None:
