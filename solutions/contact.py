@@ -520,7 +520,8 @@ def fewer_sweeps(sweep, J, calls):
     Gauss–Seidel, from J; you learn nothing else of the problem.  In a stack and under a heavy body, 100 calls must
     leave at most a tenth of the residual that 100 sweeps leave.  With friction, for two boxes that are thrown, it must
     be at most a thousandth of what it is without impulses.
-    Impulses that a sweep does not change are the answer; return them.  Nothing may pull: end with a sweep.
+    Impulses that a sweep does not change are the answer; return them.  No contact may pull.  A sweep cuts a pull off,
+    and an extrapolation may bring one back.  So return impulses that one of your calls of sweep has returned.
     calls is at least 1; do not change J.
     Ideas: extrapolate from the last sweeps (Aitken, Anderson); keep a momentum, and forget it where it leads astray
     (Nesterov); nonsmooth nonlinear conjugate gradients, in which the change of a sweep takes the place of the gradient.

@@ -186,6 +186,8 @@ class Scene:
     truth_uncertainty: float  # of the truth, relative [-]
     runners: tuple           # of Runner: ours first
     points: Callable         # (observed, p) → (n, 2) drawing coordinates [m]
+    model: Callable | None = None            # (p) → its Model, from which every world is built
+    read: Callable | None = None             # (State of the Model, p) → the same quantities as truth(p, t)
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
     full_loop: str = ""      # why the whole loop of lesson 10 cannot stand for a method here; else it is measured
@@ -222,6 +224,8 @@ class Scene:
             check_known(f"a case of {runner.label!r} in scene {self.title!r}", runner.slow_cases, self.cases)
         check_known(f"a slow case of scene {self.title!r}", self.slow_cases, self.cases)
         check_known(f"field 'link_look' of scene {self.title!r}", (self.link_look,), LINK_LOOKS)
+        if (self.model is None) != (self.read is None):
+            raise BadInput(f"fields 'model' and 'read' of scene {self.title!r}", "only one of them", "give both")
         if self.cases and self.bodies and not self.poses:
             raise BadInput(f"field 'poses' of scene {self.title!r}", "missing", "say where each body of `bodies` is")
 

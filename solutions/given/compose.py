@@ -37,6 +37,7 @@ from ..support.model import (
 from ..support.scenes import PileState
 from ..support.shapes import Ball, Box, HalfSpace, Polyhedron
 from .dividing import advance_parts, divided_step, first_touch, whole_step
+from .hulls import hull_bounds, hull_contacts
 from .parts import (
     accelerate,
     accelerate_half,
@@ -132,8 +133,6 @@ def refuses(model):
     """Return why our loop cannot run a model, for people; an empty text where it can."""
     if any(length == 0.0 for length in lengths_of(model)):
         return "a Distance between two points at one place"
-    if any(isinstance(body.shape, Polyhedron) for body in model.bodies):
-        return "a Polyhedron: it has no contacts of these"
     return ""
 
 
@@ -242,6 +241,8 @@ def shapes_of_loop(model):
         return (disc_bounds_of, disc_contacts_of) if flat else (ball_bounds_of, ball_contacts_of)
     if kinds == {Box}:
         return (box_bounds_of, box_contacts_of) if flat else (cuboid_bounds_of, cuboid_contacts_of)
+    if Polyhedron in kinds:
+        return hull_bounds, hull_contacts
     return (convex_bounds_2d, convex_contacts_2d) if flat else (rounded_bounds, rounded_contacts)
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from ..checks import positive_number
 from ..support.broad_phase import Pairs
 from ..support.convex_2d import Cores
-from ..support.convex_3d import RoundedBoxes
+from ..support.convex_3d import NO_HULLS, RoundedBoxes
+from ..support.hulls import hulls_of
 from ..support.model import (
     WORLD,
     Body,
@@ -24,7 +25,7 @@ from ..support.model import (
     world_place,
 )
 from ..support.scenes import PileState, no_contacts
-from ..support.shapes import Ball, Box, Capsule, HalfSpace, core_of, inner_radius, size_of
+from ..support.shapes import Ball, Box, Capsule, HalfSpace, Polyhedron, core_of, inner_radius, size_of
 from .joints import Joints, farthest_neighbour, form_loops
 from .rods import Rods
 
@@ -118,16 +119,14 @@ def cores_of(bodies):
 
 
 def rounded_boxes_of(bodies):
-    """Return the RoundedBoxes of bodies with shapes in space."""
-    core, radius, half = [], [], []
-    for body in bodies:
-        shape = body.shape
-        round_one = isinstance(shape, Ball | Capsule)
-        core.append((shape.half_length if isinstance(shape, Capsule) else 0.0, 0.0, 0.0) if round_one else shape.half)
-        radius.append(shape.radius if round_one else 0.0)
-        half.append(half_of(shape, 3))
+    """Return the RoundedBoxes of bodies with shapes in space, with Hulls if one of them is a Polyhedron."""
+    shapes = [body.shape for body in bodies]
+    core = [shape.half if isinstance(shape, Box) else
+            (shape.half_length if isinstance(shape, Capsule) else 0.0, 0.0, 0.0) for shape in shapes]
+    radius = [shape.radius if isinstance(shape, Ball | Capsule) else 0.0 for shape in shapes]
+    half, solid = [half_of(shape, 3) for shape in shapes], any(isinstance(shape, Polyhedron) for shape in shapes)
     return RoundedBoxes(np.array(core, float).reshape(-1, 3), np.array(radius, float),
-                        np.array(half, float).reshape(-1, 3))
+                        np.array(half, float).reshape(-1, 3), hulls_of(shapes) if solid else NO_HULLS)
 
 
 def half_of(shape, d):

@@ -31,11 +31,26 @@ PARALLEL = 1e-6              # sin² of the angle below which two directions cou
 PREFER_FACES = 1e-9          # of the size: so much better than a face must an edge separate [-]
 
 
+class Hulls(NamedTuple):
+    """Convex polyhedra of n bodies.  A ball is a corner and a capsule is an edge: they have no face."""
+    corners: np.ndarray      # (all, 3) [m]
+    faces: np.ndarray        # (faces, 4) planes: rows (n, d) with n · p + d = 0, and n outward
+    around: np.ndarray       # numbers of the corners of all faces, counter-clockwise from outside
+    begin: np.ndarray        # (faces + 1,) those of face f are around[begin[f]], …, around[begin[f + 1] − 1]
+    edges: np.ndarray        # (edges, 4) numbers: from a corner to a corner, the face on the left, that on the right
+    first: np.ndarray        # (n + 1, 3) numbers of the first corner, face and edge of each body
+
+
+NO_HULLS = Hulls(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0, np.int64), np.zeros(1, np.int64),
+                 np.zeros((0, 4), np.int64), np.zeros((1, 3), np.int64))
+
+
 class RoundedBoxes(NamedTuple):
     """Shapes of n bodies in space, in their own coordinates."""
     core: np.ndarray         # (n, 3) half sizes of the cores [m]: 0, 0, 0 of a ball, and h, 0, 0 of a capsule
     radius: np.ndarray       # (n,) [m]
     half: np.ndarray         # (n, 3) half sizes of balls and boxes [m], for the functions of lesson 9
+    hulls: Hulls = NO_HULLS  # of all bodies, if one of them is a Polyhedron; its core and its radius are 0
 
 
 def rounded_bounds(x, q, shapes):
@@ -56,20 +71,27 @@ def rounded_contacts(x, turn, shapes, planes, pairs, reach):
     for i in range(n):
         for k in range(pairs.first[i], pairs.first[i + 1]):
             j, before = pairs.partner[k], m
-            if j >= n:
-                m = corners_on_plane(x, turn, shapes, i, planes[j - n], reach, c, m)
-            elif shapes.core[i, 1] > 0.0 and shapes.core[j, 1] > 0.0:
-                m = box_pair(x, turn, shapes.core, i, j, reach, C, t, y, z, c, m)
-            elif shapes.core[i, 1] > 0.0:
-                m = segment_on_box(x, turn, shapes, i, j, -1.0, reach, c, m)
-            elif shapes.core[j, 1] > 0.0:
-                m = segment_on_box(x, turn, shapes, j, i, 1.0, reach, c, m)
-            else:
-                m = segment_on_segment(x, turn, shapes, i, j, reach, c, m)
+            m = rounded_pair(x, turn, shapes, planes, i, j, reach, C, t, y, z, c, m)
             for s in range(before, m):
                 c.a[s], c.b[s] = i, j
         c.first[i + 1] = m
     return first_of(c, m)
+
+
+def rounded_pair(x, turn, shapes, planes, i, j, reach, C, t, y, z, c, m):
+    """Write the contacts of rounded boxes i and j, or of a plane; C, t, y, z are scratch.
+
+    Return how many contacts there are then.
+    """
+    if j >= shapes.radius.size:
+        return corners_on_plane(x, turn, shapes, i, planes[j - shapes.radius.size], reach, c, m)
+    if shapes.core[i, 1] > 0.0 and shapes.core[j, 1] > 0.0:
+        return box_pair(x, turn, shapes.core, i, j, reach, C, t, y, z, c, m)
+    if shapes.core[i, 1] > 0.0:
+        return segment_on_box(x, turn, shapes, i, j, -1.0, reach, c, m)
+    if shapes.core[j, 1] > 0.0:
+        return segment_on_box(x, turn, shapes, j, i, 1.0, reach, c, m)
+    return segment_on_segment(x, turn, shapes, i, j, reach, c, m)
 
 
 def corners_on_plane(x, turn, shapes, i, plane, reach, c, m):

@@ -11,12 +11,14 @@ numbers of the other body are those of the pair.  pymunk and pybullet have the s
 *Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..checks import BadInput, check_friction, check_restitution, finite_array, number
 from .model_checks import (
+    check_force,
     check_joint,
     check_moments,
     check_shape_of,
@@ -92,13 +94,29 @@ class Drag(NamedTuple):
     k: float                 # [N s/m]
 
 
+class Force(NamedTuple):
+    """A force on the centre of a body, computed from sequences of floats: an engine calls it in each step.
+
+    It is a load like any other function, but engines need not read the state of all bodies for it.
+    """
+    a: int                   # number of a body
+    F: Callable              # → (d,) [N], of what `of` names, in this order
+    of: str                  # "t": the time [s]; "x": the place of the body [m]; "v": its velocity [m/s]; "xv": both
+
+    def __call__(self, t, x, q, v, omega):
+        """Return (F (n, d) [N], tau [N m]) of all bodies."""
+        now, F = {"t": t, "x": x[self.a], "v": v[self.a]}, np.zeros(x.shape)
+        F[self.a] = self.F(*(now[name] for name in self.of))
+        return F, np.zeros(omega.shape)
+
+
 class Model(NamedTuple):
     """A scene.  Make it with make_model, which checks it."""
     bodies: tuple
     gravity: tuple           # (d,) [m/s²]
     joints: tuple = ()       # Hinge, BallJoint, Weld, Distance
     springs: tuple = ()
-    loads: tuple = ()        # Drag, or functions (t, x, q, v, omega) → (F (n, d) [N], tau [N m]) of all bodies
+    loads: tuple = ()        # Drag, Force, or functions (t, x, q, v, omega) → (F (n, d) [N], tau [N m]) of all bodies
 
     @property
     def d(self):
@@ -136,7 +154,7 @@ def make_model(bodies, gravity, joints=(), springs=(), loads=()):
     joints = tuple(check_joint(k, one_of("a joint", joint, JOINTS), free, d) for k, joint in enumerate(joints))
     springs = tuple(check_spring(k, one_of("a spring", spring, (Spring,)), free, d)
                     for k, spring in enumerate(springs))
-    return Model(bodies, gravity, joints, springs, tuple(map(checked_load, loads)))
+    return Model(bodies, gravity, joints, springs, tuple(checked_load(load, free) for load in loads))
 
 
 def checked_body(k, body, d):
@@ -168,15 +186,17 @@ def checked_body(k, body, d):
                 inertia)
 
 
-def checked_load(load):
-    """Return a load.  Raises BadInput unless it is a Drag of zero or more, or a function."""
+def checked_load(load, free):
+    """Return a load.  Raises BadInput unless it is a Drag of zero or more, a Force on a free body, or a function."""
+    if isinstance(load, Force):
+        check_force(load, free)
     if isinstance(load, Drag):
         k = number("the drag k [N s/m]", load.k)
         if not (k >= 0.0 and np.isfinite(k)):
             raise BadInput("the drag k [N s/m]", k, "give a finite number of zero or above")
         return Drag(k)
     if not callable(load):
-        raise BadInput("a load", type(load).__name__, "give a Drag or a function of (t, x, q, v, omega)")
+        raise BadInput("a load", type(load).__name__, "give a Drag, a Force, or a function of (t, x, q, v, omega)")
     return load
 
 

@@ -173,6 +173,17 @@ def check_spring(k, spring, free, d):
         c=not_negative(f"the damper c of {thing} [N s/m]", spring.c))
 
 
+def check_force(force, free):
+    """Raise BadInput unless a Force is a function of "t", "x", "v" or "xv" on a body that can move."""
+    number = isinstance(force.a, int | np.integer) and not isinstance(force.a, bool)
+    if not (number and 0 <= force.a < len(free) and free[force.a]):
+        raise BadInput("the body of a Force", force.a, "name a body that can move by its number")
+    if force.of not in ("t", "x", "v", "xv"):
+        raise BadInput("what a Force depends on", repr(force.of), 'choose from: "t", "x", "v", "xv"')
+    if not callable(force.F):
+        raise BadInput("F of a Force", type(force.F).__name__, f"give a function of {', '.join(force.of)}")
+
+
 def not_negative(thing, value):
     """Return value as a float.  Raises BadInput unless it is finite, and zero or more."""
     value = finite_number(thing, value)

@@ -104,10 +104,19 @@ def polygon_centre(corners):
 def hull_triangles(corners):
     """Return triangles (k, 3) of numbers of corners, counter-clockwise from outside, that cover the convex hull.
 
-    A plane through three corners is a face if all others lie on one side of it.  A face with more corners is a fan.
+    A face with more corners is a fan.
+    """
+    triangles = [(face[0], face[k], face[k + 1]) for face in hull_faces(corners) for k in range(1, len(face) - 1)]
+    return np.array(triangles, int).reshape(-1, 3)
+
+
+def hull_faces(corners):
+    """Return the faces of the convex hull: of each the numbers of its corners, counter-clockwise from outside.
+
+    A plane through three corners is a face if all others lie on one side of it.
     """
     corners = np.asarray(corners, float)
-    near, faces, triangles = FLAT * np.max(np.abs(corners)), set(), []
+    near, faces = FLAT * np.max(np.abs(corners)), {}
     for i, j, k in triples(len(corners)):
         n = np.cross(corners[j] - corners[i], corners[k] - corners[i])
         if np.linalg.norm(n) <= near * near:
@@ -118,9 +127,8 @@ def hull_triangles(corners):
             n, height = -n, -height
         on = tuple(np.flatnonzero(np.abs(height) <= near))
         if np.all(height <= near) and on not in faces:
-            faces.add(on)
-            triangles += fan(corners, on, n)
-    return np.array(triangles, int).reshape(-1, 3)
+            faces[on] = in_turn(corners, on, n)
+    return list(faces.values())
 
 
 def triples(n):
@@ -128,12 +136,22 @@ def triples(n):
     return [(i, j, k) for k in range(n) for j in range(k) for i in range(j)]
 
 
-def fan(corners, on, n):
-    """Return the triangles of a face with these corners and the outward normal n, from the first corner."""
+def in_turn(corners, on, n):
+    """Return the numbers `on` of the corners of a face with the outward normal n, counter-clockwise around it."""
     way = corners[list(on)] - np.mean(corners[list(on)], axis=0)
     around = np.arctan2(way @ np.cross(n, way[0]), way @ way[0] * np.linalg.norm(n))
-    order = [on[k] for k in np.argsort(around)]
-    return [(order[0], order[k], order[k + 1]) for k in range(1, len(order) - 1)]
+    return [on[k] for k in np.argsort(around)]
+
+
+def face_planes(corners, faces):
+    """Return the planes (k, 4) of faces of a convex polyhedron: rows (n, d) with n · p + d = 0, and n outward."""
+    corners, planes = np.asarray(corners, float), []
+    for face in faces:
+        at = corners[list(face)]
+        n = np.sum(np.cross(at[1:-1] - at[0], at[2:] - at[0]), axis=0)
+        n = n / np.linalg.norm(n)
+        planes.append((*n, -np.mean(at @ n)))
+    return np.array(planes).reshape(-1, 4)
 
 
 def solid_integrals(corners):
@@ -207,9 +225,11 @@ def size_of(shape):
 
 
 def inner_radius(shape):
-    """Return the radius [m] of the largest ball around the centre that is inside a ball or a polygon."""
+    """Return the radius [m] of the largest ball around the centre that is inside a ball, a polygon or a polyhedron."""
     if isinstance(shape, Ball):
         return shape.radius
+    if isinstance(shape, Polyhedron):
+        return float(np.min(-face_planes(shape.corners, hull_faces(shape.corners))[:, 3]))
     corners = np.asarray(shape.corners)
     edges = np.roll(corners, -1, axis=0) - corners
     across = corners[:, 0] * edges[:, 1] - corners[:, 1] * edges[:, 0]

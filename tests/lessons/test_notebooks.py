@@ -13,7 +13,7 @@ import pytest
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from validate.notebook import figures
+from validate.notebook import figures, has_pymunk
 from validate.scene import Scene
 from validate.subject import modules
 from validate.subject.generate import exercises, stub
@@ -191,6 +191,56 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, states, t
                 if asked:
                     assert f"Exercise {asked[1]}: {expected}" in said, f"{state}: {said}"
                     known[asked[1]] = expected
+
+
+ABSENT = "pymunk", "pybullet", "mujoco", "numba"         # modules that a browser does not have
+ALONE = f"""import importlib.metadata, sys
+for name in {ABSENT}:
+    sys.modules[name] = None
+def version(name, known=importlib.metadata.version):
+    if name.removesuffix("-core") in {ABSENT}:
+        raise importlib.metadata.PackageNotFoundError(name)
+    return known(name)
+importlib.metadata.version = version"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_solved_notebook_runs_to_its_end_without_engines_and_compiler(path, tmp_path):
+    """As in a browser.  The checks run in a process of their own, which has all modules, so they are left out."""
+    for name in lesson_names():
+        (tmp_path / f"{name}.py").write_text((SOLUTIONS / f"{name}.py").read_text())
+    cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    with kernel(ROOT / "notebooks", WORKBOOK_LESSONS=str(tmp_path), WORKBOOK_LIVE="film") as client:
+        ran(client, f"{ALONE}\n{HASTE}")
+        said = [ran(client, source) for source in cells if not re.match(r"(check|progress)\(", source)]
+    assert not any("No module named" in one or "ModuleNotFoundError" in one for one in said)
+    asks = sum("has_pymunk(" in source for source in cells)
+    assert sum("pymunk is not installed here. Its stored results are on" in one for one in said) == asks
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_cell_that_runs_pymunk_first_asks_whether_it_is_there(path):
+    """In a browser it is not.  The sentence about that leads to the executed notebook, so it must name this one."""
+    code = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    for source in code:
+        named = set(re.findall(r'has_pymunk\("(\w+)"\)', source))
+        runs = re.search(r"^\s+import pymunk|chipmunk\.build\(", source, re.M)
+        assert named == ({path.stem} if runs else set()), source
+
+
+def test_where_pymunk_is_missing_a_sentence_leads_to_its_stored_results(monkeypatch):
+    shown = []
+    monkeypatch.setattr("validate.notebook.display", lambda html: shown.append(html.data))
+    monkeypatch.setattr("validate.products.version", lambda name: "1.0")
+    assert has_pymunk("09_contact") and not shown
+    monkeypatch.setattr("validate.products.Product.installed", lambda product: None)
+    monkeypatch.setenv("WORKBOOK_PAGES", "https://example.org/book/notebooks/")
+    assert not has_pymunk("09_contact")
+    assert shown == ['<p>pymunk is not installed here. Its stored results are on <a href="https://example.org/book/'
+                     'notebooks/09_contact.html" target="_blank">the page of this notebook in the book</a>.</p>']
+    monkeypatch.delenv("WORKBOOK_PAGES")
+    assert not has_pymunk("09_contact") and "are on the page of this notebook in the book." in shown[1]
 
 
 def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_path, monkeypatch, capsys):

@@ -94,6 +94,8 @@ def test_the_best_step_of_a_parabola_is_infinite(lesson, draw):
     for value in (draw(0.1, 9.0), -draw(0.1, 9.0)):
         h = float(lesson.best_step(value, 0.0, 1e-15))
         truth("the best step is infinite where the third derivative is 0", h == np.inf, True, given=f"f = {value}")
+        h = float(lesson.best_step(value, draw(0.1, 9.0), 1e-15))
+        between("best step where the third derivative is not 0", h, 1e-8, 1.0, given=f"f = {value}")
 
 
 @exercise("12.3", points=0.5, hint="np.imag(f(s + 1j * h, p)) / h: no difference, so no digits are lost")
@@ -267,6 +269,11 @@ def test_the_tangents_of_an_oscillator_approach_those_of_its_motion(lesson, draw
     between("error after 800 steps over that after 400 [-]", np.abs(twice).max() / size, 0.45, 0.55)
 
 
+def after_three_implicit_steps(x, v, k, c, dt):
+    """State (2,) of ẍ = −k x − c ẋ after three steps of implicit Euler; all but dt may be complex."""
+    return np.linalg.matrix_power(np.linalg.inv(np.eye(2) - dt * np.array([[0.0, 1.0], [-k, -c]])), 3) @ (x, v)
+
+
 @exercise("12.5", points=1,
           hint="(1 − dt a_v − dt² a_x) dvₙ₊₁ = dvₙ + dt (a_x dxₙ + a_s), with derivatives at t + dt and the new x, v")
 def test_the_tangents_are_the_derivatives_of_the_implicit_step(lesson, draw):
@@ -279,19 +286,19 @@ def test_the_tangents_are_the_derivatives_of_the_implicit_step(lesson, draw):
                        given=f"{d} coordinates, {m} inputs, t = {t} s, dt = {dt} s")
 
 
-@exercise("12.5", points=1, hint="solve one linear system for dvₙ₊₁; then dxₙ₊₁ = dxₙ + dt dvₙ₊₁")
+@exercise("12.5", points=1, hint="solve one linear system for dvₙ₊₁, with a_x, a_v and a_s at the new x and v;"
+                                 " then dxₙ₊₁ = dxₙ + dt dvₙ₊₁")
 def test_the_tangents_of_an_implicit_step_do_not_explode(lesson, draw):
     """The step of a linear law is a matrix, y ← (1 − dt B)⁻¹ y, and so is that of its tangents.
 
-    ‖B‖ dt is up to 1e5, which costs as many digits of the solution.
+    Two further inputs are relative changes of k and c.  ‖B‖ dt is up to 1e5, which costs as many digits.
     """
     for k, dt in ((draw(1.0, 4.0), 0.1), (1e6 * draw(0.5, 1.0), 0.1), (1e10 * draw(0.5, 1.0), 1.0)):
-        c = draw(0.5, 2.0)
-        p = Linear(k, c, np.zeros(2), np.zeros(2))
-        x, v, (dx, dv) = draw(0.5, 2.0, 1), draw(0.5, 2.0, 1), np.eye(2)[:, None, :]
-        A = np.linalg.matrix_power(np.linalg.inv(np.eye(2) - dt * np.array([[0.0, 1.0], [-k, -c]])), 3)
-        got = run(lesson.tangent_implicit_step, p, x, v, dx, dv, dt, 3)
-        close("(dx, dv) after three steps, for the inputs x and v", np.concatenate(got[2:]), A, 1e-6,
+        c, y = draw(0.5, 2.0), draw(0.5, 2.0, 2)
+        p = Linear(k, c, np.array([0.0, 0.0, k, 0.0]), np.array([0.0, 0.0, 0.0, c]))
+        right = slopes(after_three_implicit_steps, *zip((*y, k, c), np.diag((1.0, 1.0, k, c)), strict=True), dt)
+        got = run(lesson.tangent_implicit_step, p, y[:1], y[1:], *np.eye(2, 4)[:, None, :], dt, 3)
+        close("(dx, dv) after three steps, for the inputs x, v, log k and log c", np.concatenate(got[2:]), right, 1e-6,
               given=f"k = {k} 1/s², c = {c} 1/s, dt = {dt} s")
     once, twice = errors_of_tangents(lesson.tangent_implicit_step, draw)
     size = np.abs(once).max()
@@ -448,8 +455,8 @@ def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, d
 @exercise("12.8", points=0.5, hint="e_s moves only the velocity: R_s = −(v · n) n e_sᵀ; 0 ≤ e ≤ 1")
 def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
     for d in (1, 2, 3):
-        for e in (0.0, 1.0):
-            n, v, a = unit(draw, d), draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
+        for e, n in ((0.0, unit(draw, d)), (1.0, unit(draw, d)), (draw(0.2, 0.8), np.eye(d)[-1])):     # a level floor
+            v, a = draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
             v -= (v @ n + draw(1.0, 3.0)) * n
             still, e_s = np.zeros((d, 2)), np.array([0.0, draw(0.5, 2.0)])
             _, dx, dv = lesson.bounce(v, a, still, still, n, e, np.zeros(2), e_s)
@@ -639,6 +646,8 @@ def test_an_error_that_is_too_large_from_the_start_helps_for_no_time(lesson, dra
     for share in (1.0, *draw.within()):
         close("time for which the start is known well enough [s]", lesson.predicted_horizon(3.0, error, share * error),
               0.0, 0.0, given=f"error {error} m, allowed {share * error} m")
+    known = lesson.predicted_horizon(3.0, error, 2.0 * error)
+    between("time until the error has doubled [s]", known, 0.4, 0.5, given=f"error {error} m, rate 3 1/s")
 
 
 def bounced_once(heights, x):

@@ -2334,6 +2334,9 @@ edits("9.22", {
     "goes on as if the changes were zero": ("before = size", "before = np.inf"),
     "changes its input": ("J, p, before = float_copy(J),", "J[:] = sweep(J); J, p, before = J,"),
     "returns no impulses": ("return sweep(J)", "return 0.0 * sweep(J)"),
+    "ends with an extrapolation, not with a sweep": ("return sweep(J)", "return J"),
+    "goes beyond the last sweep": ("return sweep(J)", "return J + 1.5 * (sweep(J) - J)"),
+    "returns the mean of the last two guesses": ("return sweep(J)", "return 0.5 * (J + sweep(J))"),
 })
 
 

@@ -216,6 +216,7 @@ edit("1.7", "evaluates the matrix at x + dt v", "newton_matrix(acceleration, t +
 edit("1.7", "evaluates the matrix at the old time",
      "newton_matrix(acceleration, t + dt", "newton_matrix(acceleration, t")
 edit("1.7", "tests only positive corrections", "np.max(np.abs(delta))", "np.max(delta)")
+edit("1.7", "stops when one coordinate has converged", "np.max(np.abs(delta))", "np.min(np.abs(delta))")
 
 
 @right("1.7", "by SciPy's root finder")

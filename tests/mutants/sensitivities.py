@@ -131,6 +131,8 @@ edit("12.5", "differentiates an explicit step", f"solve({MATRIX}, dv + dt * (a_x
 edit("12.5", "takes the derivatives at the old state", "derivatives(t + dt, x_new, v_new, p)",
      "derivatives(t + dt, x, v, p)")
 edit("12.5", "takes the derivatives at the old time", "derivatives(t + dt,", "derivatives(t,")
+edit("12.5", "takes the derivatives at the old time and state", "derivatives(t + dt, x_new, v_new, p)",
+     "derivatives(t, x, v, p)")
 edit("12.5", "forgets that the new position depends on the new velocity", " - dt * dt * a_x", "")
 edit("12.5", "forgets the derivative with respect to v", " - dt * a_v", "")
 edit("12.5", "takes dt, not dt², with a_x", "dt * dt * a_x", "dt * a_x")

@@ -10,8 +10,10 @@ import pytest
 from solutions.checks import BadInput
 from solutions.support.model import WORLD, Ball, Body, Box, Distance, HalfSpace, Hinge, make_model, model_energy
 from validate.notebook.live import running
+from validate.notebook.live.canvas import drawn
 from validate.notebook.live.files import sentence
 from validate.notebook.live.hand import HERTZ, Grip, offset, pulled
+from validate.notebook.live.loops import LOOPS
 from validate.notebook.live.simulation import Simulation, Tuning
 from validate.subject.generate import stub
 from validate.subject.modules import SOLUTIONS, lesson_names
@@ -214,6 +216,29 @@ def test_pymunk_goes_on_from_its_own_state_after_a_setting():
     ran(whole, 20), ran(changed, 20)
     assert np.allclose(whole.engine_state.x, changed.engine_state.x, atol=2e-3)
     assert np.ptp(whole.engine_state.x[:, 1]) > 0.05
+
+
+@pytest.mark.parametrize("called", LOOPS)
+def test_the_slider_of_dt_holds_for_every_lesson_from_end_to_end(called):
+    """In the first prototype the pile of lesson 9 refused a step above 1/240 s.  A ball on the floor leaves nothing."""
+    model = make_model([FLOOR, Body((0.0, 0.1), 1.0, Ball(0.1), mu=0.5)], DOWN)
+    knob = next(one for one in drawn(Simulation(model, SOLUTIONS, lesson=called), "", 300, None)["knobs"]
+                if one["key"] == "dt")
+    for rate in (knob["low"], knob["high"]):
+        scene = Simulation(model, SOLUTIONS, Tuning(), False, called)
+        scene.set(dt=1.0 / rate)
+        ran(scene, 20)
+        assert scene.t == pytest.approx(20 / rate) and np.allclose(scene.now().x[1], (0.0, 0.1), atol=9.81 / rate**2)
+
+
+def test_bodies_that_overlap_are_parted_and_their_overlap_is_shown():
+    """A loop that only stops them leaves 40 mm for ever, which everybody sees on a screen."""
+    deep = [Body((0.0, 0.1), 1.0, Box((0.15, 0.1)), mu=0.5), Body((0.0, 0.26), 1.0, Box((0.15, 0.1)), mu=0.5)]
+    scene = ran(Simulation(make_model([FLOOR, *deep], DOWN), SOLUTIONS, beside=False), 1)
+    _, (_, low), (_, high) = scene.now().x
+    assert scene.overlap() == pytest.approx(0.2 - (high - low), abs=1e-3) and scene.overlap() > 0.02
+    ran(scene, 240)
+    assert scene.overlap() < 2e-3 and scene.now().x[2, 1] == pytest.approx(0.3, abs=4e-3)
 
 
 def test_a_model_in_space_is_refused():

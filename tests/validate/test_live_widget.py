@@ -314,6 +314,27 @@ def test_a_page_that_does_not_answer_gets_no_flood_and_pauses_the_scene(monkeypa
     in_a_loop(test)
 
 
+def test_far_away_the_strongest_forces_are_sent_and_no_more_bytes_than_the_budget(monkeypatch):
+    """Jupyter stops a kernel that sends more than 1 MB/s."""
+    monkeypatch.setattr(widget, "MOST_FORCES", 2)
+    monkeypatch.setattr(widget, "PER_SECOND", 400.0)                 # of pictures of some 200 bytes: every half second
+
+    async def test(opened):
+        page = opened()
+        await page.until(lambda: page.scene.simulation.t > 0.3)
+        sent = len(page.frames)
+        await page.until(lambda: page.scene.simulation.t > 0.6)
+        assert len(page.frames) <= sent + 2 + 0.3 / page.scene.pace
+        forces = page.scene.simulation.forces()
+        page.tell(do="pause")
+        page.scene._picture()
+        assert page.head("forces") == 2.0 < len(forces)
+        shown = np.hypot(*page.frames[-1][-8:].reshape(2, 4)[:, 2:].T)
+        sizes = np.hypot(*page.scene.simulation.forces()[:, 2:].T)
+        assert np.allclose(np.sort(shown), np.sort(sizes)[-2:], rtol=1e-5)
+    in_a_loop(test)
+
+
 def test_a_page_that_is_closed_pauses_the_scene_and_one_that_is_loaded_again_gets_a_picture():
     async def test(opened):
         page = opened()

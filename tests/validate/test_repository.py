@@ -218,9 +218,12 @@ NOT_IN_CI = {                    # files with long tests, and why CI does not ru
     "tests/validate/test_agreement.py": "it refines the dominoes for minutes",
     "tests/validate/test_book.py": "it executes all notebooks; CI builds the book with one of them",
     "tests/validate/test_cluster.py": "it starts a scheduler of Dask and its workers",
+    "tests/validate/test_hosted.py": "it installs the workbook twice, as Binder and Colab do",
+    "tests/validate/test_live_canvas.py": "it needs Chromium",
     "tests/validate/test_live_kernel.py": "it needs Chromium",
     "tests/validate/test_live_page.py": "it needs Chromium",
     "tests/validate/test_live_site.py": "it needs Chromium and Pyodide",
+    "tests/validate/test_workflow.py": "it runs the workflow that publishes the book, and needs Chromium and Pyodide",
     "tests/validate/test_worlds.py": "it compiles the loops of all models, which takes minutes",
     "tests/validate/test_worlds_in_space.py": "it compiles the loops of all models, which takes minutes",
 }

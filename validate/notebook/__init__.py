@@ -28,7 +28,7 @@ from .. import measure
 from ..check import Role
 from ..measure import film
 from ..mistakes import failing_case
-from ..products import PRODUCTS
+from ..products import PRODUCTS, PYMUNK
 from ..reference import choices
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..scene import check_known
@@ -46,6 +46,7 @@ IN_THE_DARK = "{" + ";".join(f"--workbook-{name}:{colour}" for name, colour in D
 STYLE = (f'<style>body[data-jp-theme-light="false"],body[data-theme="dark"]{IN_THE_DARK}'
          f'@media(prefers-color-scheme:dark){{body[data-theme="auto"]{IN_THE_DARK}}}</style>')
 BROWSER = sys.platform == "emscripten"
+PAGES = "WORKBOOK_PAGES"           # environment variable: where the executed notebooks are, for one in a browser
 LONGEST = 120.0                    # of an attempt in a browser, which has no button that interrupts a kernel [s]
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
@@ -229,6 +230,19 @@ def fastest(lesson, trial):
         _say(_why_not_compiled(folder() / f"{lesson}.py", str(e)))
         return modules.bind(lesson, folder()), False
     return fast, True
+
+
+def has_pymunk(notebook):
+    """Return whether pymunk is installed; where it is not, a browser above all, say where its results are.
+
+    notebook   the one that asks, such as "09_contact": the book has it executed, with pymunk's results
+    """
+    if PYMUNK.installed():
+        return True
+    page, pages = "the page of this notebook in the book", os.environ.get(PAGES)
+    link = f'<a href="{escape(pages)}{notebook}.html" target="_blank">{page}</a>' if pages else page
+    display(HTML(f"<p>pymunk is not installed here. Its stored results are on {link}.</p>"))
+    return False
 
 
 UNKNOWN_TO_NUMBA = {         # {kind of expression: what people call it}

@@ -18,6 +18,7 @@ from ..subject import modules
 
 STABILITY = "stability/"
 PARTS = ast.Name, ast.Attribute, ast.Constant, ast.ImportFrom
+LETTERS = '"A", "B", "C" or "D"'                          # in the docstring of every choice
 CHECKS = "check"             # begins the names of functions that refuse bad input, which no scene gives
 CHECKED_ELSEWHERE = "records", "model_checks"            # modules of such functions: the tests of students call them
 
@@ -176,13 +177,20 @@ def methods_in(nodes):
 def exercises(lesson):
     """Return [(number, function)] of the exercises that wait in lessons/, in the order of the text.
 
-    A function without arguments is not among them.  It returns the letter of a choice, or a thing of one's own, and no
-    scene computes with either.
+    The letter of a choice is not among them, because no scene computes with it.
     """
     text = (modules.ROOT / "lessons" / f"{lesson}.py").read_text(encoding="utf-8")
-    choices = {node.name for node in trees()[lesson].body if isinstance(node, ast.FunctionDef) and not node.args.args}
+    choices = {node.name for node in trees()[lesson].body if isinstance(node, ast.FunctionDef) and is_choice(node)}
     found = re.findall(r'raise NotImplementedError\("Exercise ([\d.]+): (\w+)"\)', text)
     return [(number, function) for number, function in found if function not in choices]
+
+
+def is_choice(function):
+    """Tell whether a function returns the letter of a choice: it takes no arguments, and its docstring offers letters.
+
+    The docstring says so in a copy without worked answers, too.
+    """
+    return not function.args.args and LETTERS in (ast.get_docstring(function) or "")
 
 
 @cache

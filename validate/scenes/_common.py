@@ -49,6 +49,14 @@ def constantly(value):
 ONE_LINK = constantly([(0, 1)])          # of a picture of two points
 
 
+def built(product, model, read, **settings):
+    """Return make(p, dt) of an engine's runner: the world of model(p) in that engine; read(State, p) observes it."""
+    def make(p, dt):
+        world = product.world.build(model(p), dt, **settings)
+        return EngineRun(world.step, lambda: read(world.state(), p), world.close)
+    return make
+
+
 def one_reading(read, close=lambda: None, watched=None):
     """Return the EngineRun of a computation without steps: one long reading."""
     return EngineRun(lambda: None, read, close, watched)

@@ -1,17 +1,9 @@
-"""Published benchmarks: engines that are built from a Model, and what scenes of benchmarks share."""
+"""Published benchmarks: what their scenes share."""
 
 from validate.reference.exams import HIGH, iftomm_class, iftomm_error
-from validate.scene import EngineRun, Exam
+from validate.scene import Exam
 
 IFTOMM = "https://www.iftomm-multibody.org/benchmark/"
-
-
-def built(product, model, read, **settings):
-    """Return make(p, dt) of an engine's runner: the world of model(p) in that engine; read(State, p) observes it."""
-    def make(p, dt):
-        world = product.world.build(model(p), dt, **settings)
-        return EngineRun(world.step, lambda: read(world.state(), p), world.close)
-    return make
 
 
 def iftomm(problem, statement, duration, outputs, steps, gives_up, **more):

@@ -684,3 +684,30 @@ def distance_left(lesson, check):
                                       - abs(away - nearest)))
     check.agree("The damping leaves nothing of the way to the nearest place.", "distance left: largest error [m]",
                 worst, 1e-12)
+
+
+# ---------------------------------------------------------------------------------------------- a thing of one's own
+
+@case("writing-of-ones-own", "A drawing of one's own by an arm", compiled=False)
+def writing_of_ones_own(lesson, check):
+    """Let the arm of my_writing draw by four damped steps per picture; the limits are those of its docstring.
+
+    A damped step leaves the share λ²/(σ² + λ²) of an error.  With σ₂ ≥ λ/2, four steps leave at most (4/5)⁴ of it, so
+    the hand is late by less than one way between two pictures.
+    """
+    lengths, points, seconds = lesson.my_writing()
+    lengths, points = np.array(lengths, dtype=float), np.array(points, dtype=float)
+    reach, along = np.sum(lengths), np.linspace(0.0, len(points) - 1.0, round(25 * seconds))
+    path = np.stack([np.interp(along, np.arange(len(points)), points[:, c]) for c in (0, 1)], axis=1)
+    arm, theta = arm_of(lesson, lengths, damping=0.1 * reach), np.full(len(lengths), 0.6)
+    thetas = [after(lesson, "damped_step", arm, theta, path[0], 104)]
+    for target in path[1:]:
+        thetas.append(after(lesson, "damped_step", arm, thetas[-1], target, 4))
+    off = np.max([np.linalg.norm(end_of(theta, lengths) - target) for theta, target in zip(thetas, path)])
+    fastest = 25.0 * np.max(np.abs(np.diff(thetas, axis=0)))
+    thin = np.min([np.linalg.svd(jacobian_of(theta, lengths), compute_uv=False)[1] for theta in thetas])
+    check.agree("The hand stays on the drawing.", "distance from the path over the reach [-]", off / reach, 0.01)
+    check("The joints turn slowly.", "fastest joint over 2 rad/s, at least 1 [-]", law=1.0,
+          found=np.maximum(1.0, fastest / 2.0), within=0.0, saw=f"The fastest joint turns at {fastest:.2g} rad/s.")
+    check("The arm is never nearly straight.", "least σ₂ over a twentieth of the reach, at most 1 [-]", law=1.0,
+          found=np.minimum(1.0, thin / (0.05 * reach)), within=0.0, saw=f"The least σ₂ is {thin:.2g} m.")

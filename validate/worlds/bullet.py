@@ -12,6 +12,7 @@ from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     BallJoint,
+    Drag,
     Hinge,
     State,
     Weld,
@@ -31,7 +32,10 @@ from .derived import (
     bounces,
     carries,
     fastest,
+    forces_of,
     grip,
+    net_of,
+    only_holds,
     pressed_in,
     round_only,
     smallest,
@@ -55,6 +59,7 @@ class Settings(NamedTuple):
     iterations: int | None = None    # of the solver; None: 10 per joint, at least 100
     ahead: float = 0.0       # share of a step by which the first velocities lag; ½ makes leapfrog
     damped: bool = False     # keep the engine's default damping
+    own_drag: bool = False   # bodies damp, v e^(−k dt/m) before the forces, in place of a force −k v
     overlap: float = OVERLAP  # of touching bodies at the start, where nothing bounces [m]
     slop: float = OVERLAP    # overlap that it leaves, where nothing bounces [m]
     erp: float = 1.0         # share of a joint's error that it takes back per step [-]
@@ -85,32 +90,30 @@ def refuses(model):
 def build(model, dt, **settings):
     """Make a World.  Raises BadInput for joints that reduced coordinates do not have here."""
     settings, model = Settings(**settings), with_plain_springs(model)
+    drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
+    if settings.own_drag:
+        model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
     world = Bullet(dt)
     parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies))
     configure(parts, dt)
     x = pressed_in(model, settings.overlap) if touches(model) and not bounces(model) else parts.start.x
     linked = [] if settings.maximal else add_linked(parts, x)
     for k in range(len(model.bodies)):
-        if k not in linked:
+        if k not in linked and not only_holds(model, k):
             add_body(parts, k, x[k])
     if settings.maximal and settings.weighed:
         parts.pb.stepSimulation()
+    if drag:
+        let_damp(parts, drag)
     release(parts, x, settings.ahead * dt, linked)
     parts.pb.setGravity(*parts.space.point(model.gravity).tolist())
     join(parts)
-    clock = [0]
-
-    def step():
-        if model.springs or model.loads:
-            push(parts, clock[0] * dt)
-        clock[0] += 1
-        parts.pb.stepSimulation()
 
     def close():
         parts.pb.setPhysicsEngineParameter(erp=0.2, contactERP=CONTACT_ERP, contactSlop=1e-5,
                                            restitutionVelocityThreshold=0.2)
         world.close()
-    return World(step, lambda: state(parts), lambda: pushes(parts), close)
+    return World(step_of(parts, world.step, dt), lambda: state(parts), lambda: pushes(parts), close)
 
 
 def configure(parts, dt):
@@ -196,6 +199,13 @@ def describe(parts, k):
     parts.pb.changeDynamics(one, link, **change)
     if can_move(body) and not parts.settings.damped and not parts.settings.maximal:
         parts.pb.changeDynamics(one, link, maxJointVelocity=1e9)     # apart: a call with it changes the base
+
+
+def let_damp(parts, drag):
+    """Let the bodies damp as much as a drag [N s/m]: linearDamping is the share that is lost in one second."""
+    for body, (one, link) in zip(parts.model.bodies, parts.handles):
+        if can_move(body):
+            parts.pb.changeDynamics(one, link, linearDamping=-np.expm1(-drag / body.m))
 
 
 def release(parts, x, age, linked):
@@ -340,7 +350,9 @@ def state(parts):
     """Return the State; a fixed body stays where the Model has it."""
     pb, start, rows = parts.pb, parts.start, []
     for body, link in parts.handles:
-        if link < 0:
+        if body < 0:                                         # it only holds springs
+            rows.append(((0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3))
+        elif link < 0:
             rows.append((*pb.getBasePositionAndOrientation(body), *pb.getBaseVelocity(body)))
         else:
             seen = pb.getLinkState(body, link, 1, 1)
@@ -351,6 +363,70 @@ def state(parts):
         if not can_move(body):
             now.x[k], now.q[k] = start.x[k], start.q[k]
     return now
+
+
+def step_of(parts, advance, dt):
+    """Return the step: the engine's own where no load and no spring acts."""
+    model, clock = parts.model, [0]
+    links = any(link >= 0 for _, link in parts.handles)
+    forces = forces_of(model, springs=True) if model.d == 2 and not links else None
+    if not (model.loads or model.springs):
+        return advance
+    pull = None if links else net_of(model)
+    acts = ([acting(parts, k, F, of) for k, (F, of) in forces.items()] if forces else
+            [acting_net(parts, pull)] if pull else [lambda t: push(parts, t)])
+
+    def step():
+        t = clock[0] * dt
+        clock[0] += 1
+        for act in acts:
+            act(t)
+        advance()
+    return step
+
+
+def acting(parts, k, F, of):
+    """Return the function of t that applies a force of floats to body k of a Model in the plane in the next step."""
+    pb, (body, link) = parts.pb, parts.handles[k]
+    place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
+                                  pb.WORLD_FRAME)
+
+    def of_time(t):
+        along, up = F(t)
+        apply(body, link, (along, 0.0, up), place(body)[0], frame)
+
+    def of_place(t):
+        here = place(body)[0]
+        along, up = F((here[0], here[2]))
+        apply(body, link, (along, 0.0, up), here, frame)
+
+    def of_velocity(t):
+        v = speed(body)[0]
+        along, up = F((v[0], v[2]))
+        apply(body, link, (along, 0.0, up), place(body)[0], frame)
+
+    def of_both(t):
+        here, v = place(body)[0], speed(body)[0]
+        along, up = F((here[0], here[2]), (v[0], v[2]))
+        apply(body, link, (along, 0.0, up), here, frame)
+    return {"t": of_time, "x": of_place, "v": of_velocity, "xv": of_both}[of]
+
+
+def acting_net(parts, pull):
+    """Return the function of t that applies the forces of a net of springs in the next step."""
+    pb, space = parts.pb, parts.space
+    free = [(k, parts.handles[k][0]) for k, body in enumerate(parts.model.bodies) if can_move(body)]
+    place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
+                                  pb.WORLD_FRAME)
+    x, v = (np.array([space.point(row) for row in rows]) for rows in (parts.start.x, parts.start.v))
+
+    def act(t):
+        for k, body in free:
+            x[k], v[k] = place(body)[0], speed(body)[0]
+        F = pull(x, v)
+        for k, body in free:
+            apply(body, -1, F[k], x[k], frame)
+    return act
 
 
 def push(parts, t):

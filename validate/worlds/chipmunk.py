@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     Distance,
+    Drag,
     Hinge,
     State,
     Weld,
@@ -18,7 +20,16 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 
 from ..engines.chipmunk import pymunk_space
 from . import Push, World, unsupported
-from .derived import acceleration_at_start, bounces, grip, in_plane, pressed_in, touches, with_plain_springs
+from .derived import (
+    acceleration_at_start,
+    bounces,
+    forces_of,
+    grip,
+    in_plane,
+    pressed_in,
+    touches,
+    with_plain_springs,
+)
 
 OVERLAP = 1e-6               # [m]: inside the slop, so that a contact exists in the first step
 SLOP = 1e-5                  # overlap that it leaves [m]
@@ -32,30 +43,47 @@ def refuses(model):
     return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
 
 
-def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop=SLOP):
-    """Make a World.  ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog."""
-    settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop}
+def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop=SLOP, own_drag=False):
+    """Make a World.
+
+    ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog
+    own_drag: the space damps, v e^(−k dt/m) at the end of a step, in place of a force −k v of the old velocity
+    """
+    settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop,
+                "own_drag": own_drag}
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, **settings)
         return world._replace(state=lambda: lift(world.state()))
     model = with_plain_springs(model)
     space = pymunk_space(model.gravity)
+    if own_drag:
+        model = let_damp(space, model)
     space.collision_slop = slop
-    space.iterations = iterations or max(100, 10 * len(model.joints))
+    if iterations or touches(model) or model.joints:
+        space.iterations = iterations or max(100, 10 * len(model.joints))
     bodies = add_bodies(space, model, ahead * dt, overlap)
     add_joints(space, model, bodies, bias)
     add_springs(space, model, bodies)
     rows = lambda name: np.array([getattr(body, name) for body in bodies], float)
     state = lambda: State(rows("position"), rows("angle"), rows("velocity"), rows("angular_velocity"))
-    clock = [0]
-    if model.loads:
-        push_in_each_step(model, bodies, state, clock, dt)
-
-    def step():
-        space.step(dt)
-        clock[0] += 1
+    step, forces = lambda: space.step(dt), forces_of(model, springs=False)
+    if forces:
+        step = step_with_forces(space, bodies, forces, dt)
+    elif model.loads:
+        step = step_with_loads(space, model, bodies, state, dt)
     return World(step, state, lambda: pushes(bodies, dt))
+
+
+def let_damp(space, model):
+    """Let the space damp as much as the drag, which is left out of the Model that is returned."""
+    kept = tuple(load for load in model.loads if not isinstance(load, Drag))
+    rates = {load.k / body.m for load in model.loads if isinstance(load, Drag) for body in model.bodies
+             if can_move(body)}
+    if len(rates) > 1:
+        raise BadInput("own_drag", f"{len(rates)} rates k/m", "take it for one drag on bodies of one mass")
+    space.damping = np.exp(-sum(rates))                  # the share of the velocity that is left after one second
+    return model._replace(loads=kept)
 
 
 def add_bodies(space, model, ahead, overlap):
@@ -132,14 +160,48 @@ def add_springs(space, model, bodies):
                                       spring.rest, spring.k, spring.c))
 
 
-def push_in_each_step(model, bodies, state, clock, dt):
-    """Give each body a velocity function with the loads.
+def step_with_forces(space, bodies, forces, dt):
+    """Return the step with forces of floats.
 
-    The engine calls these after it has moved all bodies.  A force that is set before the step would belong to the old
-    positions, which is forward Euler.
+    The engine moves the bodies first, and then calls their velocity functions.  A force that depends on the place is
+    computed there: set before the step it would belong to the old place, which is forward Euler.  Velocity and time
+    are then those of before the step, so that their forces can be set before it.
     """
+    of_velocity, of_time, advance, clock = [], [], space.step, [0]
+    for k, (F, of) in forces.items():
+        if "x" in of:
+            bodies[k].velocity_func = pulled(bodies[k].mass, F, of)
+        else:
+            (of_time if of == "t" else of_velocity).append((bodies[k], F))
+
+    def step():
+        for body, F in of_velocity:
+            body.force = F(body.velocity)                        # the step clears it
+        advance(dt)
+
+    def step_at_a_time():
+        for body, F in of_time:
+            body.force = F(clock[0] * dt)
+        clock[0] += 1
+        step()
+    return step_at_a_time if of_time else step if of_velocity else lambda: advance(dt)
+
+
+def pulled(mass, force, of):
+    """Return the velocity function of a body with a force that depends on its place."""
+    share = 1.0 / mass
+
+    def update(body, gravity, damping, dt):
+        x, (right, up) = body.position, body.velocity
+        F = force(x) if of == "x" else force(x, (right, up))
+        body.velocity = right + dt * (gravity[0] + share * F[0]), up + dt * (gravity[1] + share * F[1])
+    return update
+
+
+def step_with_loads(space, model, bodies, state, dt):
+    """Return the step with loads that are functions: each body has a velocity function; see `step_with_forces`."""
     import pymunk
-    memory, loads = {"step": None}, model._replace(springs=())
+    memory, loads, clock = {"step": None}, model._replace(springs=()), [0]
 
     def now():
         if memory["step"] != clock[0]:
@@ -156,6 +218,11 @@ def push_in_each_step(model, bodies, state, clock, dt):
     for k, body in enumerate(bodies):
         if can_move(model.bodies[k]):
             body.velocity_func = pushed(k)
+
+    def step():
+        space.step(dt)
+        clock[0] += 1
+    return step
 
 
 def pushes(bodies, dt):

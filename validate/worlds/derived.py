@@ -4,6 +4,7 @@ The geometry is independent of the lessons.  It tries every direction in which t
 """
 
 from itertools import product
+from math import sqrt
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from solutions.support.model import (
     WORLD,
     Distance,
     Drag,
+    Force,
     Spring,
     State,
     can_move,
@@ -159,6 +161,63 @@ def acceleration_at_start(model):
     return a, alpha
 
 
+def forces_of(model, springs):
+    """Return {number of a body: (F, of)}, as in a Force, if that is all that loads do; None otherwise.
+
+    springs: the engine has none; then each may only hold the centre of a body to a place in the plane.
+    """
+    free = [k for k, body in enumerate(model.bodies) if can_move(body)]
+    held = model.springs if springs else ()
+    if (any(not isinstance(load, Drag | Force) for load in model.loads)
+            or any(one.b != WORLD or model.d == 3 or any(one.place_a) for one in held)):
+        return None
+    found = [(load.a, load.F, load.of) for load in model.loads if isinstance(load, Force)]
+    found += [(k, dragging(load.k, model.d), "v") for load in model.loads if isinstance(load, Drag) for k in free]
+    found += [(one.a, pull_of(one), "xv") for one in held]
+    return {a: how for a, *how in found} if len({a for a, *_ in found}) == len(found) else None
+
+
+def net_of(model):
+    """Return (x, v) → F, both (n, …) in any coordinates, of a Model whose springs join centres of bodies; else None.
+
+    Its loads may be drag only.  F = −k_v v − Bᵀ T n,  n = Bx/|Bx|,  T = k (|Bx| − rest) + c n · Bv.
+    """
+    springs = model.springs
+    if (any(not isinstance(load, Drag) for load in model.loads) or not springs
+            or any(one.b == WORLD or any(one.place_a) or any(one.place_b) for one in springs)):
+        return None
+    B, drag = np.zeros((len(springs), len(model.bodies))), sum(load.k for load in model.loads)
+    for row, one in zip(B, springs):
+        row[one.a], row[one.b] = 1.0, -1.0
+    rest, k, c = (np.array([getattr(one, name) for one in springs])[:, None] for name in ("rest", "k", "c"))
+
+    def pull(x, v):
+        r = B @ x
+        length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
+        n = r / length
+        tension = k * (length - rest) + c * np.sum(n * (B @ v), axis=1, keepdims=True)
+        return -drag * v - B.T @ (tension * n)
+    return pull
+
+
+def dragging(k, d):
+    """Return v → −k v [N], of floats."""
+    k = -k
+    return (lambda v: (k * v[0], k * v[1])) if d == 2 else (lambda v: (k * v[0], k * v[1], k * v[2]))
+
+
+def pull_of(spring):
+    """Return (x, v) → (2,) [N] of a Spring in the plane between the centre of a body and a place, of floats."""
+    (right, high), rest, k, c = spring[3:]
+
+    def pull(x, v):
+        along, up = x[0] - right, x[1] - high
+        near = 1.0 / sqrt(along * along + up * up)
+        share = k * (rest * near - 1.0) - c * near * near * (along * v[0] + up * v[1])
+        return share * along, share * up
+    return pull
+
+
 def with_plain_springs(model):
     """Return the model with a spring, of stiffness 1/α, for each Distance that has a compliance."""
     start, springs = start_of(model), []
@@ -168,6 +227,13 @@ def with_plain_springs(model):
         springs.append(Spring(*joint[:4], float(length), 1.0 / joint.compliance))
     return model._replace(springs=model.springs + tuple(springs),
                           joints=tuple(joint for joint in model.joints if joint not in soft))
+
+
+def only_holds(model, k):
+    """Return whether body k is nothing but a place where springs end: it is fixed, without a shape and without joints.
+    """
+    body = model.bodies[k]
+    return not can_move(body) and body.shape is None and not any(k in (one.a, one.b) for one in model.joints)
 
 
 def tree(model):

@@ -15,12 +15,10 @@ from solutions.support.shapes import Ball, Box, HalfSpace
 from ..products import PYBULLET
 from ..reference.impulses import APART, COPIES
 from ..reference.orientation import about, quaternion
-from ..reference.springs import square_net
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
-from ..scenes.integrators._common import planet
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
@@ -39,44 +37,14 @@ class Described(NamedTuple):
     shown: str = ""          # why an engine is shown here and not judged
 
 
+def of(scene):
+    """Return the Described of a scene that has its Model."""
+    return Described(scene, scene.model, scene.read)
+
+
 def arrays(rows):
     """Return an array as a tuple of floats."""
     return tuple(map(float, rows))
-
-
-# ---------------------------------------------------------------------------------------------- points and springs
-
-def thrown(p):
-    return make_model([Body((0.0, 0.0, 0.0), 1.0, v=(p.vx, p.vy, p.vz))], (0.0, 0.0, -p.g))
-
-
-def falls_through_air(p):
-    return make_model([Body((0.0, 0.0), 1.0, v=(p.vx, p.vy))], (0.0, -p.g), loads=[Drag(p.k)])
-
-
-def on_a_spring(p):
-    """Make a point on a spring whose other end is two metres away, so that it pulls along x only."""
-    return make_model([Body((p.x0, 0.0), p.m)], (0.0, 0.0),
-                      springs=[Spring(0, WORLD, (0.0, 0.0), (-2.0, 0.0), 2.0, p.k, p.c)])
-
-
-def planet_and_sun(p):
-    x, v = planet(p)
-
-    def attraction(t, x, q, v, omega):
-        return -p.mu * x / np.sum(x * x, axis=1)[:, None] ** 1.5, np.zeros(omega.shape)
-    return make_model([Body(arrays(x), 1.0, v=arrays(v))], (0.0, 0.0), loads=[attraction])
-
-
-def net_of_springs(p):
-    net = square_net(p)
-    bodies = [Body(arrays(x), np.inf if n in net.fixed else net.m, v=arrays(v))
-              for n, (x, v) in enumerate(zip(net.x, net.v))]
-    springs = [Spring(i, j, (0.0, 0.0), (0.0, 0.0), rest, net.k, net.k_d)
-               for (i, j), rest in zip(net.pairs.tolist(), net.rest) if not {i, j} <= set(net.fixed)]
-    free = np.array([n not in net.fixed for n in range(len(net.x))])[:, None]
-    wind = lambda t, x, q, v, omega: (free * net.wind, np.zeros(omega.shape))
-    return make_model(bodies, arrays(net.gravity), springs=springs, loads=[wind, *([Drag(net.k_v)] if net.k_v else [])])
 
 
 # ---------------------------------------------------------------------------------------------- friction
@@ -217,11 +185,11 @@ def top_on_its_tip(p):
 
 SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
-    "throw": Described(throw.SCENE, thrown, lambda s, p: s.x[0]),
-    "linear_drag": Described(linear_drag.SCENE, falls_through_air, lambda s, p: s.x[0]),
-    "oscillator": Described(oscillator.SCENE, on_a_spring, lambda s, p: s.x[0, :1]),
-    "kepler": Described(kepler.SCENE, planet_and_sun, lambda s, p: s.x[0]),
-    "spring_net": Described(spring_net.SCENE, net_of_springs, lambda s, p: s.x.ravel()),
+    "throw": of(throw.SCENE),
+    "linear_drag": of(linear_drag.SCENE),
+    "oscillator": of(oscillator.SCENE),
+    "kepler": of(kepler.SCENE),
+    "spring_net": of(spring_net.SCENE),
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
     "slide_then_roll": Described(slide_then_roll.SCENE, bowled, see_bowled),

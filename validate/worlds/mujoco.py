@@ -12,10 +12,12 @@ from solutions.support.model import (
     WORLD,
     BallJoint,
     Distance,
+    Drag,
     Hinge,
     State,
     Weld,
     can_move,
+    can_turn,
     friction_of,
     loads_at,
     start_of,
@@ -24,9 +26,21 @@ from solutions.support.model import (
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron
 
 from ..engines.mujoco import IMPEDANCE, TIME_CONSTANT, module, text
+from ..engines.switches import made
 from ..reference.orientation import quaternion
 from . import Push, World, unsupported
-from .derived import STICKY, Embedding, bounces, carries, rubs, touches, tree, with_plain_springs
+from .derived import (
+    STICKY,
+    Embedding,
+    bounces,
+    carries,
+    forces_of,
+    only_holds,
+    rubs,
+    touches,
+    tree,
+    with_plain_springs,
+)
 
 WIDE = 1e9                   # stands for an infinite moment of inertia [kg m²]
 SLIPPERY = 1e-9              # stands for friction 0 [-], which it does not take
@@ -39,6 +53,7 @@ class Parts(NamedTuple):
     space: Embedding
     above: dict              # {body: (body above or WORLD, number of a joint or None)}
     loops: list              # numbers of the joints that close loops
+    drag: float = 0.0        # [N s/m] that the joints of points damp
 
 
 def refuses(model):
@@ -53,12 +68,14 @@ def refuses(model):
 def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     """Make a World.  integrator: as in MuJoCo's XML; time_constant: of contacts [s]."""
     mujoco, model = module(), with_plain_springs(model)
-    parts = Parts(model, start_of(model), Embedding(model.d), *tree(model))
     integrator = integrator or ("Euler" if touches(model) else "RK4")
-    world = mujoco.MjModel.from_xml_string(xml_of(parts, dt, integrator, time_constant))
+    parts = with_damped_joints(Parts(model, start_of(model), Embedding(model.d), *tree(model)), integrator)
+    model = parts.model
+    world = made(mujoco.MjModel.from_xml_string(xml_of(parts, dt, integrator, time_constant)))
     data = mujoco.MjData(world)
     first_velocities(parts, world, data)
-    order = [mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}") for k in range(len(model.bodies))]
+    order = [0 if only_holds(model, k) else mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}")
+             for k in range(len(model.bodies))]
 
     def state():
         mujoco.mj_kinematics(world, data)
@@ -66,17 +83,36 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
         mujoco.mj_comVel(world, data)
         return seen(parts, world, data, order)
 
-    load = pushed_by(parts, world, order)
+    advance, take = mujoco.mj_step, mujoco.set_mjcb_passive
+    load = forced_by(parts, world, data, order) or pushed_by(parts, world, order)
 
-    def step():
-        if model.loads:
-            mujoco.set_mjcb_passive(load)
+    def loaded():
+        take(load)
         try:
-            mujoco.mj_step(world, data)
+            advance(world, data)
         finally:
-            if model.loads:
-                mujoco.set_mjcb_passive(None)
-    return World(step, state, lambda: pushes(parts, world, data, order))
+            take(None)
+    return World(loaded if model.loads else lambda: advance(world, data), state,
+                 lambda: pushes(parts, world, data, order))
+
+
+def is_free(parts, k):
+    """Return whether body k hangs on nothing."""
+    return can_move(parts.model.bodies[k]) and parts.above[k][1] is None
+
+
+def with_damped_joints(parts, integrator):
+    """Return the Parts with drag as a damping of joints, without calls from Python, if all free bodies are points.
+
+    Euler's step would take such a damping at its end.
+    """
+    model = parts.model
+    points = all(is_free(parts, k) and not can_turn(body) for k, body in enumerate(model.bodies) if can_move(body))
+    if integrator != "RK4" or not points:
+        return parts
+    drags = [load for load in model.loads if isinstance(load, Drag)]
+    loads = tuple(load for load in model.loads if load not in drags)
+    return parts._replace(model=model._replace(loads=loads), drag=sum(load.k for load in drags))
 
 
 # ---------------------------------------------------------------------------------------------- the XML of a Model
@@ -126,6 +162,8 @@ def own(parts, k, place):
 def element(parts, k):
     """Return the XML of body k and of all that hang on it."""
     above, body = parts.above[k][0], parts.model.bodies[k]
+    if only_holds(parts.model, k):
+        return sites(parts, k)
     place, turn = own(parts, above, parts.start.x[k]), frame(parts, above).T @ frame(parts, k)
     inside = ""
     if can_move(body):
@@ -136,16 +174,21 @@ def element(parts, k):
             f'{sites(parts, k)}{below}</body>')
 
 
+def slides(parts, k):
+    """Return whether a body that hangs on nothing slides along axes: in the plane, or where it cannot turn."""
+    return parts.space.flat or not can_turn(parts.model.bodies[k])
+
+
 def joints(parts, k):
     """Return the XML of the coordinates of body k."""
     n, body, own_axes = parts.above[k][1], parts.model.bodies[k], frame(parts, k).T
-    if n is None and not parts.space.flat:
+    if n is None and not slides(parts, k):
         return f'<freejoint name="j{k}"/>'
     if n is None:
-        slides = "".join(f'<joint name="s{k}{c}" type="slide" axis="{text(own_axes[:, axis])}"/>'
-                         for c, axis in enumerate((0, 2)))
-        turns = f'<joint name="j{k}" type="hinge" axis="0 -1 0"/>' if np.isfinite(body.inertia) else ""
-        return slides + turns
+        damping = f'damping="{text(parts.drag)}"' if parts.drag else ""
+        ways = "".join(f'<joint name="s{k}{c}" type="slide" axis="{text(own_axes[:, axis])}" {damping}/>'
+                       for c, axis in enumerate((0, 2) if parts.space.flat else (0, 1, 2)))
+        return ways + (f'<joint name="j{k}" type="hinge" axis="0 -1 0"/>' if can_turn(body) else "")
     joint = parts.model.joints[n]
     if isinstance(joint, Weld):
         return ""
@@ -184,21 +227,30 @@ def lines(model):
     return [(f"l{n}", spring) for n, spring in enumerate(model.springs)] + rods
 
 
+def site_names(model):
+    """Return {(number of a body, place on it): name of the point} of all points where springs and rods end."""
+    ends = [end for _, line in lines(model) for end in ((line.a, line.place_a), (line.b, line.place_b))]
+    return {end: f"p{n}" for n, end in enumerate(dict.fromkeys(ends))}
+
+
 def sites(parts, k):
-    """Return the XML of the points of body k where springs and rods end."""
-    return "".join(f'<site name="{name}{end}" pos="{text(parts.space.point(place))}"/>'
-                   for name, line in lines(parts.model)
-                   for end, number, place in (("a", line.a, line.place_a), ("b", line.b, line.place_b)) if number == k)
+    """Return the XML of the points of body k where springs and rods end; they are the world's where it is no more."""
+    base, R = np.zeros(3), np.eye(3)
+    if k != WORLD and only_holds(parts.model, k):
+        base, R = parts.space.point(parts.start.x[k]), frame(parts, k)
+    return "".join(f'<site name="{name}" pos="{text(base + R @ parts.space.point(place))}"/>'
+                   for (number, place), name in site_names(parts.model).items() if number == k)
 
 
 def strings(parts, dt):
     """Return the XML (tendons, constraints) of springs and rods."""
-    tendons, equal = "", ""
+    tendons, equal, names = "", "", site_names(parts.model)
     for name, line in lines(parts.model):
         rod = isinstance(line, Distance)
         more = "" if rod else (f'springlength="{text(line.rest)}" stiffness="{text(line.k)}" '
                                f'damping="{text(line.c)}"')
-        tendons += f'<spatial name="{name}" {more}><site site="{name}a"/><site site="{name}b"/></spatial>'
+        tendons += (f'<spatial name="{name}" {more}><site site="{names[line.a, line.place_a]}"/>'
+                    f'<site site="{names[line.b, line.place_b]}"/></spatial>')
         equal += f'<tendon tendon1="{name}" solref="{text(2.0 * dt)} 1"/>' if rod else ""
     return tendons, equal
 
@@ -226,13 +278,13 @@ def first_velocities(parts, world, data):
         if not can_move(body):
             continue
         rate = start.omega[k] - (0.0 if above == WORLD else start.omega[above])
-        if n is None and not parts.space.flat:
+        if n is None and not slides(parts, k):
             at = world.joint(f"j{k}").dofadr[0]
             data.qvel[at:at + 3], data.qvel[at + 3:at + 6] = start.v[k], frame(parts, k).T @ start.omega[k]
         elif n is None:
-            for c in (0, 1):
-                data.qvel[world.joint(f"s{k}{c}").dofadr[0]] = start.v[k][c]
-            if np.isfinite(body.inertia):
+            for c, speed in enumerate(start.v[k]):
+                data.qvel[world.joint(f"s{k}{c}").dofadr[0]] = speed
+            if can_turn(body):
                 data.qvel[world.joint(f"j{k}").dofadr[0]] = start.omega[k]
         elif isinstance(parts.model.joints[n], BallJoint):
             at = world.joint(f"j{k}").dofadr[0]
@@ -249,7 +301,29 @@ def seen(parts, world, data, order):
         mujoco.mj_objectVelocity(world, data, mujoco.mjtObj.mjOBJ_XBODY, i, velocity, 0)
         both.append(velocity.copy())
     both = np.array(both)
-    return parts.space.back(data.xpos[order], data.xquat[order], both[:, 3:], both[:, :3])
+    now = parts.space.back(data.xpos[order], data.xquat[order], both[:, 3:], both[:, :3])
+    for k in range(len(order)):
+        if only_holds(parts.model, k):
+            now.x[k], now.q[k] = parts.start.x[k], parts.start.q[k]
+    return now
+
+
+def forced_by(parts, world, data, order):
+    """Return the function that adds forces of floats on free bodies in every stage of a step; None for other loads."""
+    forces, rows = forces_of(parts.model, springs=False), []
+    if not forces or not all(is_free(parts, k) for k in forces):
+        return None
+    for k, (F, of) in forces.items():
+        first = world.joint(f"s{k}0" if slides(parts, k) else f"j{k}").dofadr[0]
+        own = slice(first, first + parts.model.d)
+        rows.append((F, of, data.xpos[order[k]], data.qvel[own], data.qfrc_passive[own]))
+    along = slice(None, None, 2 if parts.space.flat else 1)
+
+    def load(world, data):
+        for F, of, x, v, push in rows:
+            push += (F(x.tolist()[along]) if of == "x" else F(v.tolist()) if of == "v" else F(data.time) if of == "t"
+                     else F(x.tolist()[along], v.tolist()))
+    return load
 
 
 def pushed_by(parts, world, order):

@@ -19,6 +19,7 @@ ARCHIVE = "../workbook.zip"                                          # from Pyod
 RUNNING = Path("/drive/.running")                                    # the cell that runs; a kernel that hangs leaves it
 OLDER = Path("/drive/older")                                         # lessons that `bring_back` has replaced
 REPORT = "../../../validation.html"                                  # from Pyodide's own folder, in the book
+PAGES = "../../../notebooks/"                                        # the same of its executed notebooks
 READY = ("The workbook is ready ({seconds:.0f} s). Edit and save the files in <code>lessons/</code>. They stay in this "
          "browser, also when you reload the page.<br>If a cell never ends, restart the kernel (<b>⟳</b>, above the "
          "notebook) and run this cell again. Your files are kept.<br>Here your code runs as plain Python, and "
@@ -42,6 +43,7 @@ async def start():
         unpack(await response.bytes())
         watch(get_ipython())
     os.environ["WORKBOOK_LESSONS"] = str(LESSONS)
+    os.environ["WORKBOOK_PAGES"] = urljoin(place_of_pyodide(), PAGES)
     import validate.notebook  # noqa: F401  here, so that the first picture does not take all the time
     ready = READY.format(seconds=time.monotonic() - began, report=urljoin(place_of_pyodide(), REPORT))
     display(HTML(f"<p>{ready}</p>{left_over()}"))

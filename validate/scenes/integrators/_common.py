@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_positive
-from validate.engines import mujoco
-from validate.engines.integrators import bullet_point, pymunk_point
+from solutions.checks import BadInput
+from solutions.support.model import Body, Force, make_model, start_of
 from validate.methods import (
     BLANES_MOAN,
     EXPLICIT,
@@ -22,8 +21,9 @@ from validate.methods import (
 from validate.reference.integrators import EVEN, FINEST, FINEST_RK4, early_limit, kepler_limits, perihelion
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_NEW_FORCE, OLD_VELOCITY_OLD_FORCE
 from validate.scene import LATE_LEAPFROG, MUJOCO, PYBULLET, PYMUNK, engine, ours
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 
+BY_DEFAULT = {"maximal": False, "damped": True}      # settings of pybullet that are those of createMultiBody
 MOST_OF_ORDER_4 = 20_000     # steps of an engine of order 4 around a sun; half of them in a quick run
 
 
@@ -44,66 +44,50 @@ def damped(law):
 # ---------------------------------------------------------------------------------------------- points
 
 class Point(NamedTuple):
-    """A point that starts in the origin, under gravity and a force that depends on its velocity alone."""
-    velocity: Callable       # p → (2,) at the start [m/s]
-    gravity: Callable        # p → (2,) [m/s²]
-    force: Callable          # p → force(x, v) → (2,) [N], in floats: an engine calls it in each step
-    mass: Callable = lambda p: 1.0       # p → [kg]
+    """A point of the plane as a Model: its start, and the engines that move it."""
+    model: Callable          # p → Model of one body
     d: int = 2               # coordinates that are observed
 
     def start(self, *positive):
         """Return start(p) → (x, v); it raises BadInput unless these parameters are positive."""
         def start(p):
-            for name in positive:
-                check_positive(name, getattr(p, name))
-            return np.zeros(self.d), np.array(self.velocity(p)[:self.d])
+            check_positives(p, *positive)
+            now = start_of(self.model(p))
+            return now.x[0, :self.d], now.v[0, :self.d]
         return start
 
     def in_space(self, p):
         """Return the same motion with unused coordinates."""
-        return (np.zeros(3), np.array([*self.velocity(p), 0.0])), p
+        now = start_of(self.model(p))
+        return (np.append(now.x[0], 0.0), np.append(now.v[0], 0.0)), p
 
-    def read(self, x):
-        """Return the coordinates of an engine's position that are observed."""
-        return np.array(x[:self.d])
+    def read(self, state, p):
+        """Return the coordinates that are observed."""
+        return state.x[0, :self.d]
 
-    def pymunk(self, p, dt, **damping):
-        """Make pymunk's world: apply the force before each step, or let the space damp."""
-        push = {} if damping else {"force": self.force(p)}
-        return pymunk_point(self.gravity(p), self.mass(p), self.velocity(p), self.read, dt, **push, **damping)
-
-    def pybullet(self, p, dt, default=False, **damping):
-        """Make pybullet's world: apply the force before each step, or let the body damp."""
-        push = {} if damping else {"force": self.force(p)}
-        return bullet_point((*self.gravity(p), 0.0), self.mass(p), (0.0,) * 3, (*self.velocity(p), 0.0), self.read,
-                            dt, default=default, **push, **damping)
+    def built(self, product, **settings):
+        """Return make(p, dt) of an engine's runner."""
+        return built(product, self.model, self.read, **settings)
 
     def in_pymunk(self, motion, limits):
         """Return the runner of pymunk."""
-        return engine(PYMUNK, "", self.pymunk, "force applied each step",
+        return engine(PYMUNK, "", self.built(PYMUNK), "force applied each step",
                       order=1, limit=limits, predicted=motion.predict(OLD_VELOCITY_OLD_FORCE))
 
     def in_pybullet(self, motion, limits):
         """Return the runner of pybullet."""
-        return engine(PYBULLET, "", self.pybullet, "useMaximalCoordinates=1, no damping; force applied each step",
+        return engine(PYBULLET, "", self.built(PYBULLET),
+                      "useMaximalCoordinates=1, no damping; force applied each step",
                       order=1, limit=limits, predicted=motion.predict(NEW_VELOCITY_OLD_FORCE))
 
-    def mujoco(self, p, dt, damping=None, wind=None):
-        """Call the force in every stage, or let the joints damp, damping(p) [N s/m], and a wind(p) [N] push."""
-        gravity, m = np.append(self.gravity(p), 0.0), self.mass(p)
-        own = {"force": self.force(p)} if damping is None else {"damping": damping(p)}
-        if wind is not None:
-            gravity[:2] += np.array(wind(p)) / m
-        return mujoco.points([m], np.zeros((1, 2)), [self.velocity(p)], dt, lambda x: self.read(x[0]), gravity, **own)
-
-    def in_mujoco(self, motion, limits, settings="force in mjcb_passive, in every stage", **own):
-        """Return the runner of MuJoCo; own: damping and wind of `mujoco`."""
-        return engine(MUJOCO, "", partial(self.mujoco, **own), f"slide joints, {settings}; Runge–Kutta 4",
+    def in_mujoco(self, motion, limits, settings="force in mjcb_passive, in every stage"):
+        """Return the runner of MuJoCo."""
+        return engine(MUJOCO, "", self.built(MUJOCO), f"slide joints, {settings}; Runge–Kutta 4",
                       order=4, limit=limits, predicted=motion.predict(RK4.table))
 
     def in_default_pybullet(self, motion, limits, departure):
         """Return the runner of pybullet's default body, which is slowed by its own damping."""
-        return engine(PYBULLET, "default", partial(self.pybullet, default=True),
+        return engine(PYBULLET, "default", self.built(PYBULLET, **BY_DEFAULT),
                       "createMultiBody with its defaults; force applied each step",
                       order=1, limit=limits, departure=departure,
                       predicted=motion.predict(NEW_VELOCITY_OLD_FORCE, damped(motion.law), follows=departure.own_law))
@@ -129,6 +113,26 @@ def planet(p):
     return perihelion(p)
 
 
+def planet_model(p):
+    """Make a planet of one kilogram, which a sun in the origin attracts with −μ x/|x|³."""
+    (x, v), strength = planet(p), -p.mu
+
+    def attraction(place):
+        x, y = place
+        pull = strength / (x * x + y * y) ** 1.5
+        return pull * x, pull * y
+    return make_model([Body(tuple(x), 1.0, v=tuple(v))], (0.0, 0.0), loads=[Force(0, attraction, "x")])
+
+
+def read_planet(state, p):
+    """Return the place of the planet."""
+    return state.x[0]
+
+
+PLANET = {"model": planet_model, "read": read_planet}       # fields of a Scene, and what `built` takes
+planet_world = partial(built, **PLANET)
+
+
 def planet_in_space(p):
     """Return the same motion with an unused z coordinate."""
     x, v = planet(p)
@@ -140,14 +144,14 @@ def sun_and_planet(observed, p):
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
-def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_steps, compiled=EXPLICIT):
+def planet_runners(motion, methods, most_steps, compiled=EXPLICIT, world=planet_world):
     """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
 
     The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
     symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
-    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large; MuJoCo's needs none
-    most_steps             of an engine of order 1
-    compiled               methods that a quick run compiles
+    most_steps    of an engine of order 1
+    compiled      methods that a quick run compiles
+    world         (Product, ahead) → make(p, dt) of a runner, whose first velocity is ahead dt too old
     """
     T, limits = motion.T, kepler_limits(motion.T)
     symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
@@ -158,13 +162,13 @@ def planet_runners(motion, methods, pymunk_make, bullet_make, mujoco_make, most_
     return (
         *(ours(m, limit=limits, predicted=errors[m], order=LATE_LEAPFROG if m is SYMPLECTIC_EULER else m.order,
                in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in compiled) for m in errors),
-        engine(PYMUNK, "", pymunk_make, "attraction in velocity_func",
+        engine(PYMUNK, "", world(PYMUNK), "attraction in velocity_func",
                order=LATE_LEAPFROG, limit=early_limit(T), predicted=pymunk_errors, most_steps=most_steps),
-        engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
-        engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+        engine(PYMUNK, "leapfrog start", world(PYMUNK, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
+        engine(PYBULLET, "", world(PYBULLET), "useMaximalCoordinates=1, no damping; force applied each step",
                order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
-        engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
-        engine(MUJOCO, "", mujoco_make, "slide joints, attraction in mjcb_passive, in every stage; Runge–Kutta 4",
+        engine(PYBULLET, "leapfrog start", world(PYBULLET, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
+        engine(MUJOCO, "", world(MUJOCO), "slide joints, attraction in mjcb_passive, in every stage; Runge–Kutta 4",
                order=4, limit=limits, predicted=errors[RK4], most_steps=MOST_OF_ORDER_4,
                most_in_quick=MOST_OF_ORDER_4 // 2),
     )

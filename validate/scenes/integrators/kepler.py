@@ -1,12 +1,11 @@
 """A planet orbits its sun sixteen times on an ellipse, and the methods are compared by its final position."""
 
 from solutions.support.orbits import attraction
-from validate.engines.integrators import bullet_planet, mujoco_planet, pymunk_planet
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import Planet, kepler_motion, kepler_position
 from validate.scene import Scene
 from validate.scenes._common import coordinates
-from validate.scenes.integrators._common import planet, planet_in_space, planet_runners, sun_and_planet
+from validate.scenes.integrators._common import PLANET, planet, planet_in_space, planet_runners, sun_and_planet
 
 T = 100.0                    # [s]: sixteen revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 150000, 200000)
@@ -23,10 +22,9 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 SCENE = Scene(
     title="Kepler", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, mujoco_planet,
-                           50_000),
+    runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), 50_000),
     acceleration=lambda lessons: attraction, start=planet, run=run, observe=coordinates(2),
-    truth=kepler_position,
+    truth=kepler_position, **PLANET,
     # of the reference solution: round-off in the energy, v²/2 − μ/r, grows like a phase error to 3e-13
     truth_uncertainty=1e-12,
     published_states=((100.0, (-0.104183204, -0.694741716), 1e-9),),   # then v = (1.236177763, 0.564623251) m/s

@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.support.model import Body, Drag, make_model
 from validate.engines.bullet import hidden_damping
 from validate.reference.schemes import Motion
 from validate.scene import PYBULLET, PYMUNK, Scene, by_order, engine
@@ -33,13 +34,12 @@ def acceleration(t, x, v, p):
     return a
 
 
-def drag(p):
-    """Return force(x, v) → −k m v [N], m one kilogram."""
-    k = -p.k
-    return lambda x, v: (k * v[0], k * v[1])
+def model(p):
+    """Make a pellet of one kilogram."""
+    return make_model([Body((0.0, 0.0), 1.0, v=(p.vx, p.vy))], (0.0, -p.g), loads=[Drag(p.k)])
 
 
-POINT = Point(velocity=lambda p: (p.vx, p.vy), gravity=lambda p: (0.0, -p.g), force=drag)
+POINT = Point(model)
 start = POINT.start("k")
 
 
@@ -84,32 +84,26 @@ def thrown(p):
 
 def own_damping(place):
     """Return the step of an engine with its own damping: the velocity times e^(−k dt), then gravity."""
-    def model(p):
+    def step(p):
         kept = lambda v, h: v * np.exp(-p.k * h) + h * complex(0.0, -p.g)
         return lambda law, t, x, v, h: (x + h * place(v, kept(v, h)), kept(v, h))
-    return model
+    return step
 
 
 MOTION = Motion(T, law, thrown, as_pair, truth, floor_of(limits))
 DAMPED = hidden_damping(acceleration, start)
-
-
-def with_damping(make):
-    """Return make(p, dt) of an engine with its own damping."""
-    return lambda p, dt: make(p, dt, damping=p.k)
-
-
 RUNNERS = (
     *integrator_runners(MOTION, limits),
     POINT.in_pymunk(MOTION, limits),
-    engine(PYMUNK, "own damping", with_damping(POINT.pymunk), "space.damping = e^(−k): the share left after one second",
+    engine(PYMUNK, "own damping", POINT.built(PYMUNK, own_drag=True),
+           "space.damping = e^(−k): the share left after one second",
            order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: old))),
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
-    engine(PYBULLET, "own damping", with_damping(POINT.pybullet),
+    engine(PYBULLET, "own damping", POINT.built(PYBULLET, own_drag=True),
            "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second",
            order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new))),
-    POINT.in_mujoco(MOTION, limits, "damping of the joints", damping=lambda p: p.k),
+    POINT.in_mujoco(MOTION, limits, "damping of the joints"),
 )
 
 SCENE = Scene(
@@ -117,7 +111,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: acceleration, start=start, run=run, observe=coordinates(2),
-    truth=truth,
+    truth=truth, model=model, read=POINT.read,
     # (1 − e^(−kt)) and gt are ten times as large as their difference
     truth_uncertainty=1e-14,
     published_states=((1.97599434, (2.18789655, 0.0), 4e-8),),

@@ -6,15 +6,14 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.integrators import Oscillator, oscillator_acceleration
+from solutions.support.model import WORLD, Body, Spring, make_model, start_of
 from validate.engines.bullet import hidden_damping
-from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.engines.integrators import bullet_point
 from validate.engines.mujoco import points as points_in_mujoco
 from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER, RK4
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
-from validate.scenes._common import ONE_LINK, check_positives, coordinates, floor_of, measured
-from validate.scenes.integrators._common import damped
+from validate.scenes._common import ONE_LINK, built, check_positives, coordinates, floor_of, measured
+from validate.scenes.integrators._common import BY_DEFAULT, damped
 
 T = 2.0                      # [s]: three periods
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -40,9 +39,20 @@ def oscillator(p):
     return Oscillator(float(np.sqrt(p.k / p.m)), float(0.5 * p.c / np.sqrt(p.k * p.m)))
 
 
+def model(p):
+    """Make a mass on a spring whose other end is two metres from its place at rest."""
+    return make_model([Body((p.x0, 0.0), p.m)], (0.0, 0.0),
+                      springs=[Spring(0, WORLD, (0.0, 0.0), (-2.0, 0.0), 2.0, p.k, p.c)])
+
+
+def read(state, p):
+    return state.x[0, :1]
+
+
 def start(p):
     check_positives(p, "m", "k")
-    return np.array([p.x0]), np.zeros(1)
+    now = start_of(model(p))
+    return now.x[0, :1], now.v[0, :1]
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -105,46 +115,26 @@ DAMPED = hidden_damping(lambda t, x, v, p: oscillator_acceleration(t, x, v, osci
 IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # most steps of methods slow in plain Python
 
 
-def pymunk_make(p, dt, ahead=0.0):
-    """Use a DampedSpring of rest length 2 m to a static point.
-
-    Its damper acts as e^(−c dt/m), and its force is that at the new position.
-    """
-    import pymunk
-    space = pymunk_space()
-    body = pymunk.Body(p.m, 1.0)
-    body.position = (p.x0, 0.0)
-    body.velocity = (ahead * dt * oscillator_acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0)
-    space.add(body, pymunk.DampedSpring(space.static_body, body, (-2.0, 0.0), (0.0, 0.0), 2.0, p.k, p.c))
-    return pymunk_world(space, dt, lambda: np.array([body.position.x]))
-
-
-def pybullet_make(p, dt, ahead=0.0, default=False):
-    """Apply the force of the spring and the damper, computed from the state before each step."""
-    v0, k, c = -ahead * dt * oscillator_acceleration(0.0, p.x0, 0.0, oscillator(p)), -p.k, p.c
-    force = lambda x, v: (k * x[0] - c * v[0], 0.0)
-    return bullet_point((0.0,) * 3, p.m, (p.x0, 0.0, 0.0), (v0, 0.0, 0.0), lambda x: np.array(x[:1]), dt, force,
-                        default=default)
-
-
 def mujoco_make(p, dt):
+    """Use one slide joint with stiffness: a spring of a Model is a tendon, and a step then costs 17 % more."""
     return points_in_mujoco([p.m], [[p.x0]], [[0.0]], dt, np.ravel, stiffness=p.k, damping=p.c)
 
 
+world = partial(built, model=model, read=read)
 RUNNERS = (
     *(ours(m, limit=limits, predicted=MOTION.predict(m.table), compiled_in_quick=m in ONE_OF_EACH_ORDER,
            most_in_quick=IN_QUICK.get(m)) for m in INTEGRATORS),
-    engine(PYMUNK, "", pymunk_make, "DampedSpring; no other setting matters without contact",
+    engine(PYMUNK, "", world(PYMUNK), "DampedSpring; no other setting matters without contact",
            order=1, limit=limits, predicted=MOTION.predict(spring_and_damper)),
-    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5),
+    engine(PYMUNK, "leapfrog start", world(PYMUNK, ahead=0.5),
            "first velocity + ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
+    engine(PYBULLET, "default", world(PYBULLET, **BY_DEFAULT), "createMultiBody with its defaults",
            order=1, limit=limits, departure=DAMPED,
            predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped(law), follows=DAMPED.own_law)),
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+    engine(PYBULLET, "", world(PYBULLET), "useMaximalCoordinates=1, no damping; force applied each step",
            order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
-    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5),
+    engine(PYBULLET, "leapfrog start", world(PYBULLET, ahead=0.5),
            "first velocity − ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
     engine(MUJOCO, "", mujoco_make, "slide joint with stiffness and damping; Runge–Kutta 4",
@@ -169,7 +159,7 @@ SCENE = Scene(
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.integrators.oscillator_acceleration,
     start=start, run=run, observe=coordinates(1),
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=read,
     points=points, links=ONE_LINK,
     uses=("one coordinate", "one step function"),
     ablations={

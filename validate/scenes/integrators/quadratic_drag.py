@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.support.model import Body, Force, make_model
 from validate.engines.bullet import hidden_damping
 from validate.reference.schemes import Motion
 from validate.scene import Scene, by_order
@@ -30,13 +31,14 @@ def acceleration(t, x, v, p):
     return a
 
 
-def drag(p):
-    """Return force(x, v) → −c |v| v [N]."""
+def model(p):
+    """Make a body that falls along x, with the force −c |v| v."""
     c = -p.c
-    return lambda x, v: (c * abs(v[0]) * v[0], 0.0)
+    drag = Force(0, lambda v: (c * abs(v[0]) * v[0], 0.0), "v")
+    return make_model([Body((0.0, 0.0), p.m)], (p.g, 0.0), loads=[drag])
 
 
-POINT = Point(d=1, mass=lambda p: p.m, velocity=lambda p: (0.0, 0.0), gravity=lambda p: (p.g, 0.0), force=drag)
+POINT = Point(model, d=1)
 start = POINT.start("m", "c", "g")
 
 
@@ -111,7 +113,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: acceleration, start=start, run=run, observe=coordinates(1),
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=POINT.read,
     # the depth; the speed is then 9.852684396 m/s
     published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,

@@ -5,9 +5,8 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.support.model import Body, make_model, start_of
 from validate.engines.bullet import hidden_damping
-from validate.engines.integrators import bullet_point, pymunk_point
-from validate.engines.mujoco import points as points_in_mujoco
 from validate.methods import (
     AVERAGE_VELOCITY,
     EULER,
@@ -20,7 +19,8 @@ from validate.methods import (
 )
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Prediction, Scene, by_order, engine, in_substeps, ours
-from validate.scenes._common import coordinates, measured, round_off
+from validate.scenes._common import built, coordinates, measured, round_off
+from validate.scenes.integrators._common import BY_DEFAULT
 
 T = 10.0                     # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -47,8 +47,17 @@ def acceleration(t, x, v, p):
     return a
 
 
+def model(p):
+    return make_model([Body((0.0, 0.0, 0.0), 1.0, v=(p.vx, p.vy, p.vz))], (0.0, 0.0, -p.g))
+
+
+def read(state, p):
+    return state.x[0]
+
+
 def start(p):
-    return np.zeros(3), np.array([p.vx, p.vy, p.vz])
+    now = start_of(model(p))
+    return now.x[0], now.v[0]
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
@@ -99,25 +108,9 @@ DAMPED = hidden_damping(acceleration, start)
 MOTION = Motion(T, damped_law, start, lambda x, p: x, DAMPED.own_law, rounded)
 
 
-def pymunk_make(p, dt, ahead=0.0):
-    """Use the vertical plane of the throw; positions are rotated back into space."""
-    heading, speed = np.arctan2(p.vy, p.vx), np.hypot(p.vx, p.vy)
-    read = lambda x: np.array([np.cos(heading) * x[0], np.sin(heading) * x[0], x[1]])
-    return pymunk_point((0.0, -p.g), 1.0, (speed, p.vz - ahead * dt * p.g), read, dt)
-
-
-def pybullet_make(p, dt, ahead=0.0, default=False):
-    """Make a free body under the engine's own gravity."""
-    v = (p.vx, p.vy, p.vz + ahead * dt * p.g)
-    return bullet_point((0.0, 0.0, -p.g), 1.0, (0.0, 0.0, 0.0), v, np.array, dt, default=default)
-
-
-def mujoco_make(p, dt):
-    return points_in_mujoco([1.0], np.zeros((1, 3)), [start(p)[1]], dt, lambda x: x[0], (0.0, 0.0, -p.g))
-
-
+world = partial(built, model=model, read=read)
 EXACTLY = {"order": EXACT, "limit": limits, "predicted": mean_velocity}
-NEW_VELOCITY = engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping",
+NEW_VELOCITY = engine(PYBULLET, "", world(PYBULLET), "useMaximalCoordinates=1, no damping",
                       order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(EULER, limit=limits, predicted=old_velocity),
@@ -127,15 +120,15 @@ RUNNERS = (
     # the implicit methods take half of the scene's time to compile, and add no information here
     ours(IMPLICIT_EULER, limit=limits, predicted=new_velocity, in_quick=False),
     ours(IMPLICIT_MIDPOINT, in_quick=False, **EXACTLY),
-    engine(PYMUNK, "", pymunk_make, "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
-    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
-    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody with its defaults",
+    engine(PYMUNK, "", world(PYMUNK), "default settings: no damping", order=1, limit=limits, predicted=old_velocity),
+    engine(PYMUNK, "leapfrog start", world(PYMUNK, ahead=0.5), "first velocity + ½ a dt", **EXACTLY),
+    engine(PYBULLET, "default", world(PYBULLET, **BY_DEFAULT), "createMultiBody with its defaults",
            order=1, limit=damped_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, finest=1000),
            departure=DAMPED),
     NEW_VELOCITY,
     in_substeps(NEW_VELOCITY, 10),
-    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
-    engine(MUJOCO, "", mujoco_make, "slide joints; Runge–Kutta 4", **EXACTLY),
+    engine(PYBULLET, "leapfrog start", world(PYBULLET, ahead=0.5), "first velocity − ½ a dt", **EXACTLY),
+    engine(MUJOCO, "", world(MUJOCO), "slide joints; Runge–Kutta 4", **EXACTLY),
 )
 
 
@@ -150,7 +143,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: acceleration, start=start, run=run, observe=coordinates(3),
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     # by hand, exactly: only round-off may differ
     published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),
     points=points,

@@ -23,8 +23,8 @@ from validate.reference.pbd import (
 )
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
-from validate.scenes._common import ONE_LINK, check_positives, floor_of
-from validate.scenes.exams import built, iftomm
+from validate.scenes._common import ONE_LINK, built, check_positives, floor_of
+from validate.scenes.exams import iftomm
 
 T = 5.0                      # [s]: two swings
 STEPS = (100, 200, 300, 400, 1000, 4000, 10000)

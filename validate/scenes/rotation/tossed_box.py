@@ -19,9 +19,8 @@ from validate.reference.orientation import quaternion_matrix
 from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
 from validate.scene import MUJOCO, PYBULLET, Exam, Scene, by_order, engine, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives, measured
+from validate.scenes._common import built, check_positives, measured
 from validate.scenes.drawing import axes_links, axes_seen, pose
-from validate.scenes.exams import built
 
 T = 1.0                      # [s]: it has turned over nearly once
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)

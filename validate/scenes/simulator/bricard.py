@@ -14,9 +14,9 @@ from validate.methods import JOINTS_IN_SPACE
 from validate.reference.exams import bricard_angle, predict_bricard
 from validate.reference.mechanisms import AXES, CUBE, bricard, bricard_motion, bricard_state
 from validate.scene import MUJOCO, PYBULLET, Scene, by_order, engine, no_limit, ours
-from validate.scenes._common import check_positives, constantly
+from validate.scenes._common import built, check_positives, constantly
 from validate.scenes.drawing import seen
-from validate.scenes.exams import built, iftomm
+from validate.scenes.exams import iftomm
 from validate.scenes.simulator._common import joined_3d
 
 T = 0.5                      # [s]

@@ -16,8 +16,8 @@ from validate.reference.exams import EVEN, composed, four_bars_angle, four_bars_
 from validate.reference.mechanisms import four_bars, four_bars_motion
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, no_limit, ours
-from validate.scenes._common import check_positives
-from validate.scenes.exams import built, iftomm
+from validate.scenes._common import built, check_positives
+from validate.scenes.exams import iftomm
 from validate.scenes.simulator._common import hinged_model, joined_2d
 
 T = 2.0                      # [s]: the cranks lie flat for the first time after 0.72 s

@@ -18,9 +18,8 @@ from validate.methods import IN_COORDINATES, PARTS_OF_LOOP
 from validate.reference.exams import velocity_error
 from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, Exam, Prediction, Scene, engine, no_limit, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import circle, outlines, pose
-from validate.scenes.exams import built
 
 T = 4.0                      # [s]: as long as the published problem lasts
 STEPS = (8, 16, 40, 80, 160, 400, 800)

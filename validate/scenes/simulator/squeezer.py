@@ -25,8 +25,7 @@ from validate.reference.exams import (
 from validate.reference.mechanisms import ANDREWS_END, FIXED, REST, STIFFNESS, TORQUE
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Exam, Scene, by_order, engine, no_limit, ours
-from validate.scenes._common import check_positives, constantly
-from validate.scenes.exams import built
+from validate.scenes._common import built, check_positives, constantly
 from validate.scenes.simulator._common import hinged_model, joined_2d
 
 T = 0.03                     # [s]: the crank makes two and a half revolutions

@@ -3,12 +3,11 @@
 import numpy as np
 
 from solutions.springs import make_spring_network
-from validate.engines import mujoco
-from validate.engines.springs import pymunk_net
+from solutions.support.model import Body, Drag, Spring, make_model
 from validate.methods import EXPLICIT, IMPLICIT_MESH, RK4
 from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
 from validate.scene import MUJOCO, PYMUNK, engine, ours
-from validate.scenes._common import check_positives, measured
+from validate.scenes._common import built, check_positives, measured
 from validate.scenes.integrators._common import integrator_runners
 
 
@@ -23,6 +22,31 @@ def start_of(net, positive):
 def in_space(net):
     """Return p → (state, p) of the ReferenceNetwork net(p): the same motion with three coordinates."""
     return lambda p: (state_of(net(p).padded(), make_spring_network), p)
+
+
+def model_of(net):
+    """Return model(p) of the ReferenceNetwork net(p) in the plane.
+
+    All masses are equal, so that the wind, which pushes each of them alike, is a part of gravity.
+    """
+    def model(p):
+        one = net(p)
+        bodies = [Body(tuple(x), one.m if free else np.inf, v=tuple(v)) for x, v, free in zip(one.x, one.v, one.free())]
+        springs = [Spring(j, i, (0.0, 0.0), (0.0, 0.0), rest, one.k, one.k_d)
+                   for (i, j), rest in zip(one.pairs.tolist(), one.rest) if not {i, j} <= set(one.fixed)]
+        return make_model(bodies, one.gravity + one.wind / one.m, springs=springs,
+                          loads=[Drag(one.k_v)] if one.k_v else [])
+    return model
+
+
+def read_net(state, p):
+    """Return the positions of all nodes."""
+    return state.x.ravel()
+
+
+def net_world(net, product, **settings):
+    """Return make(p, dt) of an engine's runner."""
+    return built(product, model_of(net), read_net, **settings)
 
 
 def observe_net(state, p):
@@ -46,6 +70,8 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
         "lesson": "springs",
         "start": start_of(net, positive),
         "observe": observe_net,
+        "model": model_of(net),
+        "read": read_net,
         "points": net_points,
         "links": lambda p: net(p).pairs.tolist(),
         "link_look": "spring",
@@ -68,10 +94,10 @@ def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
         *integrator_runners(motion, limits, compiled=EXPLICIT),
         ours(IMPLICIT_MESH, limit=limits, predicted=motion.predict_model(net_model(net, implicit_net)),
              **mesh_in_quick),
-        engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), "DampedSpring between point masses",
+        engine(PYMUNK, "", net_world(net, PYMUNK, own_drag=True), "DampedSpring between point masses",
                finer_in_full=finer_in_full, order=1, limit=limits,
                predicted=motion.predict_model(net_model(net, pymunk_net_model))),
-        engine(MUJOCO, "", lambda p, dt: mujoco.net(net(p), dt, np.ravel),
+        engine(MUJOCO, "", net_world(net, MUJOCO),
                "point masses on slide joints, tendons as springs; Runge–Kutta 4",
                order=4, limit=limits, predicted=motion.predict(RK4.table), most_steps=5000),
     )

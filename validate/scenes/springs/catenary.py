@@ -7,11 +7,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from validate.check import states
-from validate.engines.bullet import Bullet
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
-from validate.reference.springs import ReferenceNetwork, forces, motion, net_limits, net_steps, rest_positions
-from validate.scene import PYBULLET, EngineRun, Scene, engine
-from validate.scenes.springs._common import net_fields, net_runners
+from validate.reference.springs import ReferenceNetwork, motion, net_limits, net_steps, rest_positions
+from validate.scene import PYBULLET, Scene, engine
+from validate.scenes.springs._common import net_fields, net_runners, net_world
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -88,30 +87,11 @@ limits = net_limits(net, T, truth, UNCERTAINTY)
 MOTION = net_steps(net, T, truth, UNCERTAINTY)
 
 
-def pybullet_make(p, dt):
-    """Use one free body per point, with all forces from the state before each step.
-
-    pybullet has no spring between two rigid bodies.
-    """
-    chain, bullet = net(p).padded(), Bullet(dt)
-    B, (x, v) = chain.spring_matrix(), (chain.x.copy(), chain.v.copy())
-    bodies = {n: bullet.point_mass(p.m, x[n], v[n]) for n in np.flatnonzero(chain.free())}
-
-    def step():
-        for n, force in enumerate(forces(x, v, chain, B)):
-            if n in bodies:
-                bullet.push(bodies[n], force, x[n])
-        bullet.step()
-        for n, body in bodies.items():
-            x[n], v[n] = bullet.position(body), bullet.velocity(body)
-
-    return EngineRun(step, lambda: x[:, :2].ravel(), bullet.close)
-
-
 RUNNERS = (
     *net_runners(net, MOTION, limits, finer_in_full=(20_000, 50_000), in_quick=False),
     # forces come from the state before a step, then the new velocity moves the points
-    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; spring forces applied each step",
+    engine(PYBULLET, "", net_world(net, PYBULLET),
+           "useMaximalCoordinates=1, no damping; spring forces applied each step",
            order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
 )
 

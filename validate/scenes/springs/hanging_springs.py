@@ -151,7 +151,7 @@ def sanity_checks():
 
 SCENE = Scene(
     title="Hanging springs",
-    **net_fields(net, ("springs", "m", "k", "rest"), observe=observe, points=points,
+    **net_fields(net, ("springs", "m", "k", "rest"), observe=observe, points=points, model=None, read=None,
                  uses=("one coordinate", "springs with dampers", "one step function"),
                  ablations={"the second and third dimension": in_space(net),
                             **measured("rotation", "contact between masses")}),

@@ -1,5 +1,6 @@
 """Two stars attract each other and circle their common centre of mass, each on an ellipse of its own."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS
 from validate.reference.integrators import kepler_motion, kepler_position
-from validate.scene import EngineRun, Scene
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, EngineRun, Scene
 from validate.scenes._common import check_positives
 from validate.scenes.integrators._common import planet, planet_runners
 
@@ -140,6 +141,12 @@ def mujoco_stars(p, dt):
     return mujoco.points((p.m_a, p.m_b), *start(p), dt, np.ravel, force=pull)
 
 
+def by_hand(product, **settings):
+    """Return make(p, dt) of an engine's runner: a Model has no force between two bodies but a spring."""
+    makes = {PYMUNK: pymunk_stars, PYBULLET: bullet_stars, MUJOCO: mujoco_stars}
+    return partial(makes[product], **settings)
+
+
 def points(observed, p):
     """Draw both stars."""
     return np.reshape(observed, (2, 2))
@@ -164,7 +171,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Two stars", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, mujoco_stars, 20_000, compiled=()),
+    runners=planet_runners(MOTION, INTEGRATORS, 20_000, compiled=(), world=by_hand),
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks, points=points,

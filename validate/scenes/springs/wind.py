@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.support.model import Body, Drag, make_model
 from validate.check import states
 from validate.reference.schemes import Motion
 from validate.scene import Scene, by_order
@@ -37,13 +38,12 @@ def acceleration(lessons):
     return blown
 
 
-def push(p):
-    """Return force(x, v) of the air [N]."""
-    wind, k_v = -p.wind, p.k_v
-    return lambda x, v: (wind - k_v * v[0], -k_v * v[1])
+def model(p):
+    """Make the ball.  The wind pushes with a constant force, which is a part of gravity here."""
+    return make_model([Body((0.0, 0.0), p.m, v=(p.vx, p.vy))], (-p.wind / p.m, -p.g), loads=[Drag(p.k_v)])
 
 
-POINT = Point(mass=lambda p: p.m, velocity=lambda p: (p.vx, p.vy), gravity=lambda p: (0.0, -p.g), force=push)
+POINT = Point(model)
 start = POINT.start("m", "k_v")
 
 
@@ -88,8 +88,7 @@ MOTION = Motion(T, law, thrown, as_pair, truth, floor_of(limits))
 
 RUNNERS = (
     *integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits),
-    POINT.in_mujoco(MOTION, limits, "damping of the joints, wind as a part of gravity",
-                    damping=lambda p: p.k_v, wind=lambda p: (-p.wind, 0.0)),
+    POINT.in_mujoco(MOTION, limits, "damping of the joints, wind as a part of gravity"),
 )
 
 
@@ -107,7 +106,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=coordinates(2),
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=POINT.read,
     sanity_checks=sanity_checks, points=one_point,
     uses=("one point in the plane", "the force of the air", "one step function"),
     ablations={
