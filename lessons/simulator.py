@@ -17,6 +17,7 @@ Given in support/simulator.py: a loop with joints.  Given in support/invariants.
 import numpy as np
 
 from solutions.checks import check_end, check_load, check_shape, checked_run, float_copy
+from solutions.collisions import gjk
 from solutions.contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from solutions.given.bodies import (
     Bodies,

@@ -17,6 +17,7 @@ Given in support/simulator.py: a loop with joints.  Given in support/invariants.
 import numpy as np
 
 from .checks import check_end, check_load, check_shape, checked_run, float_copy
+from .collisions import gjk
 from .contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from .given.bodies import (
     Bodies,

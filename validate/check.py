@@ -50,7 +50,7 @@ class Allowed(NamedTuple):
     slop: float = 0.0        # overlap up to which its solver lets bodies approach: a named tolerance [m]
     recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
     rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
-    rests: bool = True       # False: bodies may still move when the run ends, so that nothing is judged at rest
+    rests: bool = True       # False: bodies meet on the way, and may still move when the run ends
 
 
 class Whose(StrEnum):

@@ -119,9 +119,9 @@ class Runner:
         limit = self.limit(p, dt)
         return limit[self.order] if isinstance(limit, dict) else limit
 
-    def judged_by(self, steps):
+    def judged_by(self, p, steps):
         """Return what the laws of contact allow it in its run with so many steps; None where that is not watched."""
-        return self.laws if self.watched in (None, steps) else None
+        return self.laws if self.watched in (None, steps) and not self.is_reference(p) else None
 
     def prediction(self, p, dt):
         """Return the Prediction of its error with steps of dt, or None."""
@@ -279,7 +279,9 @@ def field_names(required=False):
 
 
 def no_limit(p, dt):
-    """No theory says how far some curves may be off.  Their errors are shown and not judged."""
+    """No theory says how far some curves may be off.  Their errors are shown.  Where the scene has laws of contact for
+    them, these judge what is reported of their steps; all others are not judged.
+    """
     return np.inf
 
 

@@ -30,6 +30,8 @@ from ..support.hulls import (
 from ..support.tuples import minus, plus, row, scaled
 from ..vectors import dot
 
+TOUCHING = 1e-7              # distance over the size below which gjk, whose |v|² is rounded, may see bodies overlap [-]
+
 
 def hull_bounds(x, q, shapes):
     """Return (low, high, turn) of polyhedra and rounded boxes."""
@@ -123,7 +125,7 @@ def hull_pair(x, hulls, shapes, i, j, reach, y, z, c, m):
         if end > m:
             return end
     p, q, n, gap = nearest_points(hulls, i, j)
-    if gap > SAME * size:
+    if gap > TOUCHING * size:
         return put_point(c, m, scaled(0.5, plus(p, 1.0, q)), n, gap) if gap <= reach else m
     return point_on_face(hulls, f, row(hulls.corners, corner), 0.0, sign, reach, c, m)
 
@@ -137,7 +139,7 @@ def round_on_hull(x, hulls, shapes, i, j, sign, reach, c, m):
     if widest[0] - r > reach:
         return m
     _, q, n, distance = nearest_points(hulls, j, i)
-    if distance <= SAME * size:
+    if distance <= TOUCHING * size:
         return round_in_hull(x, hulls, i, j, widest, r, size, sign, reach, c, m)
     gap = distance - r
     if gap > reach:

@@ -3,7 +3,7 @@
 Two polyhedra that touch do so with a face and corners, or with two edges.  So the axis that separates them best is the
 normal of a face, or across two edges.  Of all pairs of edges only those count that could touch: those whose normals,
 as arcs on the unit sphere between the normals of their faces, cross.
-*Source:* Gregorius 2013, “The separating axis test between convex polyhedra”; lesson 6 for the theorem and the clipping.
+*Source:* Gregorius 2013, “The separating axis test between convex polyhedra”; lesson 6 for theorem and clipping.
 """
 
 import numpy as np
@@ -14,8 +14,8 @@ from .convex_3d import SAME, Hulls, part_between, put_point
 from .shapes import Ball, Box, Capsule, face_planes, hull_faces
 from .tuples import across, axis, minus, plus, put, row, scaled
 
-# Contacts of two bodies at most [-]: of a polygon with ever more corners, 16 that are spread over its rim leave 0.98 of
-# its inner radius, within which a body does not tip.
+# Contacts of two bodies at most [-]: of a regular polygon with more corners, 16 leave at least 0.9 of its inner radius,
+# within which a body does not tip.
 MOST_POINTS = 16
 FREE = 0                     # stands for a face of an edge that has none
 

@@ -11,7 +11,6 @@ numbers of the other body are those of the pair.  pymunk and pybullet have the s
 *Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -100,7 +99,7 @@ class Force(NamedTuple):
     It is a load like any other function, but engines need not read the state of all bodies for it.
     """
     a: int                   # number of a body
-    F: Callable              # → (d,) [N], of what `of` names, in this order
+    F: object                # a function → (d,) [N], of what `of` names, in this order
     of: str                  # "t": the time [s]; "x": the place of the body [m]; "v": its velocity [m/s]; "xv": both
 
     def __call__(self, t, x, q, v, omega):

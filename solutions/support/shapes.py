@@ -117,23 +117,22 @@ def hull_faces(corners):
     """
     corners = np.asarray(corners, float)
     near, faces = FLAT * np.max(np.abs(corners)), {}
-    for i, j, k in triples(len(corners)):
-        n = np.cross(corners[j] - corners[i], corners[k] - corners[i])
-        if np.linalg.norm(n) <= near * near:
-            continue
-        n = n / np.linalg.norm(n)
-        height = (corners - corners[i]) @ n
-        if np.all(height >= -near):
-            n, height = -n, -height
-        on = tuple(np.flatnonzero(np.abs(height) <= near))
-        if np.all(height <= near) and on not in faces:
-            faces[on] = in_turn(corners, on, n)
+    for i, j in pairs_below(len(corners)):
+        normals = np.cross(corners[j] - corners[i], corners[j + 1:] - corners[i])
+        lengths = np.linalg.norm(normals, axis=1)
+        normals = normals[lengths > near * near] / lengths[lengths > near * near, None]
+        heights = (corners - corners[i]) @ normals.T                     # of all corners over all planes
+        for outward in (-1.0, 1.0):
+            for k in np.flatnonzero(np.all(outward * heights <= near, axis=0)):
+                on = tuple(np.flatnonzero(np.abs(heights[:, k]) <= near).tolist())
+                if on not in faces:
+                    faces[on] = in_turn(corners, on, outward * normals[k])
     return list(faces.values())
 
 
-def triples(n):
-    """Return all sets of three numbers below n."""
-    return [(i, j, k) for k in range(n) for j in range(k) for i in range(j)]
+def pairs_below(n):
+    """Return all pairs of numbers below n."""
+    return [(i, j) for j in range(n) for i in range(j)]
 
 
 def in_turn(corners, on, n):

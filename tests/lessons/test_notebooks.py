@@ -6,6 +6,7 @@ import re
 import symtable
 from dataclasses import fields
 from html import escape
+from itertools import pairwise
 from pathlib import Path
 
 import nbformat
@@ -34,6 +35,7 @@ sys.path.append({str(Path(__file__).parent)!r})
 import drawn_type
 drawn_type.install()"""
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+ONE_BY_ONE = {"10", "11", "12"}                          # notebooks with something to see after each check
 SHORT = {"00"}               # notebooks that the default tests run, half done; --long runs all, in three states
 STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}  # share of the exercises, from the first on
 
@@ -146,9 +148,31 @@ def test_a_lesson_is_told_in_the_same_way_everywhere(path):
         assert "*Find*" in getattr(modules.bind(lesson), numbers[number]).__doc__
         assert f"<details><summary>Hint for {number}</summary>" in text
     assert [cell.source for cell in code if cell.source.startswith("check(")] == [f'check("{n}")' for n in numbers]
+    places = {cell.source: k for k, cell in enumerate(cells) if cell.source.startswith(("check(", "progress("))}
+    outlook = next(k for k, cell in enumerate(cells) if cell.source.startswith("## The scene, "))
+    assert max(places.values()) == places[f'progress("{lesson}")'] < outlook, "progress follows the last exercise"
     hidden = [cell for cell in code if "plt." in cell.source or cell is code[0]]
     assert all(cell.metadata.get("jupyter", {}).get("source_hidden") for cell in hidden)
     assert not any("plt.show()" in cell.source for cell in code)
+
+
+@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] in ONE_BY_ONE],
+                         ids=lambda path: path.stem)
+def test_something_to_see_follows_every_check_and_words_follow_every_figure(path):
+    """A choice has its figure before its check.  What follows the sliders is said before them."""
+    cells = nbformat.read(path, as_version=4).cells
+    for cell, after in pairwise(cell.source for cell in cells if cell.cell_type == "code"):
+        seen = not after.startswith(("check(", "progress("))
+        assert seen or not cell.startswith("check(") or cell in chosen(cells), cell
+    for cell, after in pairwise(cells):
+        if cell.cell_type == "code" and "show_figure()" in cell.source and "@interact" not in cell.source:
+            assert after.source.startswith("*What to see:*"), cell.source
+
+
+def chosen(cells):
+    """The checks of choices: the first code cell behind each figure of four curves."""
+    code = [cell.source for cell in cells if cell.cell_type == "code"]
+    return [after for cell, after in pairwise(code) if "show_choice(" in cell]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

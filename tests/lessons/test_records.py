@@ -83,7 +83,7 @@ NO_RULE = {
     "Suspects": "made anew per step", "Ways": "made at the beginning of a run",
     **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "HalfSpace", "Hinge", "Model",
                      "Polygon", "Polyhedron", "Spring", "Weld"), "make_model checks it"),
-    **dict.fromkeys(("Composed", "Cores", "Kit", "Loop", "Part", "Rods", "Rough", "RoundedBoxes", "Smooth"),
+    **dict.fromkeys(("Composed", "Cores", "Hulls", "Kit", "Loop", "Part", "Rods", "Rough", "RoundedBoxes", "Smooth"),
                     "made by compose from a checked Model"),
     "Settings": "compose checks it", "State": "a result"}
 

@@ -13,10 +13,12 @@ from solutions.support.model import (
     BallJoint,
     Body,
     Box,
+    Capsule,
     Distance,
     Drag,
     HalfSpace,
     Hinge,
+    Polyhedron,
     Spring,
     make_model,
 )
@@ -167,11 +169,15 @@ def test_a_part_is_compiled_once_for_all_models_and_once_for_all_processes(compi
 
 # ---------------------------------------------------------------------------------------------- in space
 
+RISE = np.sqrt(0.75)         # of a regular hexagon
 GROUND = Body((0.0, 0.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), mu=1.0, e=1.0)
 BALL = Body((0.0, 0.0, 0.199), 1.0, Ball(0.2), v=(0.3, 0.0, -0.1), e=0.5)
 ROUGH = BALL._replace(mu=0.5)
 TOP = Body((0.0, 0.0, 0.3), 1.0, inertia=(0.1, 0.2, 0.25), omega=(1.0, 2.0, 0.5))
 CUBE = Body((0.0, 0.0, 0.49), 1.0, Box((0.5, 0.5, 0.5)), mu=0.5, omega=(0.1, 0.2, 0.0))
+PRISM = Body((0.0, 0.0, 0.195), 1.0, Polyhedron(tuple(
+    (0.5 * x, 0.5 * y, z) for z in (-0.2, 0.2) for x, y in ((1.0, 0.0), (0.5, RISE), (-0.5, RISE), (-1.0, 0.0),
+                                                            (-0.5, -RISE), (0.5, -RISE)))), 0.5, omega=(0.1, 0.2, 0.5))
 HINGE = Hinge(0, WORLD, (0.5, 0.0, 0.3), (0.6, 0.8, 0.0))
 ROD = Distance(0, WORLD, (0.0, 0.0, 0.0), (0.5, 0.0, 0.8))
 IN_SPACE = {                                             # of each model: its bodies, joints and other fields
@@ -181,6 +187,9 @@ IN_SPACE = {                                             # of each model: its bo
     "cube": ([CUBE, GROUND], [], {}),
     "cube and ball": ([CUBE, ROUGH._replace(x=(0.0, 0.69, 0.3)), GROUND], [], {}),
     "fast ball": ([BALL._replace(x=(0.0, 0.0, 0.5), v=(0.0, 0.0, -900.0)), GROUND], [], {}),
+    "polyhedra": ([PRISM, PRISM._replace(x=(0.05, 0.02, 0.49)), ROUGH._replace(x=(0.0, 0.1, 0.98)),
+                   CUBE._replace(x=(1.2, 0.0, 0.5), omega=None), PRISM._replace(x=(1.2, 0.1, 1.18)),
+                   Body((0.1, 0.6, 0.095), 1.0, Capsule(0.4, 0.1), 0.5), GROUND], [], {}),
     "hinge": ([TOP], [HINGE], {}),
     "soft rod": ([TOP], [ROD._replace(compliance=1e-4)], {}),
     "hinge and contact": ([ROUGH, GROUND], [HINGE], {}),
@@ -206,7 +215,7 @@ def test_the_models_in_space_need_all_parts_in_space():
     there = {name for name, thing in vars(compose).items()
              if getattr(thing, "__module__", "") in ("solutions.given.parts_3d", "solutions.given.rods")}
     detects = {name for name in vars(compose) if name.startswith("detect_")}
-    finders = {"ball_contacts_of", "cuboid_contacts_of", "rounded_contacts"}
+    finders = {"ball_contacts_of", "cuboid_contacts_of", "rounded_contacts", "hull_contacts"}
     assert used >= there - {"rods_in"} | detects | finders
 
 

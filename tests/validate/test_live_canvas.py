@@ -11,10 +11,12 @@ import pytest
 
 from solutions.support.model import Body, Box, HalfSpace, make_model
 from validate.notebook.live import canvas, widget
+from validate.notebook.live.running import Running
 from validate.notebook.live.simulation import Simulation, Tuning
 from validate.subject.modules import SOLUTIONS
 
 from .test_live_films import CHROMIUM
+from .test_live_points import SCENES
 from .test_live_simulation import boxes
 
 pytestmark = [pytest.mark.long,
@@ -57,7 +59,7 @@ def browser():
 
 @pytest.fixture
 def opened(browser, tmp_path):
-    """opened(model, steps, wide): a page of that width that shows the scene after so many steps."""
+    """opened(model or what runs, steps, wide): a page of that width that shows the scene after so many steps."""
     pages = []
     yield partial(page_of, browser, tmp_path, pages)
     for page in pages:
@@ -65,8 +67,8 @@ def opened(browser, tmp_path):
         page.close()
 
 
-def page_of(browser, folder, pages, model, steps=2, wide=1200):
-    simulation = Simulation(model, SOLUTIONS, Tuning(), beside=False)
+def page_of(browser, folder, pages, scene, steps=2, wide=1200):
+    simulation = scene if isinstance(scene, Running) else Simulation(scene, SOLUTIONS, Tuning(), beside=False)
     for _ in range(steps):
         simulation.step()
     shown = widget.LiveScene(simulation, canvas.drawn(simulation, "boxes", 380, None))
@@ -122,6 +124,15 @@ def test_nothing_is_cut_off(opened, wide):
     over = page.evaluate("""[...document.querySelectorAll('.live-scene, .live-scene *')]
         .map(one => one.scrollWidth - one.clientWidth).reduce((a, b) => Math.max(a, b), 0)""")
     assert over <= 1 and page.evaluate("document.documentElement.scrollWidth") == wide
+
+
+@pytest.mark.parametrize("of", SCENES)
+def test_points_offer_neither_contact_forces_nor_pymunk(opened, of):
+    """Points have neither, and the kernel would not know what to do."""
+    page = opened(SCENES[of]())
+    assert page.get_by_role("checkbox").count() == 0 and page.get_by_role("slider").count() >= 3
+    page = opened(boxes())
+    assert page.get_by_role("checkbox").count() >= 1
 
 
 def test_a_scene_out_of_view_pauses_and_goes_on_when_it_is_seen_again(opened):

@@ -155,8 +155,38 @@ def test_a_cube_falls_and_lies_as_a_polyhedron_as_it_does_as_a_box(product):
         assert np.max(np.abs(lies.x[1, :2])) <= (2e-3 if product is RAPIER else SOFT)
 
 
+def heights(world, steps):
+    """Return the heights of all bodies after so many steps, and close the world."""
+    for _ in range(steps):
+        world.step()
+    found = world.state().x[:, 2]
+    world.close()
+    return found
+
+
+@pytest.mark.long
+def test_hulls_that_settle_lie_as_high_in_our_loop_as_in_engines():
+    """A tetrahedron and an octahedron fall askew onto the ground, and a pyramid onto a plate: each ends on a face.
+
+    The heights are those of their centres over their faces, which do not depend on how they fall.  In engines two soft
+    contacts lie on each other: Rapier's pyramid lies 0.8 mm too low.
+    """
+    askew = rotation_of(np.array((0.96, 0.2, -0.16, 0.104)) / np.linalg.norm((0.96, 0.2, -0.16, 0.104)))
+    pyramid = np.array([(0.2, 0.2, 0.0), (0.2, -0.2, 0.0), (-0.2, 0.2, 0.0), (-0.2, -0.2, 0.0), (0.0, 0.0, 0.24)])
+    plate = Body((3.0, 0.0, 0.1), 5.0, Box((0.8, 0.8, 0.1)), 0.8)
+    model = make_model([GROUND, body_of(lying(TETRAHEDRON) @ askew.T + (0.0, 0.0, 0.15), 0.8),
+                        body_of(lying(OCTAHEDRON) @ askew.T + (1.5, 0.0, 0.15), 0.8), plate,
+                        body_of(pyramid @ askew.T + (3.0, 0.0, 0.35), 0.8)], (0.0, 0.0, -G))
+    truth = (0.0, 0.2 / np.sqrt(3.0), 0.3 / np.sqrt(3.0), 0.1, 0.2 + 0.06)
+    assert heights(ours.build(model, 1.0 / 240.0), 480) == pytest.approx(truth, abs=SOFT)
+    for product in (PYBULLET, MUJOCO, RAPIER):
+        if product.installed():
+            found = heights(product.world.build(model, 1.0 / 1000.0), 2000)
+            assert found == pytest.approx(truth, abs=2.0 * SOFT), product.name
+
+
 def test_who_has_no_polyhedra_says_so():
     model = make_model([body_of(OCTAHEDRON)], (0.0, 0.0, -G))
-    assert "Polyhedron" in ours.refuses(model)
+    assert ours.refuses(model) == ""
     for product in (PYMUNK, BOX2D):
         assert "plane" in product.world.refuses(model)

@@ -12,7 +12,7 @@ from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
 from validate.report import films, numbers, plots, races, words
-from validate.report.answers import answers
+from validate.report.answers import answers, right
 from validate.subject import modules
 
 from .small_report import small_report
@@ -112,6 +112,15 @@ def test_a_table_of_numbers_says_what_the_report_holds(made):
     assert len((folder / "throw-runs.csv").read_text(encoding="utf-8").splitlines()) == runs + 1
     rows = (folder / "stability-integrators-amplification.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) == 6 * 120 + 1 and {len(row.split(",")) for row in rows} == {122}
+
+
+def test_the_counts_of_our_methods_add_up_where_there_is_every_verdict():
+    curve = {"order": None, "expected": 1, "label": "Euler", "rows": [], "measured": "", "reference": False}
+    kinds = [verdict for verdict in Verdict if verdict is not Verdict.REFERENCE]               # which engines have only
+    cases = {str(verdict): {"ours": [{**curve, "verdict": verdict}], "engines": []} for verdict in kinds}
+    found = right([{"scene": "throw", "title": "Throw", "agreed": False, "cases": cases}], [])
+    counts = [found[name] for name in ("agree", "predicted", "depart", "by_laws", "waiting", "undecided")]
+    assert sum(counts) + len(found["unfinished"]) == found["runs"] == len(kinds)
 
 
 def test_the_front_page_answers_four_questions_and_says_what_each_verdict_means(made, pages):

@@ -13,6 +13,7 @@ from solutions.support.model import (
     Body,
     Distance,
     Drag,
+    Force,
     Hinge,
     Spring,
     Weld,
@@ -97,6 +98,54 @@ def test_drag_and_a_function_load_slow_a_body_as_the_exponential_does(product, s
         state, _ = run(product, model, T, steps, **settings)
         allowed = by_order(2.0 * k / m, T, T / steps)[order_of(product)] + spacings(product, steps)
         assert np.linalg.norm(state.v[0] - np.exp(-2.0 * k / m * T) * np.array((3.0, 1.0))) <= allowed * np.sqrt(10.0)
+
+
+FORCES = {                   # on two kilograms that start at 1 m with 1 m/s, and where they are after t
+    "t": (lambda t: 2.0 * np.cos(t), lambda t: 2.0 + t - np.cos(t)),
+    "x": (lambda x: -8.0 * x[0], lambda t: np.cos(2.0 * t) + 0.5 * np.sin(2.0 * t)),
+    "v": (lambda v: -2.0 * v[0], lambda t: 2.0 - np.exp(-t)),
+    "xv": (lambda x, v: -2.0 * x[0] - 4.0 * v[0], lambda t: (1.0 + 2.0 * t) * np.exp(-t)),
+}
+
+
+@every
+@pytest.mark.parametrize("of", FORCES)
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_force_of_floats_moves_its_body_as_the_closed_form_says(product, settings, of, d):
+    """Also beside other bodies, and on one that could turn."""
+    F, truth = FORCES[of]
+    T, steps, zero = 1.0, 200, (0.0,) * (d - 1)
+    still = np.zeros(d)
+    for inertia in (None, 1.0 if d == 2 else (1.0, 2.0, 2.5)):
+        bodies = [Body((0.0, *zero)), Body((5.0, *zero), 1.0, inertia=inertia),
+                  Body((1.0, *zero), 2.0, v=(1.0, *zero), inertia=inertia)]
+        load = Force(2, lambda *now: (float(F(*now)), *zero), of)
+        state, _ = run(product, make_model(bodies, still, loads=[load]), T, steps, **settings)
+        allowed = by_order(2.0, T, T / steps)[order_of(product)] + 10.0 * spacings(product, steps)
+        assert np.max(np.abs(state.x[2] - (truth(T), *zero))) <= 2.0 * allowed
+        assert np.max(np.abs(state.x[1] - (5.0, *zero))) <= spacings(product, steps) * 10.0
+
+
+@pytest.mark.parametrize("product", [PYMUNK, PYBULLET], ids=str)
+def test_with_its_own_drag_an_engine_slows_a_body_exactly(product):
+    T, steps, k, m = 1.0, 100, 0.8, 2.0
+    model = make_model([Body((0.0, 0.0), m, v=(3.0, 1.0))], (0.0, 0.0), loads=[Drag(k)])
+    state, _ = run(product, model, T, steps, own_drag=True)
+    assert state.v[0] == pytest.approx(np.exp(-k / m * T) * np.array((3.0, 1.0)), rel=1e-12)
+
+
+def test_the_drag_of_a_pymunk_space_is_refused_for_bodies_of_two_masses():
+    bodies = [Body((0.0, 0.0), 1.0), Body((1.0, 0.0), 2.0)]
+    with pytest.raises(BadInput, match="own_drag"):
+        chipmunk.build(make_model(bodies, (0.0, 0.0), loads=[Drag(1.0)]), 0.01, own_drag=True)
+
+
+@pytest.mark.parametrize(("force", "word"), [
+    (Force(0, abs, "x"), "can move"), (Force(2, abs, "x"), "can move"), (Force(True, abs, "x"), "can move"),
+    (Force(1, abs, "q"), "depends on"), (Force(1, 3.0, "x"), "F of a Force")])
+def test_a_force_that_cannot_be_is_refused(force, word):
+    with pytest.raises(BadInput, match=word):
+        make_model([Body((0.0, 0.0)), Body((1.0, 0.0), 1.0)], (0.0, 0.0), loads=[force])
 
 
 @every

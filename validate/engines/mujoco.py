@@ -126,13 +126,6 @@ def rotation_of(q):
     return R.reshape(3, 3)
 
 
-def free_body(p, dt, integrator="RK4"):
-    """Make the EngineRun of a free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
-    model, data = world(dt, f"<body><freejoint/>{inertial(1.0, p.moments())}</body>", integrator=integrator)
-    data.qvel[3:] = p.omega()                            # in the body
-    return running(model, data, lambda: rotation_of(data.qpos[3:7]).ravel())
-
-
 def top(m, moments, length, R, spin, g, dt):
     """Make the EngineRun of a top on a ball joint; moments about its centre, `length` [m] up its axis from the joint.
 

@@ -1,16 +1,9 @@
-"""Free and rolling bodies in the engines."""
+"""Rolling bodies in the engines."""
 
 import numpy as np
 
 from validate.engines.bullet import Rigid
 from validate.scene import EngineRun
-
-
-def free_body(p, dt, maximal=False):
-    """Make pybullet's free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
-    bullet = Rigid(dt)
-    body = bullet.body(1.0, p.moments(), (0.0, 0.0, 0.0), p.omega(), maximal)
-    return EngineRun(bullet.begin().step, lambda: bullet.R(body).ravel(), bullet.close)
 
 
 def rolling_ball(ball, v, omega, maximal, dt):

@@ -168,7 +168,7 @@ def relative_to(truth, a, b):
 def our_curve(selection, runner, p, truth):
     """Return the errors of one of our methods over the sweep."""
     scene, step = selection.fastest(runner)
-    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides), runner.judged_by(n)))
+    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides), runner.judged_by(p, n)))
             for n in selection.steps_of(runner, p))
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
     return {**found, **our_look(runner)}
@@ -188,7 +188,8 @@ def engine_curve(selection, case, runner, p, truth):
              "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
         source = f"live, {engine.product} {engine.product.installed()}"
-        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.judged_by(n))) for n in selection.steps_of(runner, p))
+        runs = ((n, run_engine_to_end(scene, engine, p, n, runner.judged_by(p, n)))
+                for n in selection.steps_of(runner, p))
     else:
         record = traces.recorded(selection.name, case, engine)
         if record is None:

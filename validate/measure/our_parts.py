@@ -92,7 +92,9 @@ def variants(lesson, model):
     load = full.load if any(callable(load) for load in model.loads) else getattr(lesson, named("model_load"))
     bounds, narrow = ((lesson.convex_bounds_2d, lesson.convex_contacts_2d) if model.d == 2 else
                       (lesson.rounded_bounds, lesson.rounded_contacts))
-    full = full._replace(load=load, bounds=bounds, narrow=narrow)
+    full = full._replace(load=load)
+    if full.narrow is not lesson.hull_contacts:              # which finds the contacts of all shapes
+        full = full._replace(bounds=bounds, narrow=narrow)
     every = SMOOTH if names[:1] == (named(SMOOTH[0]),) else ALL
     found = {WITH: (tuple(map(named, every)), full)}
     for part, (functions, fields) in WITHOUT.items():

@@ -67,7 +67,7 @@ def readings(selection, runner, p):
     found = []
     for steps in selection.steps:
         if steps <= (runner.who.most_steps or steps):
-            outcome = run_engine_to_end(selection.scene, runner.who, p, steps, runner.judged_by(steps))
+            outcome = run_engine_to_end(selection.scene, runner.who, p, steps, runner.judged_by(p, steps))
             found.append({"steps": steps, "observed": outcome.observed, "failure": outcome.failure,
                           **({"laws": outcome.laws} if outcome.laws else {})})
     return found

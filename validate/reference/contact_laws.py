@@ -22,7 +22,7 @@ GAINED = 0.05
 # friction short of Coulomb's limit where contacts slide, over the largest impulse, that early ends of iterations leave:
 # it was measured as 0.0063 at most on the engines of lesson 10; friction that is 10 % too small gives 0.02 or more
 UNREACHED = 0.01
-# mean restitution that early ends of iterations leave: it was measured as 0.003 at most on the engines of lesson 10; a
+# mean restitution that early ends of iterations leave: it was measured as 0.013 at most on the engines of lesson 10; a
 # restitution of 0.1 gives 0.04 or more, because a step that ends an approach has a gap left
 BOUNCED = 0.02
 FINISHED = 1e-2              # residual of a solver that has finished, over g dt [-]: forces are then right to 1 %
@@ -299,6 +299,7 @@ QUANTITIES = {               # as a page shows them, in the order in which they 
     "slip": "residual of Coulomb's law, over g dt [-]",
     "rest": "residual of both at the end, where bodies rest, over g dt [-]",
 }
+MEETING = "short", "bounce"              # judged where bodies meet; their limits were measured on such runs alone
 ITERATED = "normal", "slip"              # what iterations that end early leave while bodies move
 
 
@@ -314,7 +315,8 @@ def values(step, allowed):
 def judged(steps, allowed: Allowed):
     """Return the Laws of some steps: the largest value of each quantity, and its limit.
 
-    Where bodies rest at the end (`allowed.rests`), the last step has a law of its own.
+    Where bodies rest at the end (`allowed.rests`), the last step has a law of its own; where they do not, sliding and
+    parting have.
 
     The residual of iterations that end early is bounded by a step in which contacts carry nothing.  Friction without a
     normal impulse is at most the largest impulse.  Impulses that are not applied have no bound, but the balances must
@@ -326,9 +328,10 @@ def judged(steps, allowed: Allowed):
     within = {**dict.fromkeys(QUANTITIES, max(roundings)), "shift": 1.0,
               **dict.fromkeys(("pull", "cone", "loose", "short"), CLAMPED),
               **dict.fromkeys(("bounce", "gain", *ITERATED, "rest"), FINISHED)}
-    largest = {name: float(np.max([one[name] for one in found])) for name in QUANTITIES if name != "rest"}
-    if allowed.rests:
-        largest["rest"] = max(found[-1][name] for name in ITERATED)
+    found[-1]["rest"] = max(found[-1][name] for name in ITERATED)
+    left_out = MEETING if allowed.rests else ("rest",)
+    largest = {name: float(np.max([one.get(name, 0.0) for one in found])) for name in QUANTITIES
+               if name not in left_out}
     return [Law(QUANTITIES[name], value, within[name], known.get(name) if name in rules else None,
                 rules.get(name, "")) for name, value in largest.items()]
 

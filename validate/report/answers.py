@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from ..check import Verdict
+from ..check import BY_LAWS, Verdict
 from ..measure.races import Outcome
 from ..scene import EXACT
 from . import choice, races, words
@@ -37,6 +37,7 @@ def right(results, stability):
         "scenes": len(results), "runs": len(every),
         "judged": count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW] + count[Verdict.DEPARTS],
         "agree": count[Verdict.AGREES], "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
+        "by_laws": sum(count[verdict] for verdict in BY_LAWS),
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
         "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
         "truths": words.truths_by_engines(results), "agreed": words.truths_by_agreement(results),
@@ -106,8 +107,7 @@ def departures(results):
     compared = [one for one in curves_of(results, "engines") if Verdict(one[2]["verdict"]) is not Verdict.REFERENCE]
     return {"lines": lines, "undecided": undecided, "runs": len(compared),
             "depart": sum(line["cases"] for line in lines),
-            "by_laws": sum(Verdict(c["verdict"]) in (Verdict.KEEPS_LAWS, Verdict.BREAKS_AS_KNOWN)
-                           for _, _, c in compared),
+            "by_laws": sum(Verdict(c["verdict"]) in BY_LAWS for _, _, c in compared),
             "open": sum(Verdict(c["verdict"]) is Verdict.UNDECIDED for _, _, c in compared),
             "agree": sum(Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in compared),
             "scenes": len({scene for line in lines for scene in line["places"]})}

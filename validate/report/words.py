@@ -22,8 +22,8 @@ KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict
 SIGNS = {"agrees": "✓", "predicted": "≈", "laws": "§", "departs": "✗", "open": "○"}  # as the style sheet draws them
 LEGEND = {                   # every verdict has one name and one sign
     Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured, "
-                    "except where the page calls it measured. Where theory predicts the error itself, a second code "
-                    "with the same scheme computes it: the run must miss the truth by just that error.",
+                    "except where the page calls it measured. Where theory predicts the error itself, by a formula or "
+                    "by a second code with the same scheme, the run must miss the truth by just that error.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
     Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. What it reports of its own steps keeps the "

@@ -77,6 +77,7 @@ class Parts(NamedTuple):
     space: Embedding
     settings: Settings
     handles: list            # (body, link) of each body of the Model
+    impacts: bool            # whether any pair has restitution, which takes long to find
 
 
 def refuses(model):
@@ -94,9 +95,10 @@ def build(model, dt, **settings):
     if settings.own_drag:
         model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
     world = Bullet(dt)
-    parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies))
+    parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies),
+                  bounces(model))
     configure(parts, dt)
-    x = pressed_in(model, settings.overlap) if touches(model) and not bounces(model) else parts.start.x
+    x = pressed_in(model, settings.overlap) if touches(model) and not parts.impacts else parts.start.x
     linked = [] if settings.maximal else add_linked(parts, x)
     for k in range(len(model.bodies)):
         if k not in linked and not only_holds(model, k):
@@ -118,7 +120,7 @@ def build(model, dt, **settings):
 
 def configure(parts, dt):
     """Set the solver for impacts or for resting contacts."""
-    model, settings, impacts = parts.model, parts.settings, bounces(parts.model)
+    model, settings, impacts = parts.model, parts.settings, parts.impacts
     breaking = BREAKING
     if np.isfinite(smallest(model)) and not impacts:
         breaking = max(BREAKING, 1.2 * fastest(model, settings.lasts) * dt / smallest(model))
@@ -192,7 +194,7 @@ def describe(parts, k):
         change |= {"mass": body.m, "localInertiaDiagonal": moments}
         if not parts.settings.damped:
             change |= {"linearDamping": 0, "angularDamping": 0}
-    if bounces(parts.model):
+    if parts.impacts:
         change["contactProcessingThreshold"] = 0
     if isinstance(body.shape, Polygon | Polyhedron):
         change["collisionMargin"] = 0.0                      # else a hull is a millimetre larger than its corners

@@ -18,6 +18,7 @@ from ..reference.orientation import about, quaternion
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
+from ..scenes.impulses._common import copies_of
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
@@ -66,27 +67,7 @@ def driven(p):
     return block((0.0, -p.g), p.mu, 0.0, [push])
 
 
-def bowled(p):
-    return make_model([Body((0.0, p.R), p.m, Ball(p.R), p.mu, v=(p.v0, 0.0), inertia=p.shape * p.m * p.R**2), FLOOR],
-                      (0.0, -p.g))
-
-
-def see_bowled(s, p):
-    return np.array([s.x[0, 0], s.v[0, 0], -p.R * s.omega[0]])
-
-
 # ---------------------------------------------------------------------------------------------- impacts
-
-def row_of_balls(p):
-    x, v, _ = cradle.start(p)
-    return make_model([Body((x[k, i, 0], APART * k), 1.0, Ball(p.R), e=1.0, v=arrays(v[k, i]))
-                       for k in range(COPIES) for i in range(cradle.BALLS)], (0.0, 0.0))
-
-
-def see_row(s, p):
-    x, v = copies(s, cradle.BALLS)
-    return cradle.seen(x[:, :, 0], v[:, :, 0], p)
-
 
 def two_discs(p):
     """Make the copies of two discs.  Each disc has √e, so that the pair has e."""
@@ -96,13 +77,7 @@ def two_discs(p):
 
 
 def see_discs(s, p):
-    return np.concatenate(copies(s, 2), axis=2).ravel()
-
-
-def copies(s, bodies):
-    """Return (x, v), each (COPIES, bodies, 2), of copies that stand APART."""
-    x = s.x - np.outer(np.repeat(np.arange(COPIES), bodies), (0.0, APART))
-    return x.reshape(COPIES, bodies, 2), s.v.reshape(COPIES, bodies, 2)
+    return np.concatenate(copies_of(s, 2), axis=2).ravel()
 
 
 # ---------------------------------------------------------------------------------------------- many contacts
@@ -168,11 +143,6 @@ def cradle_on_rods(p):
 
 # ---------------------------------------------------------------------------------------------- in space
 
-def free_top(p):
-    return make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=arrays(p.moments()), omega=arrays(p.omega()))],
-                      (0.0, 0.0, 0.0))
-
-
 def top_on_its_tip(p):
     R, m = about(np.array([1.0, 0.0, 0.0]), p.tilt), heavy_top.mass(p)
     across = p.I1 - m * heavy_top.LENGTH**2
@@ -192,8 +162,8 @@ DESCRIBED = {                # name of the scene: Described
     "spring_net": of(spring_net.SCENE),
     "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
-    "slide_then_roll": Described(slide_then_roll.SCENE, bowled, see_bowled),
-    "cradle": Described(cradle.SCENE, row_of_balls, see_row),
+    "slide_then_roll": of(slide_then_roll.SCENE),
+    "cradle": of(cradle.SCENE),
     "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
     "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
                               {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
@@ -201,6 +171,6 @@ DESCRIBED = {                # name of the scene: Described
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
     "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),
     "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
-    "asymmetric_top": Described(asymmetric_top.SCENE, free_top, lambda s, p: rotation_of(s.q[0]).ravel()),
+    "asymmetric_top": of(asymmetric_top.SCENE),
     "heavy_top": Described(heavy_top.SCENE, top_on_its_tip, lambda s, p: rotation_of(s.q[0])[:2, 2]),
 }

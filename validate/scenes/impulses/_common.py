@@ -2,8 +2,10 @@
 
 from functools import partial
 
+import numpy as np
+
 from validate.engines.bullet import IMPACT_SETTINGS
-from validate.reference.impulses import BULLET_RULE, CHIPMUNK_RULE, COPIES, ONLY_ROUND_OFF, PROJECTING_RULE
+from validate.reference.impulses import APART, BULLET_RULE, CHIPMUNK_RULE, COPIES, ONLY_ROUND_OFF, PROJECTING_RULE
 from validate.scene import EXACT, PYBULLET, PYMUNK, engine, ours
 
 
@@ -27,6 +29,12 @@ def impact_runners(methods, limits, late, in_pymunk, in_pybullet, pymunk_errs=No
         engine(PYBULLET, "", pybullet_make, f"{COPIES} {spheres}; {IMPACT_SETTINGS}",
                order=1, limit=limits, predicted=partial(late, rule=BULLET_RULE), **pybullet),
     )
+
+
+def copies_of(state, bodies):
+    """Return (x, v), each (COPIES, bodies, 2), of a State with copies that stand APART in y."""
+    x = state.x - np.outer(np.repeat(np.arange(COPIES), bodies), (0.0, APART))
+    return x.reshape(COPIES, bodies, 2), state.v.reshape(COPIES, bodies, 2)
 
 
 def in_space(start):

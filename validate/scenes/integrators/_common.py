@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -129,7 +129,7 @@ def read_planet(state, p):
     return state.x[0]
 
 
-PLANET = {"model": planet_model, "read": read_planet}       # fields of a Scene, and what `built` takes
+PLANET: dict[str, Any] = {"model": planet_model, "read": read_planet}       # fields of a Scene, and what `built` takes
 planet_world = partial(built, **PLANET)
 
 

@@ -7,13 +7,12 @@ import numpy as np
 
 from solutions.given.rotation import check_moments
 from solutions.rotation import RigidBody, RollingBall
-from validate.engines import mujoco
-from validate.engines.rotation import free_body
+from solutions.support.model import Body, make_model, rotation_of
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, free_limits
 from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
 from validate.scene import EXACT, MUJOCO, PYBULLET, engine, in_substeps, ours
-from validate.scenes._common import measured
+from validate.scenes._common import built, measured
 from validate.scenes.drawing import axes_links, axes_seen, turned_in_place
 
 
@@ -26,24 +25,37 @@ def turn_runners(body, methods, limits, in_quick, exact=()):
                       in_quick=m in in_quick, most_in_quick=in_quick.get(m)) for m in methods)
 
 
+def free_body(p):
+    """Make a body of one kilogram with p.moments() and p.omega() that starts at R = 1."""
+    return make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=tuple(p.moments()), omega=tuple(p.omega()))], (0.0, 0.0, 0.0))
+
+
+def read_rotation(state, p):
+    """Return R, nine numbers."""
+    return rotation_of(state.q[0]).ravel()
+
+
+free_world = partial(built, model=free_body, read=read_rotation)
+
+
 def free_engines(body):
     """Return the runners of both kinds of body in pybullet, and of MuJoCo, on a TurningBody that is free."""
-    maximal = engine(PYBULLET, "", partial(free_body, maximal=True), "useMaximalCoordinates=1, no damping",
+    maximal = engine(PYBULLET, "", free_world(PYBULLET), "useMaximalCoordinates=1, no damping",
                      order=1, limit=free_limits(body.T, (IMPLICIT,)), predicted=body.predict(IMPLICIT_TERM))
     return (
-        engine(PYBULLET, "reduced coordinates", free_body,
+        engine(PYBULLET, "reduced coordinates", free_world(PYBULLET, maximal=False),
                "createMultiBody with its defaults, but no damping and no clamp of velocity",
                order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM)),
         maximal,
         in_substeps(maximal, 100),
-        engine(MUJOCO, "", mujoco.free_body, "freejoint; Runge–Kutta 4",
+        engine(MUJOCO, "", free_world(MUJOCO), "freejoint; Runge–Kutta 4",
                order=4, limit=free_limits(body.T), predicted=body.predict(MUNTHE_KAAS), most_steps=5000),
     )
 
 
 def mujoco_default(body):
     """Return the runner of MuJoCo's own default on a free TurningBody."""
-    return engine(MUJOCO, "default", partial(mujoco.free_body, integrator="Euler"),
+    return engine(MUJOCO, "default", free_world(MUJOCO, integrator="Euler"),
                   "freejoint; the semi-implicit Euler step",
                   order=1, limit=free_limits(body.T, (EXPLICIT,)), predicted=body.predict(EXPLICIT_TERM),
                   most_steps=5000)
@@ -63,6 +75,8 @@ def start_free(p):
 # the fields that the scenes of a body without a torque share
 FREE_BODY: dict[str, Any] = {
     "lesson": "rotation",
+    "model": free_body,
+    "read": read_rotation,
     "observe": observe_rotation,
     "points": axes_seen,
     "links": axes_links,

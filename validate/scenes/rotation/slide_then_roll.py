@@ -5,15 +5,15 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Ball, HalfSpace
 from validate.check import states
-from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, in_substeps, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives, measured
+from validate.scenes._common import built, check_positives, measured
 from validate.scenes.drawing import pose
 from validate.scenes.rotation import _common as balls
 from validate.scenes.rotation._common import ball_on_floor as ball
@@ -87,31 +87,27 @@ def new_velocity(p, dt, share=1.0):
 old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velocity, share=0.5)
 
 
-def pymunk_make(p, dt):
-    """Make a circle with that moment that overlaps the floor by a micrometre, because pymunk needs an overlap."""
-    import pymunk
-    space = pymunk_space((0.0, -p.g))
-    space.iterations = 50
-    body = pymunk.Body(p.m, p.shape * p.m * p.R**2)
-    body.position, body.velocity = (0.0, p.R - 1e-6), (p.v0, 0.0)
-    shape, floor = pymunk.Circle(body, p.R), pymunk.Segment(space.static_body, (-10.0, 0.0), (100.0, 0.0), 0.0)
-    shape.friction, floor.friction = p.mu, 1.0           # pymunk multiplies the two
-    space.add(body, shape, floor)
-    return pymunk_world(space, dt, balls.rolling_circle(body, p.R))
+def model(p):
+    """Make the ball on a floor with friction 1, in the plane."""
+    body = Body((0.0, p.R), p.m, Ball(p.R), p.mu, v=(p.v0, 0.0), inertia=p.shape * p.m * p.R**2)
+    return make_model([body, Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)], (0.0, -p.g))
 
 
-def pybullet_make(p, dt, maximal=False):
-    return rolling_ball(ball(p), np.array([p.v0, 0.0, 0.0]), np.zeros(3), maximal, dt)
+def read(state, p):
+    """Return distance, speed and rim speed."""
+    return np.array([state.x[0, 0], state.v[0, 0], -p.R * state.omega[0]])
 
 
-MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+world = partial(built, model=model, read=read)
+in_pybullet = partial(world, PYBULLET, overlap=0.0, slop=0.0)
+MAXIMAL = engine(PYBULLET, "", in_pybullet(ground=False), "the same with useMaximalCoordinates=1",
                  order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
     ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
-    engine(PYMUNK, "", pymunk_make, "50 iterations; the circle starts 1e-6 m inside the floor",
+    engine(PYMUNK, "", world(PYMUNK, iterations=50), "50 iterations; the circle starts 1e-6 m inside the floor",
            order=1, limit=limits, predicted=old_velocity),
-    engine(PYBULLET, "reduced coordinates", pybullet_make,
+    engine(PYBULLET, "reduced coordinates", in_pybullet(maximal=False),
            "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
            order=1, limit=limits, predicted=new_velocity),
     MAXIMAL,
@@ -169,7 +165,7 @@ SCENE = Scene(
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.rotation.supported_weight,
     start=start, run=run, observe=balls.observe_rolling(lambda p: p.R),
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,

@@ -150,7 +150,7 @@ def limit(p, dt):
     more than the margin of 1 cm in the first step, the warm start does not recognise the contact: no limit is known.
 
     A house that falls: no theory says how far two runs differ.  For pymunk no theory says it either, because its
-    contacts must overlap first.
+    contacts must overlap first.  The laws of contact judge these curves by what their run of 120 steps reports.
     """
     left = np.cos(np.pi / 14.0) ** (2 * SWEEPS)
     first = p.g * dt**2 * left / np.sin(lean(p))

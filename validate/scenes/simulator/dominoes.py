@@ -222,7 +222,8 @@ def limit(p, dt):
     the error is that of all of them.  From 0.95 s on, the last impact pushes the whole row back.  So the errors at
     1 s decrease unevenly, and the slope through four of them means little.
 
-    The error bar of the truth is added; where it is larger than 0.1 %, nothing is judged.
+    The error bar of the truth is added; where it is larger than 0.1 %, nothing is judged.  No theory says how far
+    pybullet may be off.  The laws of contact judge what its run of 50 steps reports.
 
     This limit leaves out the impacts that two sweeps do not finish.  At 1/1000 s it is still larger than their effect;
     with shorter steps the pile would depart.

@@ -227,7 +227,7 @@ def limit(p, dt):
     cos²(π/12) of it.
 
     places: where dominoes and crates end depends on the order in which they come to rest; no theory says how far a
-    run with a given step is from the truth.
+    run with a given step is from the truth.  The laws of contact judge what a run of 300 steps reports of its steps.
     """
     omega, v = np.sqrt(SPRING / MASS[HAMMER]), np.sqrt(2.0 * p.g * PLACES[:, 1].max())
     limits = {"places": np.inf, "energy": omega * dt, "overlap": 0.25 * np.pi * v * dt / THICK,
@@ -266,7 +266,7 @@ def is_alone(p):
 
 
 def tells_places(p):
-    """Return whether positions are compared: an engine reports them, but not its contacts within a step."""
+    """Return whether positions are compared: the other numbers are extremes over all steps, which only we collect."""
     return p.seen == "places"
 
 

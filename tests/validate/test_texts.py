@@ -1,0 +1,96 @@
+"""Numbers and names in the texts for readers are those of the code."""
+
+import importlib
+import re
+
+import pytest
+
+from validate.book import course, weeks
+from validate.measure.selection import Plan
+from validate.reference.stored import kept
+from validate.subject import modules
+from validate.subject.modules import ROOT
+
+NUMBERS = ("no one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
+           "seventeen eighteen nineteen twenty").split()
+TEXTS = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in (
+    ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "validate" / "book").glob("*.md")), ROOT / "notebooks" / "00_start_here.ipynb")}
+README = TEXTS["README.md"]
+
+
+@pytest.fixture(scope="module")
+def scenes():
+    return {name: modules.bind_scene(name) for name in modules.scene_names()}
+
+
+def test_readme_counts_the_lessons_and_has_a_row_for_each():
+    names = modules.lesson_names()
+    assert f"in Python: {NUMBERS[len(names)]} lessons" in README
+    assert re.findall(r"^\| (\d+) \| `(\w+)` \|", README, re.M) == [
+        (str(number), name) for number, name in enumerate(names, 1)]
+
+
+def test_the_slides_that_need_care_are_counted():
+    rows = re.findall(r"^\| .* \|$", TEXTS["docs/slides.md"], re.M)[1:]                        # below the head
+    count = NUMBERS[len(rows)]
+    assert f"{count.capitalize()} formulas or sentences" in TEXTS["docs/slides.md"]
+    assert f"[{count} formulas to read with care]" in README
+    assert f"{count} of their formulas" in TEXTS["docs/instructors.md"]
+
+
+def test_every_text_gives_the_same_time_for_a_quick_run():
+    for name in ("README.md", "CONTRIBUTING.md", "validate/book/validation.md", "validate/book/no_report.md"):
+        assert "about two and a half minutes on two cores" in TEXTS[name], name
+        assert not re.search(r"\b(?:about|take) (?:two|three) minutes", TEXTS[name]), name
+
+
+def test_readme_gives_the_longest_loop_that_a_full_run_times():
+    assert f"less than a limit ({Plan(quick=False).time_limits()['compiled']:g} s compiled)" in README
+
+
+def test_contributing_counts_the_seeded_faults_to_the_nearest_ten():
+    count = sum(len(importlib.import_module(f"tests.faults.{name}").FAULTS) for name in modules.lesson_names())
+    assert f"inserts about {round(count, -1)} wrong lines" in TEXTS["CONTRIBUTING.md"]
+
+
+def test_readme_counts_the_scenes_that_the_laws_of_contact_judge(scenes):
+    judged = {name for name, scene in scenes.items() if any(r.laws for r in scene.runners)}
+    ours = {name for name in judged if any(r.laws and not r.is_engine for r in scenes[name].runners)}
+    numbers = sorted({course.lessons()[scenes[name].lesson].number for name in judged})
+    text = " ".join(README.split())
+    assert f"In {NUMBERS[len(judged)]} scenes of lessons {' and '.join(map(str, numbers))} no theory" in text
+    assert f"and in {NUMBERS[len(ours)]} of these scenes also our own loop" in text
+
+
+def test_the_scenes_without_a_truth_of_their_own_are_counted(scenes):
+    agreed = [name for name in scenes if kept(name).get("agreed")]
+    assert agreed == ["dominoes", "machine"] and "for the dominoes and for a machine of many parts" in README
+    for name in ("notebooks/00_start_here.ipynb", "validate/book/validation.md", "validate/book/no_report.md"):
+        assert f"{NUMBERS[len(agreed)].capitalize()} scenes have no such truth" in TEXTS[name], name
+
+
+def test_the_plan_gives_the_constants_of_its_hours():
+    text = TEXTS["docs/plan.md"]
+    for said in (f"- {course.WORDS_PER_MINUTE} words of a notebook per minute",
+                 f"{course.MINUTES_PER_OUTPUT:g} minutes for each cell",
+                 f"{course.MINUTES_PER_EXERCISE:g} minutes to read its docstring",
+                 f"{course.MINUTES_PER_LINE:g} minutes for each line", f"- {course.MINUTES_TO_FIND:g} minutes more"):
+        assert said in text, said
+    assert any(len(own) == 2 for own in weeks.WEEKS.values()) and "a long lesson has two weeks" in text
+
+
+def test_the_film_that_grows_has_two_exercises_in_each_lesson_that_start_here_names():
+    from validate.notebook.growing.parts import PARTS
+    lessons = [int(number.split(".")[0]) for number in PARTS]
+    first, last = map(int, re.search(r"In lessons (\d+) to (\d+), two exercises each",
+                                     TEXTS["notebooks/00_start_here.ipynb"]).groups())
+    assert sorted(lessons) == sorted(2 * [*range(first, last + 1)])
+
+
+@pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "docs/engine.md"])
+def test_every_file_that_a_text_names_is_there(name):
+    tops = ("solutions/", "lessons/", "validate/", "tests/", "docs/", "binder/")
+    named = [one for one in re.findall(r"`([\w./]+)`", TEXTS[name]) if one.startswith(tops) and "NAME" not in one]
+    assert len(named) >= 3
+    assert [one for one in named if not (ROOT / one).exists()] == []
