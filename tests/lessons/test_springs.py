@@ -634,7 +634,8 @@ def test_the_force_of_the_hand_obeys_its_law_at_the_end_of_the_step(lesson, draw
         close("input x, v and target after the call", np.array((x, v, target)), kept, 0.0)
     away = draw(0.2, 0.6, 2)
     slack = lesson.hand_force(away, away, 0.0 * away, 0.0, 0.0, m, dt)
-    close("force of a slack hand: k = c = 0 [N]", slack, np.zeros(2), 0.0)
+    # m (v⁺ − v)/dt is as right as the law: a few roundings of v, times m/dt < 150 kg/s
+    close("force of a slack hand: k = c = 0 [N]", slack, np.zeros(2), 1e-12)
     k, c = draw(1e10, 2e10), draw(1e3, 2e3)
     after = away + dt * lesson.hand_force(away, away, 0.0 * away, k, c, m, dt) / m
     # of the way, (1 + dt + dt c/m)/(1 + dt (c + dt k)/m) < (m + dt m + dt c)/(dt² k) < 1.1e-5 is left
