@@ -81,8 +81,8 @@ NO_RULE = {
     "Tree": "made by build_tree", "Arms": "made anew per step", "JointArms": "made anew per step",
     "StepMatrix": "made anew per step", "Impact": "made anew per impact", "Sliding": "made anew per impact",
     "Suspects": "made anew per step", "Ways": "made at the beginning of a run",
-    **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "HalfSpace", "Hinge", "Model",
-                     "Polygon", "Polyhedron", "Spring", "Weld"), "make_model checks it"),
+    **dict.fromkeys(("Ball", "BallJoint", "Body", "Box", "Capsule", "Distance", "Drag", "Force", "HalfSpace", "Hinge",
+                     "Model", "Polygon", "Polyhedron", "Spring", "Weld"), "make_model checks it"),
     **dict.fromkeys(("Composed", "Cores", "Hulls", "Kit", "Loop", "Part", "Rods", "Rough", "RoundedBoxes", "Smooth"),
                     "made by compose from a checked Model"),
     "Settings": "compose checks it", "State": "a result"}

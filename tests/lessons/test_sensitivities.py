@@ -75,7 +75,7 @@ def test_the_best_step_is_where_the_bound_is_flat(lesson, draw):
         value, third = draw(0.1, 9.0), draw(0.1, 9.0)
         h = float(lesson.best_step(value, third, round_off))
         given = f"f = {value}, third derivative {third}, round-off {round_off}"
-        between("best step, a number above zero", h, 1e-8, 10.0, given=given)
+        between("best step, a number above zero", h, 1e-12, 10.0, given=given)
         close("slope of the truncation error over that of the round-off [-]",
               (h * third / 3.0) / (round_off * value / h**2), 1.0, ROUND_OFF, given=given)
 
@@ -253,7 +253,7 @@ def test_the_tangents_are_the_derivatives_of_the_step(lesson, draw):
         dt = draw(0.1, 0.5)
         got = lesson.tangent_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
         close_tangents(got, tangents(explicit, t, p, x, v, dx, dv, dt), ROUND_OFF,
-                       given=f"{d} coordinates, {m} inputs, t = {t} s, dt = {dt} s")
+                       given=f"coordinates: {d}, inputs: {m}, t = {t} s, dt = {dt} s")
 
 
 @exercise("12.4", points=0.5,
@@ -283,7 +283,7 @@ def test_the_tangents_are_the_derivatives_of_the_implicit_step(lesson, draw):
         dt = draw(0.1, 0.4)
         got = lesson.tangent_implicit_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
         close_tangents(got, tangents(implicit, t, p, x, v, dx, dv, dt), SOLVED,
-                       given=f"{d} coordinates, {m} inputs, t = {t} s, dt = {dt} s")
+                       given=f"coordinates: {d}, inputs: {m}, t = {t} s, dt = {dt} s")
 
 
 @exercise("12.5", points=1, hint="solve one linear system for dvₙ₊₁, with a_x, a_v and a_s at the new x and v;"
@@ -338,7 +338,7 @@ def test_the_time_of_an_impact_on_an_oblique_plane_moves_with_all_inputs(lesson,
         (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
         expected = slopes(arrival, n, (x, X), (v, V), a, (c, c_s))
         got = lesson.event_time_sensitivity(n, 0.0 * n, -c_s, v + tau * a, a, X + tau * V, V)
-        close("dtau of an impact", got, expected, ROUND_OFF, given=f"{d} coordinates, {m} inputs, n = {n}")
+        close("dtau of an impact", got, expected, ROUND_OFF, given=f"coordinates: {d}, inputs: {m}, n = {n}")
 
 
 def crossing(k, x, v, level, by_x, by_v):
@@ -411,7 +411,7 @@ def test_behind_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw)
         v_old = v + tau * a
         R_s = np.einsum("ijk,j->ik", R_by, v_old)
         dx, dv = lesson.saltation(dtau, X + tau * V, V, v_old, a, R @ v_old, a_new, R, R_s)
-        given = f"{d} coordinates, {m} inputs, dtau = {dtau}"
+        given = f"coordinates: {d}, inputs: {m}, dtau = {dtau}"
         close("dx behind the impact", dx, expected[0], 1e-10, given=given)
         close("dv behind the impact", dv, expected[1], 1e-10, given=given)
 
@@ -446,7 +446,7 @@ def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, d
         expected = slopes(behind, tau, n, (x, X), (v, V), a, (c, c_s), a, R)
         v_old = v + tau * a
         got_v, dx, dv = lesson.bounce(v_old, a, X + tau * V, V, n, e, -c_s, e_s)
-        given = f"{d} coordinates, {m} inputs, n = {n}, e = {e}"
+        given = f"coordinates: {d}, inputs: {m}, n = {n}, e = {e}"
         close("velocity behind the bounce [m/s]", got_v, reflected(n, e) @ v_old, ROUND_OFF, given=given)
         close("dx behind the bounce", dx, expected[0], 1e-10, given=given)
         close("dv behind the bounce", dv, expected[1], 1e-10, given=given)

@@ -629,7 +629,7 @@ def test_the_force_of_the_hand_obeys_its_law_at_the_end_of_the_step(lesson, draw
         F = lesson.hand_force(x, v, target, k, c, m, dt)
         after = v + dt * F / m
         law = -k * (x + dt * after - target) - c * after
-        close(f"force in {d} dimensions [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
+        close(f"force with {d} coordinates [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
               given=f"k = {k}, c = {c}, m = {m}, dt = {dt}")
         close("input x, v and target after the call", np.array((x, v, target)), kept, 0.0)
     away = draw(0.2, 0.6, 2)

@@ -352,7 +352,7 @@ class Sandbox:
         if self.meter.slept >= ASLEEP:
             return self.lost("the program waits and does not compute")
         if self.meter.used < self.budget and now < self.ends:
-            return self.lost("it took too long")
+            return self.lost("it took too long; does one of your loops never end?")
         return self.lost("the time for the whole submission is used up")
 
     def last_word(self):

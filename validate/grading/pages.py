@@ -42,6 +42,10 @@ CALL = "the call itself"     # the quantity where a call of the student's functi
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
 
 
+NAMED_AFTER = ("coulomb", "euler", "gauss", "hooke", "housner", "jacobi", "kepler", "kutta", "lagrange", "newton",
+               "runge", "seidel", "suzuki", "verlet")                    # persons in the names of tests
+PROPER = {"l": "L", **{name: name.capitalize() for name in NAMED_AFTER},
+          **{f"{name}s": f"{name.capitalize()}'s" for name in NAMED_AFTER}}
 NOTHING: Mapping = MappingProxyType({})
 
 
@@ -111,7 +115,7 @@ def breakable(name):
 def claim(test):
     """Write a test's name in words: test_it_falls[euler] as "It falls (euler)"."""
     name, _, variant = test.removeprefix("test_").partition("[")
-    words = name.replace("_", " ")
+    words = " ".join(PROPER.get(word, word) for word in name.split("_"))
     return words[:1].upper() + words[1:] + (f" ({variant.removesuffix(']')})" if variant else "")
 
 
@@ -437,6 +441,8 @@ def row_of(test):
     if test["status"] == "not yet":
         hint = [] if test["tells"] else [f"hint: {clean(test['hint'])}"]
         said = [INPUTS[test["kind"]], *said, *hint]
+    if test["status"] == "not attempted":
+        said = [test["status"]]
     passed = test["status"] == "passed"
     return {
         "score": test["earned"],
@@ -563,6 +569,7 @@ def class_page(sheets, failed, settings, people, terms, run, absent):
         terms=terms,
         absent=[(people[student], handed.get(student)) for student in missing],
         gaps=uploads.gaps(people),
+        imports=uploads.files(people),
         by_hand=[s for s in (*sheets, *absent) if s.hands],
         picture=histogram([s.total("score") for s in sheets], maximum) if sheets else None,
         lessons=by_lesson(sheets, settings),

@@ -126,7 +126,7 @@ def reasons(exercise, states, traces, folder):
     if exercise not in needs.table():
         return "", ""
     found = mistakes.matching(needs.table()[exercise]["lesson"], exercise, traces)
-    below = needs.first_open(exercise, states, folder)
+    below = needs.first_open(exercise, states, folder) if needs.stars(exercise) != needs.OWN else None
     if below:                                              # what is below spoils the results, so they tell nothing
         return "", needs.sentence(exercise, below, states[below])
     return mistakes.sentence(found), ""

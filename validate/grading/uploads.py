@@ -109,6 +109,11 @@ def write(put, sheets, failed, settings, people):
         put(system.file, as_csv(system.rows(theirs, maxima)) if theirs else None)
 
 
+def files(people):
+    """Return the names of the files that are written for this class list."""
+    return [system.file for system in SYSTEMS if found(system, people)[1]]
+
+
 def gaps(people):
     """Return [Gap, …] of the files that the class list is not enough for."""
     told = []

@@ -14,6 +14,7 @@ from pathlib import Path
 FILE = Path(__file__).with_name("needs.json")
 FIND = "*Find*"              # in the docstring of an exercise whose formula is to be found: ★★
 MAKE = "*Make it*"           # in that of an exercise to which many answers are right: ★★★
+OWN = "★★★"                  # its answer is one's own, and need not call what the worked one calls
 
 
 # ---------------------------------------------------------------------------------------------- looking up
@@ -125,7 +126,7 @@ def read_from(solutions, lessons, exercises):
         text = (solutions / f"{lesson}.py").read_text(encoding="utf-8")
         (node,) = (node for node in ast.parse(text).body if getattr(node, "name", "") == function)
         doc = ast.get_docstring(node)
-        return "★★★" if MAKE in doc else "★★" if FIND in doc else "★"
+        return OWN if MAKE in doc else "★★" if FIND in doc else "★"
     return {number: {"lesson": lesson, "function": name, "stars": stars_of(lesson, name),
                      "needs": sorted(called((lesson, name)), key=in_order)}
             for (lesson, name), number in numbers.items()}
