@@ -23,7 +23,8 @@ from ..lessons.kernels import kernel, ran
 from ..lessons.test_notebooks import HASTE, NOTEBOOKS
 
 OURS = {"PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "WORKBOOK_LESSONS"}          # variables that lead back to us
-BLOCKED = re.compile(r"Not attempted yet: [^<]*\d\.\d|it waits for|Traceback \(most|NotImplementedError: Exercise")
+BLOCKED = re.compile(r"Not attempted yet: [^<]*\d\.\d|it waits for|Traceback \(most|NotImplementedError: Exercise"
+                     r"|✗ \w+Error:")                    # what `attempt` catches in a call of our own
 
 
 def write_answers(folder):

@@ -17,6 +17,7 @@ from validate.subject.generate import exercises
 from ..mutants import collection, variants
 
 LESSONS = modules.lesson_names()
+SEEDS = [f"of an examiner, {number}" for number in range(5)]
 
 
 def mutants_of(name):
@@ -54,13 +55,14 @@ def grades_of(request):
 @functools.cache
 def graded(name, every):
     """Outcomes of each mutant of a lesson, all from one run of its tests."""
-    module = vars(modules.bind(name))
-
-    def subject(mutant):
-        changed = types.SimpleNamespace(**{**module, mutant.name: mutant.function})
-        return changed, lambda exercise, test: exercise == mutant.exercise
     chosen = range(len(mutants_of(name))) if every else sample(name)
-    return grade_each(name, {str(number): subject(mutants_of(name)[number]) for number in chosen})
+    return grade_each(name, {str(number): subject(name, mutants_of(name)[number]) for number in chosen})
+
+
+def subject(name, mutant):
+    """What `grade_each` takes: the lesson with this answer in it, and which of its tests are wanted."""
+    changed = types.SimpleNamespace(**{**vars(modules.bind(name)), mutant.name: mutant.function})
+    return changed, lambda exercise, test: exercise == mutant.exercise
 
 
 @pytest.mark.parametrize(("name", "number"), list(all_mutants()))
@@ -68,6 +70,18 @@ def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number, grade
     mutant = mutants_of(name)[number]
     earned, possible = score(grades_of(name)[str(number)])[mutant.exercise]
     assert (earned == possible) == mutant.right, f"{earned} of {possible} points"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", LESSONS)
+def test_right_answers_keep_their_points_with_other_inputs(name):
+    """A tolerance that a right answer misses by chance is a fault of the test: an examiner's inputs are drawn, too."""
+    right = {mutant.story: subject(name, mutant) for mutant in mutants_of(name) if mutant.right}
+    right["the worked answers"] = modules.bind(name), lambda exercise, test: True
+    lost = [(seed, story, o.test, o.quantity, o.got) for seed in SEEDS
+            for story, outcomes in grade_each(name, right, seed=seed).items()
+            for o in outcomes if o.status != "passed"]
+    assert not lost, lost
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"mutants of {name}"))
