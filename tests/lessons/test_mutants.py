@@ -76,7 +76,8 @@ def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number, grade
 @pytest.mark.parametrize("name", LESSONS)
 def test_right_answers_keep_their_points_with_other_inputs(name):
     """A tolerance that a right answer misses by chance is a fault of the test: an examiner's inputs are drawn, too."""
-    right = {mutant.story: subject(name, mutant) for mutant in mutants_of(name) if mutant.right}
+    right = {f"{mutant.exercise}: {mutant.story}": subject(name, mutant)
+             for mutant in mutants_of(name) if mutant.right}
     right["the worked answers"] = modules.bind(name), lambda exercise, test: True
     lost = [(seed, story, o.test, o.quantity, o.got) for seed in SEEDS
             for story, outcomes in grade_each(name, right, seed=seed).items()
