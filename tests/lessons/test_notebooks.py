@@ -35,7 +35,6 @@ sys.path.append({str(Path(__file__).parent)!r})
 import drawn_type
 drawn_type.install()"""
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-ONE_BY_ONE = {"10", "11", "12"}                          # notebooks with something to see after each check
 SHORT = {"00"}               # notebooks that the default tests run, half done; --long runs all, in three states
 STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}  # share of the exercises, from the first on
 
@@ -156,8 +155,7 @@ def test_a_lesson_is_told_in_the_same_way_everywhere(path):
     assert not any("plt.show()" in cell.source for cell in code)
 
 
-@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] in ONE_BY_ONE],
-                         ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_something_to_see_follows_every_check_and_words_follow_every_figure(path):
     """A choice has its figure before its check.  What follows the sliders is said before them."""
     cells = nbformat.read(path, as_version=4).cells
