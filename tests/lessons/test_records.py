@@ -471,9 +471,12 @@ def test_what_is_round_has_one_radius(state, p, step, bounds):
 # ---------------------------------------------------------------------------------------------- behind an array
 
 def twin(value):
-    """The compiled form of a function of solutions, everything else as it is."""
+    """The compiled form of a function of solutions or of a test, everything else as it is."""
     if not isinstance(value, types.FunctionType):
         return value
+    if not value.__module__.startswith("solutions."):
+        import numba
+        return numba.njit(value)
     home = modules.module_set(compiled=True).solution(value.__module__.removeprefix("solutions."))
     return vars(home)[value.__name__]
 
@@ -482,7 +485,7 @@ def run_compiled():
     """Make every ordinary call of every loop, compiled; then one without its check, which must read behind an array."""
     for course in modules.lesson_names():
         for name, call in calls(course) if loops(course) else ():
-            print(course, name, call[0].__name__, flush=True)
+            print(course, name, getattr(call[0], "__name__", ""), flush=True)
             getattr(modules.bind(course, compiled=True), name)(*map(twin, call))
     call = (simulator.contact_step_2d, *WITH_CONTACT, flat[1]._replace(inv_inertia=np.ones(1)))
     unchecked = vars(modules.module_set(compiled=True).solution("simulator"))["advance_contact"]
