@@ -23,7 +23,7 @@ from solutions.checks import BadInput
 
 from ..measure.selection import Plan, select
 from ..measure.timing import interval, time_ours
-from ..methods import BACKTRACKING, CONTINUOUS, LOOP_2D, RATTLE, RK4, RUNGE_KUTTA, SLIDING, TANGENTS, TRIANGLES
+from ..methods import BACKTRACKING_DISCS, CONTINUOUS, LOOP_2D, RATTLE, RK4, RUNGE_KUTTA, SLIDING, TANGENTS, TRIANGLES
 from ..run.command import start
 from ..run.store import full_run
 from ..subject import modules
@@ -68,7 +68,7 @@ WORK = {                     # {lesson: () → what is timed, a function without
     "inertia_tensors": lambda: of_a_scene("ball_mesh", TRIANGLES),
     "rotation": lambda: of_a_scene("asymmetric_top", RUNGE_KUTTA),
     "collisions": lambda: of_a_scene("point_and_plane", CONTINUOUS),
-    "impulses": lambda: of_a_scene("oblique_discs", BACKTRACKING),
+    "impulses": lambda: of_a_scene("oblique_discs", BACKTRACKING_DISCS),
     "pbd": lambda: of_a_scene("rope", RATTLE),
     "contact": pile,
     "simulator": lambda: of_a_scene("moving_wedge", LOOP_2D),
@@ -138,6 +138,8 @@ def checkout(revision):
 def of_the_last_full_run():
     """Return the commit of the full run that is kept; None where there is none, as in a clone without its history."""
     commit = (full_run() or {}).get("commit", "")
+    if commit == "9726b3aa":                             # its own measurement of lesson 7 ends in an error
+        return None
     return commit if commit and git("cat-file", "-e", f"{commit}^{{commit}}").returncode == 0 else None
 
 
