@@ -168,8 +168,8 @@ def heights(world, steps):
 def test_hulls_that_settle_lie_as_high_in_our_loop_as_in_engines():
     """A tetrahedron and an octahedron fall askew onto the ground, and a pyramid onto a plate: each ends on a face.
 
-    The heights are those of their centres over their faces, which do not depend on how they fall.  In engines two soft
-    contacts lie on each other: Rapier's pyramid lies 0.8 mm too low.
+    The heights are those of their centres over their faces, which do not depend on how they fall.  Contacts in Rapier
+    are springs of 30 Hz, or of 60 Hz on what cannot move.  Its pyramid lies 0.76 mm too low: its limit is measured.
     """
     askew = rotation_of(np.array((0.96, 0.2, -0.16, 0.104)) / np.linalg.norm((0.96, 0.2, -0.16, 0.104)))
     pyramid = np.array([(0.2, 0.2, 0.0), (0.2, -0.2, 0.0), (-0.2, 0.2, 0.0), (-0.2, -0.2, 0.0), (0.0, 0.0, 0.24)])
@@ -179,10 +179,10 @@ def test_hulls_that_settle_lie_as_high_in_our_loop_as_in_engines():
                         body_of(pyramid @ askew.T + (3.0, 0.0, 0.35), 0.8)], (0.0, 0.0, -G))
     truth = (0.0, 0.2 / np.sqrt(3.0), 0.3 / np.sqrt(3.0), 0.1, 0.2 + 0.06)
     assert heights(ours.build(model, 1.0 / 240.0), 480) == pytest.approx(truth, abs=SOFT)
-    for product in (PYBULLET, MUJOCO, RAPIER):
+    for product, most in ((PYBULLET, SOFT), (MUJOCO, SOFT), (RAPIER, 1e-3)):
         if product.installed():
             found = heights(product.world.build(model, 1.0 / 1000.0), 2000)
-            assert found == pytest.approx(truth, abs=2.0 * SOFT), product.name
+            assert found == pytest.approx(truth, abs=most), product.name
 
 
 def test_who_has_no_polyhedra_says_so():

@@ -42,3 +42,20 @@ def test_an_unknown_commit_gets_one_sentence():
 def test_without_a_commit_to_compare_with_nothing_is_compared(monkeypatch, kept, found):
     monkeypatch.setattr(regression, "full_run", lambda: kept)
     assert regression.of_the_last_full_run() == found
+
+
+def failing(lesson):
+    raise EOFError(lesson)
+
+
+def test_a_measurement_that_failed_at_the_earlier_commit_is_named_and_one_that_fails_now_is_an_error():
+    row, slower = regression.compared(lambda lesson: (0.4, 0.2), failing, "springs")
+    assert not slower and row[0] == "springs" and "failed at that commit" in row[-1]
+    with pytest.raises(EOFError):
+        regression.compared(failing, lambda lesson: (0.4, 0.2), "springs")
+
+
+@pytest.mark.parametrize("lesson", regression.WORK)
+def test_what_is_timed_is_there(lesson):
+    """One that a scene does not have would end the comparison."""
+    assert callable(regression.WORK[lesson]())

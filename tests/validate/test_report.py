@@ -11,6 +11,7 @@ from validate import report
 from validate.check import Verdict
 from validate.measure import timing
 from validate.measure.accuracy import theory
+from validate.reference.contact_laws import MEASURED
 from validate.report import films, numbers, plots, races, words
 from validate.report.answers import answers, right
 from validate.subject import modules
@@ -200,6 +201,9 @@ def test_a_measured_limit_is_listed_and_counted(made):
     found, = words.measured_limits(other["scenes"], other["stability"])
     assert found == (f"throw: {other['scenes'][0]['cases']['thrown']['ours'][0]['label']}", "ten times what was seen")
     assert "1 limit or tolerance was measured" in front_of(other)
+    (quantity, why), *_ = MEASURED.items()
+    other = changed(made, laws=[{"quantity": quantity, "known": 0.05}, {"quantity": quantity, "known": None}])
+    assert words.measured_limits(other["scenes"], other["stability"]) == [(f"laws of contact: {quantity}", why)]
 
 
 def test_a_quick_report_shows_no_tick_while_races_are_undecided_and_the_last_full_run_beside_it(made):

@@ -11,6 +11,7 @@ from ..check import Verdict, is_right
 from ..measure.accuracy import relative
 from ..measure.timing import SAME, interval
 from ..products import PRODUCTS
+from ..reference.contact_laws import MEASURED
 from ..scene import EXACT
 from . import races
 from .numbers import engine_name, number, percent, percents, rounded
@@ -94,7 +95,10 @@ def measured_limits(results, stability):
               for c in one["ours"] + one["engines"] if c["measured"]]
     tolerances = [(f"{case['lesson']}/{case['slug']}: {f['quantity']}", f["tolerance_from"]) for case in stability
                   for f in case["findings"] if f["tolerance_from"]]
-    return list(dict.fromkeys([*limits, *tolerances]))
+    laws = [(f"laws of contact: {law['quantity']}", MEASURED[law["quantity"]])
+            for r in results for one in r["cases"].values() for c in one["ours"] + one["engines"]
+            for law in c.get("laws", ()) if law["known"] is not None and law["quantity"] in MEASURED]
+    return list(dict.fromkeys([*limits, *tolerances, *laws]))
 
 
 def truths_by_engines(results):

@@ -138,8 +138,6 @@ def checkout(revision):
 def of_the_last_full_run():
     """Return the commit of the full run that is kept; None where there is none, as in a clone without its history."""
     commit = (full_run() or {}).get("commit", "")
-    if commit == "9726b3aa":                             # its own measurement of lesson 7 ends in an error
-        return None
     return commit if commit and git("cat-file", "-e", f"{commit}^{{commit}}").returncode == 0 else None
 
 
@@ -149,14 +147,26 @@ def git(*arguments):
 
 @contextmanager
 def server(folder):
-    """Yield ask(lesson) → [seconds of its method, of the clock], answered by the code in that folder."""
+    """Yield ask(lesson) → [seconds of its method, of the clock], answered by the code in that folder.
+
+    ask raises EOFError where that code ends in an error.
+    """
     code = "from validate.speed.regression import serve; serve()"
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=folder, text=True,
-                               stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def begun():
+        return subprocess.Popen([sys.executable, "-c", code], cwd=folder, text=True,
+                                stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    process = begun()
 
     def ask(lesson):
+        nonlocal process
+        process = process if process.poll() is None else begun()
         print(lesson, file=process.stdin, flush=True)
-        return np.array(json.loads(process.stdout.readline()))
+        answer = process.stdout.readline()
+        if not answer:
+            process.wait()
+            raise EOFError(f"the measurement of {lesson} in {folder} ended in an error")
+        return np.array(json.loads(answer))
     try:
         yield ask
     finally:
@@ -170,6 +180,19 @@ def ratios(now, then, lesson):
         (method, clock), (method_then, clock_then) = now(lesson), then(lesson)
         return method / clock / (method_then / clock_then)
     return [one() for _ in range(ROUNDS)]
+
+
+def compared(now, then, lesson):
+    """Return what `judged` returns, or a row that says that the measurement failed at the earlier commit.
+
+    One that fails now raises EOFError.
+    """
+    now(lesson)
+    try:
+        then(lesson)
+    except EOFError:
+        return (lesson, "–", "–", "not compared: its measurement failed at that commit"), False
+    return judged(lesson, ratios(now, then, lesson))
 
 
 def judged(lesson, samples):
@@ -192,7 +215,7 @@ def main(base: Annotated[str | None, typer.Option(help="Else that of the last fu
             print(f"{base} has no such measurement yet, so nothing is compared")
             return
         with server(modules.ROOT) as now, server(folder) as then:
-            rows = [judged(lesson, ratios(now, then, lesson)) for lesson in WORK]
+            rows = [compared(now, then, lesson) for lesson in WORK]
     for row, _ in rows:
         table.add_row(*row)
     Console().print(table)

@@ -244,7 +244,8 @@ def trembling(lesson, check):
     measured = {m: largest(differences(lambda state, m=m: trembling_step(lesson.gauss_seidel_sweep, m, state), rest))
                 for m in few}
     for m, verb in ((7, "trembles"), (8, "comes to rest")):
-        check("If the memory keeps pushes, ten boxes tremble with seven sweeps per step, but not with eight.",
+        check("If the memory keeps pushes and a gap counts like an overlap, ten boxes tremble with seven sweeps, "
+              "but not with eight.",
               f"growth per step, {m} sweeps [-]", law=theory[m], found=measured[m], within=SAME,
               saw=f"With {m} sweeps a disturbance is multiplied by {measured[m]:.4f} per step: the stack {verb}.")
     return Picture("Ten boxes with memory and a push", "sweeps per step", "growth per step [-]", [
