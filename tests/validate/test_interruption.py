@@ -156,8 +156,8 @@ def test_compiled_code_that_the_disk_does_not_take_runs_all_the_same(tmp_path):
 
 
 FULL_DISK = """
-mount -t tmpfs -o size=800k none "$0" || exit 77
-head -c $((720 * 1024)) /dev/zero > "$0/filler"
+mount -t tmpfs -o size=8m none "$0" || exit 77
+head -c $((8 * 1024 * 1024 - 80 * 1024)) /dev/zero > "$0/filler"
 "$@"; echo "code $?"
 find "$0/report" -name "tensors.errors.json" -o -name "*.part"
 touch -d 2001-01-01 "$0/report/results/tensors.errors.json"
