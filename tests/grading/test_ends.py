@@ -14,7 +14,7 @@ import pytest
 from validate.grading import children, sandbox
 from validate.subject.modules import ROOT
 
-WITHIN = 600.0               # [s]: only a run that hangs takes so long, on the busiest machine, too
+WITHIN = 600.0              # [s]: only a run that hangs takes so long, on the busiest machine, too
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -29,19 +29,21 @@ def until(true):
         time.sleep(0.2)                                # to look at all processes takes a while
 
 
-@pytest.fixture
-def run(tmp_path):
+@pytest.fixture(params=["bubblewrap", pytest.param("chroot", marks=pytest.mark.long)])
+def run(request, tmp_path):
     """`grade` at work, with its sandboxes running: forty files sleep until they are given up, after some seconds each.
 
     Loops without end would take the time of the processor from all other tests.
     """
+    if reason := sandbox.broken(request.param):
+        pytest.skip(reason)
     for student in range(40):
         (tmp_path / "class" / f"student {student}").mkdir(parents=True)
         (tmp_path / "class" / f"student {student}" / "integrators.py").write_text("import time\ntime.sleep(1e6)\n")
     (tmp_path / "temporary").mkdir()
     folders = [str(tmp_path / "class"), "--out", str(tmp_path / "out")]
     command = [sys.executable, "-m", "validate.grading", *folders, "--lesson", "integrators", "--jobs", "2"]
-    environment = {**os.environ, "TMPDIR": str(tmp_path / "temporary")}
+    environment = {**os.environ, "TMPDIR": str(tmp_path / "temporary"), "WORKBOOK_SANDBOX_BY": request.param}
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     process = subprocess.Popen(command, cwd=ROOT, env=environment, **pipes)
     try:

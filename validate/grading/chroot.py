@@ -41,7 +41,8 @@ def command(binds, filter, program):
     for source, target in binds.items():
         copy(source, inside(top, target))
     user = secrets.choice(users())
-    return [sys.executable, "-I", "-S", "-B", "-c", ENTER, str(top), str(user), str(filter), *program]
+    numbers = str(user), str(filter), str(os.getpid())
+    return [sys.executable, "-I", "-S", "-B", "-c", ENTER, str(top), *numbers, *program]
 
 
 def users(folder=Path("/proc/self")):
@@ -51,10 +52,11 @@ def users(folder=Path("/proc/self")):
     return USERS if min(known) >= USERS.stop else FEW_USERS
 
 
-# runs as root, outside, before any code of a student; the filter comes last, because it forbids the rest
+# Runs as root, outside, before any code of a student.  The program is killed when its parent ends, which it must not
+# outlive; a change of the user would undo that.  The filter comes last, because it forbids the rest.
 ENTER = """
 import ctypes, os, sys
-top, user, filter, *program = sys.argv[1:]
+top, user, filter, parent, *program = sys.argv[1:]
 rules = os.read(int(filter), 1 << 16)
 os.close(int(filter))
 libc = ctypes.CDLL(None, use_errno=True)
@@ -66,22 +68,32 @@ os.setgroups([])
 os.setresgid(*3 * [int(user)])
 os.setresuid(*3 * [int(user)])
 rule = Program(len(rules) // 8, rules)
-no_new_privileges, set_filter, by_program = 38, 22, 2
-for words in ((no_new_privileges, 1, 0, 0, 0), (set_filter, by_program, ctypes.byref(rule), 0, 0)):
+die_with_parent, killed, no_new_privileges, set_filter, by_program = 1, 9, 38, 22, 2
+for words in ((die_with_parent, killed, 0, 0, 0), (no_new_privileges, 1, 0, 0, 0),
+              (set_filter, by_program, ctypes.byref(rule), 0, 0)):
     if libc.prctl(*words):
-        raise OSError(ctypes.get_errno(), "the kernel takes no filter of system calls")
+        raise OSError(ctypes.get_errno(), "the kernel confines no program")
+if os.getppid() != int(parent):
+    sys.exit("the parent has ended")
 os.execv(program[0], program)
 """
 
 
 # ---------------------------------------------------------------------------------------------- the empty root
 
+@atexit.register
+def remove_root():
+    """Remove the folder that `root` has made.  It is made again when it is needed."""
+    if root.cache_info().currsize:
+        shutil.rmtree(root(), ignore_errors=True)
+        root.cache_clear()
+
+
 @lru_cache(maxsize=1)
 def root():
     """Make the folder that becomes the root of programs of this process, one after the other."""
     top = Path(tempfile.mkdtemp(prefix="root-"))
     top.chmod(0o755)
-    atexit.register(shutil.rmtree, top, ignore_errors=True)
     places = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), *packages()]
     for place in dict.fromkeys(map(Path, places)):
         for name in {place, place.resolve()}:

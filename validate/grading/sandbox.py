@@ -204,6 +204,8 @@ def broken(name):
         _, said = trial.communicate(timeout=30)
     except (OSError, subprocess.TimeoutExpired) as e:
         return f"{name} does not start: {e}"
+    finally:
+        chroot.remove_root()                                           # a run that is killed would leave it behind
     return f"{name} is not allowed here: {said.decode(errors='replace').strip()[-200:]}" if trial.returncode else ""
 
 
