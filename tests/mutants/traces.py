@@ -3,11 +3,12 @@
 Without a lesson it writes all of them, which takes some minutes.  Write a lesson's table again after a change of its
 grading tests, of its worked answers or of its wrong answers.
 
-Every table is computed twice, the second time in a process whose linear algebra rounds as an old processor does.
+Every table is computed once for each of the PROCESSORS, in a process whose linear algebra rounds as it does there.
 Results that differ are decided by round-off, such as the nearest points of two parallel faces.  The table has no number
 for them, so that an answer gets the same name on every machine.
 """
 
+import functools
 import importlib
 import json
 import os
@@ -15,11 +16,16 @@ import subprocess
 import sys
 import types
 
+import numpy as np
+
 from solutions.checks import BadInput
 from validate import mistakes
 from validate.grading import points
 from validate.subject import modules
 from validate.subject.generate import exercises
+
+PROCESSORS = {"Prescott": False, "Nehalem": True, "Haswell": True, "SkylakeX": True}   # OpenBLAS rounds differently on
+SIMD = "SIMD Extensions"     # each of them; on the first, NumPy has no wide vectors either
 
 
 def mutants_of(lesson):
@@ -92,12 +98,14 @@ def in_any_order(worked, right):
     return any(agrees(traces, True) and not agrees(traces, False) for traces in right)
 
 
-def table_elsewhere(lesson):
-    """The table of a lesson as a processor without AVX computes it."""
+def tables_of(lesson):
+    """The tables of a lesson as each of the PROCESSORS computes it."""
     program = f"import json; from tests.mutants.traces import table_of; print(json.dumps(table_of({lesson!r})))"
-    said = subprocess.run([sys.executable, "-W", "ignore", "-c", program], cwd=modules.ROOT, check=True, text=True,
-                          env={**os.environ, "OPENBLAS_CORETYPE": "Prescott"}, stdout=subprocess.PIPE).stdout
-    return json.loads(said.splitlines()[-1])
+    for name, vectors in PROCESSORS.items():
+        narrow = {} if vectors else {"NPY_DISABLE_CPU_FEATURES": " ".join(np.show_config(mode="dicts")[SIMD]["found"])}
+        said = subprocess.run([sys.executable, "-W", "ignore", "-c", program], cwd=modules.ROOT, check=True, text=True,
+                              env={**os.environ, **narrow, "OPENBLAS_CORETYPE": name}, stdout=subprocess.PIPE).stdout
+        yield json.loads(said.splitlines()[-1])
 
 
 def steady(results, elsewhere):
@@ -111,7 +119,7 @@ def both_say(one, other):
     """A result that is the same elsewhere, HUGE where both are large, or None."""
     if one == other:
         return one
-    if isinstance(one, str) or isinstance(other, str) or one[0] != other[0]:
+    if one is None or other is None or isinstance(one, str) or isinstance(other, str) or one[0] != other[0]:
         return None
     if abs(one[1] - other[1]) <= mistakes.SAME * max(1.0, abs(one[1])):
         return one
@@ -147,7 +155,7 @@ def without_the_unsteady(table, elsewhere):
             later = {test: found for test, found in mistake["later"].items() if test in seen}
             telling = later or any(tells(results, right[test]) for test, results in seen.items())
             if all(tests.values()) and telling:
-                kept.append({"idea": mistake["idea"], "tests": seen, "later": later})
+                kept.append({**mistake, "tests": seen, "later": later})
         exercise["right"], exercise["wrong"] = right, kept
     return table
 
@@ -155,7 +163,10 @@ def without_the_unsteady(table, elsewhere):
 def write(lesson):
     """Write the table of a lesson; its path."""
     path = mistakes.FOLDER / f"{lesson}.json"
-    table = without_the_unsteady(table_of(lesson), table_elsewhere(lesson))
+    table = functools.reduce(without_the_unsteady, tables_of(lesson))
+    for exercise in table.values():
+        exercise["wrong"] = [{name: mistake[name] for name in ("idea", "tests", "later")}
+                             for mistake in exercise["wrong"]]
     path.write_text(json.dumps(table, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
     mistakes.table.cache_clear()
     return path
