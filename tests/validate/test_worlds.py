@@ -603,19 +603,47 @@ def test_our_loop_tells_the_forces_of_contacts_and_joints():
     assert held == pytest.approx((0.0, 2.0 * G), abs=1e-6)
 
 
+def models_in_the_plane():
+    light = Body((0.0, 1.0), 1.0, Ball(0.2), e=0.5)
+    return {
+        "all parts": belt_machine(),
+        "restitution": make_model([light, FLOOR], (0.0, -G)),
+        "friction": make_model([light._replace(mu=0.5), light._replace(x=(1.0, 1.0), mu=0.2), FLOOR], (0.0, -G)),
+        "a joint": make_model([light._replace(shape=None, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.5, 1.0))]),
+    }
+
+
+def models_in_space():
+    down, ground = (0.0, 0.0, -G), Body((0.0, 0.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), mu=0.5, e=0.2)
+
+    def light(*x):
+        return Body(x, 1.0, Ball(0.1), mu=0.4, e=0.3)
+    swinging = Body((0.6, 0.0, 0.6), 1.0, Box((0.5, 0.1, 0.1)), mu=0.4)
+    links = [light(0.25 * k, 0.02 * k, 0.5) for k in range(4)]
+    return {
+        "a hinge and contacts": make_model([ground, swinging, light(1.0, 0.02, 1.0)], down,
+                                           [Hinge(1, WORLD, (0.1, 0.0, 0.6), (0.0, 1.0, 0.0))]),
+        "a rod and contacts": make_model([ground, light(0.0, 0.0, 0.5), light(0.5, 0.1, 0.8)], down,
+                                         [Distance(1, 2, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]),
+        "a chain and contacts": make_model([ground, *links], down, [
+            BallJoint(k, k + 1, (0.25 * k - 0.125, 0.02 * k - 0.01, 0.5)) for k in range(1, 4)]),
+        "a spring and drag": make_model(
+            [light(0.0, 0.0, 1.0), light(0.5, 0.2, 1.0)], down, (),
+            [Spring(0, 1, (0.0, 0.0, 0.05), (0.0, 0.05, 0.0), 0.4, 80.0, 1.0)], [Drag(0.3)]),
+    }
+
+
 @pytest.mark.long
 @pytest.mark.xdist_group("compiled simulator")
-def test_our_compiled_loop_runs_every_part_as_the_plain_one_does():
+@pytest.mark.parametrize("models", [models_in_the_plane, models_in_space])
+def test_our_compiled_loop_runs_every_part_as_the_plain_one_does(models):
     if not modules.can_compile():
         pytest.skip("numba has no wheel for this machine")
-    light = Body((0.0, 1.0), 1.0, Ball(0.2), e=0.5)
-    for model in (belt_machine(), make_model([light, FLOOR], (0.0, -G)),
-                  make_model([light._replace(mu=0.5), light._replace(x=(1.0, 1.0), mu=0.2), FLOOR], (0.0, -G)),
-                  make_model([light._replace(shape=None, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.5, 1.0))])):
+    for said, model in models().items():
         worlds = [ours.build(model, 1e-3, compiled=kind) for kind in (False, True)]
         for _ in range(700):
             for world in worlds:
                 world.step()
         plain, compiled = (world.state() for world in worlds)
-        assert compiled.x == pytest.approx(plain.x, abs=1e-9)
-        assert compiled.q == pytest.approx(plain.q, abs=1e-9)
+        assert compiled.x == pytest.approx(plain.x, abs=1e-9), said
+        assert compiled.q == pytest.approx(plain.q, abs=1e-9), said
