@@ -7,6 +7,7 @@ import pytest
 
 from solutions import simulator as worked
 from solutions.given import simulator as given
+from solutions.given.compose import compose
 from validate.stability.examine import cases_of, found_by, subject_of
 
 from ..mutants.simulator import MUTANTS
@@ -111,6 +112,19 @@ def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
 def scaled(value, factor):
     """The same result, a little larger or smaller: a number, an array, or a tuple of them."""
     return tuple(scaled(part, factor) for part in value) if isinstance(value, tuple) else factor * np.asarray(value)
+
+
+def slippery(model, settings):
+    """Takes 9/10 of each body's friction."""
+    bodies = tuple(body._replace(mu=0.9 * body.mu) for body in model.bodies)
+    return compose(model._replace(bodies=bodies), settings)
+
+
+@pytest.mark.long
+def test_a_tenth_less_friction_is_seen_on_a_pyramid_that_slides():
+    case = cases_of("simulator")["solids-on-a-plane"]
+    lesson = types.SimpleNamespace(**{**vars(subject_of(case)), "compose": slippery})
+    assert not all(f.holds for f in found_by(case, lesson)[0])
 
 
 FORMULAS = ("free_step_2d", "free_step", "mechanical_energy", "momenta", "gain_without_source", "compare")

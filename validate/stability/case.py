@@ -134,8 +134,8 @@ def log_series(label, xs, ys, style):
 
 # ---------------------------------------------------------------------------------------------- experiments
 
-def bisect(too_long, low, high):
-    """Return the number at which too_long turns from False to True.
+def bisect(too_long, low, high, edge=EDGE):
+    """Return the number at which too_long turns from False to True, within this part of it.
 
     It is 0 if too_long is True at low, and infinite if it is still False at high.
     """
@@ -143,7 +143,7 @@ def bisect(too_long, low, high):
         return 0.0
     if not too_long(high):
         return np.inf
-    while high - low > EDGE * high:
+    while high - low > edge * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if too_long(middle) else (middle, high)
     return 0.5 * (low + high)

@@ -10,6 +10,8 @@ import numpy as np
 
 from solutions.checks import Diverged
 from solutions.support.events import release
+from solutions.support.model import Body, HalfSpace, make_model
+from solutions.support.shapes import polyhedron_of
 from validate.reference.simulator import leaves_ball, leaves_platform, rocking, slides_on_ball
 from validate.stability.case import (
     DOTS,
@@ -1064,3 +1066,59 @@ def scene_of_ones_own(lesson, check):
                 np.maximum(0.0, np.max(energies) - energies[0]), 0.005 * G)
     check("The scene moves.", "farthest way of a box, over the margin [-]", law=1.0, found=min(1.0, moved / 0.03),
           within=0.0, saw=f"A box moves by {moved:.2g} m.")
+
+
+# ---------------------------------------------------------------------------------------------- polyhedra
+
+PYRAMIDS = [(0.15, 0.9), (0.25, 0.9)]                    # half of an edge of the base, and the height [m]
+
+
+def pyramid(base, height):
+    """Return the corners (5, 3) of a square pyramid that stands on z = 0."""
+    return np.array([*((x, y, 0.0) for x in (-base, base) for y in (-base, base)), (0.0, 0.0, height)])
+
+
+def moved_solid(lesson, corners, mu, gravity, v, dt, steps):
+    """Return how far [m] the centre of a solid that stands on z = 0 has moved after these steps."""
+    shape, x, q = polyhedron_of(corners)
+    bodies = [Body((0.0, 0.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), mu=1.0),
+              Body(tuple(x), 1.0, shape, mu, q=tuple(q), v=(v, 0.0, 0.0))]
+    loop = lesson.compose(make_model(bodies, tuple(gravity)), lesson.Settings(settled=1e-8, sweeps=1000))
+    return lesson.state_of(loop, lesson.run_parts(loop, 0.0, loop.state, dt, steps)).x[1] - x
+
+
+def tipped(lesson, corners, slope):
+    """Return whether a solid that stands on a rough slope [rad] moves by more than a centimetre in 1.2 s."""
+    gravity = G * np.array((np.sin(slope), 0.0, -np.cos(slope)))
+    return np.linalg.norm(moved_solid(lesson, corners, 2.0, gravity, 0.0, 4e-3, 300)) > 0.01
+
+
+@case("solids-on-a-plane", "Pyramids that tip and pyramids that slide", compiled=False, in_quick=False)
+def solids_on_a_plane(lesson, check):
+    """Compare the slope on which a pyramid tips, and the way that it slides, with their closed forms.
+
+    The centre of mass of a pyramid is at a quarter of its height.  Its line of gravity leaves the base, whose half edge
+    is b, at tan α = 4 b/h.  A pyramid that is slightly beyond that tips slowly: within 1.2 s one that is 0.5 % beyond
+    it has moved by more than a centimetre.  A pyramid that slides on a horizontal floor stops after v²/(2 μ g).
+    Symplectic Euler reduces the velocity first, so the way is shorter by ½ v dt.  The velocity is a whole number of
+    changes by μ g dt and a part f of one, and the step that ends the slide adds ½ μ g dt² f (1 − f).
+    """
+    edges, dt, v = [], 2e-3, 1.0
+    laws = [np.arctan(4.0 * base / height) for base, height in PYRAMIDS]
+    for law, (base, height) in zip(laws, PYRAMIDS, strict=True):
+        tips = lambda slope, base=base, height=height: tipped(lesson, pyramid(base, height), slope)
+        edges.append(bisect(tips, 0.8 * law, 1.2 * law, 2e-3))
+        check("A pyramid tips where its line of gravity leaves its base.",
+              f"slope on which it tips, base {2.0 * base:g} m, height {height:g} m [rad]", law=law, found=edges[-1],
+              within=0.005 * law, saw=f"It tips on a slope of {np.degrees(edges[-1]):.2f}°.")
+    for mu in (0.2, 0.3):
+        way = moved_solid(lesson, pyramid(0.3, 0.4), mu, (0.0, 0.0, -G), v, dt, 300)[0]
+        check("A pyramid that slides stops where friction has used up its kinetic energy.",
+              f"way at 1 m/s, friction {mu:g} [m]", law=v * v / (2.0 * mu * G) - 0.5 * v * dt, found=way,
+              within=mu * G * dt * dt / 8.0, saw=f"It stops after {100.0 * way:.2f} cm.")
+    ratio = [base / height for base, height in PYRAMIDS]
+    across = np.linspace(0.8 * ratio[0], 1.2 * ratio[-1], 30)
+    return Picture("Which slope a pyramid stands on", "half of an edge of the base over the height [-]", "slope [°]", [
+        series("theory, tan α = 4 b/h", across, np.degrees(np.arctan(4.0 * across)), LINE),
+        series("measured", ratio, np.degrees(edges), DOTS)],
+        "A pyramid with a base as wide as it is high stands on a slope of more than 60°, if friction holds it.")
