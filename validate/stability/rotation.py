@@ -707,7 +707,7 @@ def drifts(lesson, n, tops):
     return np.array(changes, float)
 
 
-@case("a-million-steps", "A million steps of a top")
+@case("a-million-steps", "A million steps of a top", in_quick=False)
 def a_million_steps(lesson, check):
     """Check that L_z and L₃ of a top are constant: gravity has no torque about the vertical, nor about a symmetry axis.
 
