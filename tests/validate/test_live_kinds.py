@@ -162,6 +162,15 @@ def test_the_throw_follows_the_target_and_with_a_search_that_does_nothing_it_mis
     assert scene.follow() and ran(scene, 60).energy() > 0.1
 
 
+@pytest.mark.parametrize("target", [(0.3, -0.5), (4.0, 1.0), (4.0, -2.0)])
+def test_a_target_beyond_floor_or_wall_stays_in_the_room_and_is_hit(target):
+    scene = Bucket(SOLUTIONS)
+    scene.grab(len(scene.bodies) - 1, (0.0, 0.0), target)
+    ran(scene, 120)
+    x, y = scene.state.target
+    assert y > 0.05 and x < 3.0 + y * np.tan(np.radians(20.0)) and scene.energy() < 10.0 * HIT
+
+
 # ---------------------------------------------------------------------------------------------- settings
 
 def test_a_slider_refuses_what_it_does_not_have_and_keeps_its_value():

@@ -132,6 +132,7 @@ def without_round_off(points):
 HAND, LEAN, MOMENTS = (0.0, 1.0), np.radians(20.0), 48   # as in notebook 12 [m], [rad]; points of the path
 FLOOR, WALL = ((0.0, 1.0), (0.0, 0.0)), ((-np.cos(LEAN), np.sin(LEAN)), (3.0, 0.0))          # normal, a point [m]
 MOST_CORRECTIONS, HIT = 10, 1e-9                         # of a search per step, and its tolerance [m]
+RADIUS = 0.09                                            # of the target [m]
 
 
 class Aimed(NamedTuple):
@@ -141,6 +142,13 @@ class Aimed(NamedTuple):
     ball: np.ndarray         # (1,) time since it was thrown [s]
 
 
+def inside(target):
+    """Return the target (2,), or a place near it whose disc touches neither floor nor wall [m]."""
+    for n, place in (WALL, FLOOR):
+        target = target + max(0.0, RADIUS - (target - place) @ n) * np.array(n)
+    return target
+
+
 class Bucket(Touched):
     """A throw over floor and wall at a target that is moved, by the search of lesson 12."""
 
@@ -148,7 +156,7 @@ class Bucket(Touched):
     knobs = (knob("restitution e", "e", 0.3, 1.0, 0.01, 0.8), knob("flight", "duration", 0.7, 2.0, 0.05, 1.4, "s"),
              of_dt(1.0 / 60.0))
     bodies = (*(outline([], closed=False, fixed=True, moves=False) for _ in range(MOMENTS)), disc(0.05, moves=False),
-              disc(0.09))
+              disc(RADIUS))
     links = tuple((k, k + 1) for k in range(MOMENTS - 1))
     planes = tuple((*n, float(np.dot(n, point))) for n, point in (FLOOR, WALL))
     measured = "miss", "m", "miss of the throw before:"
@@ -166,7 +174,7 @@ class Bucket(Touched):
         """Return (state after dt, 0).  A search that fails begins anew with the throw that would hit without walls."""
         velocity, target, (ball,) = state
         if self.grip is not None:
-            target = towards(np.array(self.grip.target), target, FASTEST * self.tuning.dt)
+            target = towards(inside(np.array(self.grip.target)), target, FASTEST * self.tuning.dt)
         self.before = self.miss(velocity, target)
         e = np.array((self.tuning.e, 0.875 * self.tuning.e))
         normals, points = np.array((FLOOR, WALL)).transpose(1, 0, 2)
