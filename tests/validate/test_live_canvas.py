@@ -4,6 +4,7 @@ Chromium, driven by playwright, shows one picture of a scene that was computed h
 """
 
 import json
+import re
 from functools import partial
 
 import numpy as np
@@ -11,12 +12,13 @@ import pytest
 
 from solutions.support.model import Body, Box, HalfSpace, make_model
 from validate.notebook.live import canvas, widget
+from validate.notebook.live.kinds import BallOnSpring
 from validate.notebook.live.running import Running
 from validate.notebook.live.simulation import Simulation, Tuning
 from validate.subject.modules import SOLUTIONS
 
 from .test_live_films import CHROMIUM
-from .test_live_points import SCENES
+from .test_live_points import KINDS, SCENES
 from .test_live_simulation import boxes
 
 pytestmark = [pytest.mark.long,
@@ -24,7 +26,8 @@ pytestmark = [pytest.mark.long,
 
 PAGE = """<!doctype html><meta charset="utf-8"><style>{css} body {{ margin: 0; color: #1d2429 }}</style>
 <body data-jp-theme-light="true"><div id="above"></div><div id="cell"></div><script type="module">
-const scene = {scene}, numbers = new Float32Array({numbers});
+const scene = {scene};
+globalThis.numbers = new Float32Array({numbers});
 globalThis.told = [];
 {script}
 let heard;
@@ -45,6 +48,7 @@ INK = """name => { const root = document.querySelector(".live-scene"), stage = r
     if (pixels[i + 3] > 60 && [0, 1, 2].every(k => Math.abs(pixels[i + k] - wanted[k]) < 40)) found++;
   return found; }"""         # pixels of the stage that have about the colour of that name
 COLOUR = "name => document.querySelector('.live-scene').style.getPropertyValue(name)"
+HEAD = re.findall(r'"(\w+)"', re.search(r"const HEAD = \[(.*?)\]", widget.LiveScene._esm, re.S)[1])
 DRAWN = "document.querySelector('.live-scene')?.dataset.frame === '1'"
 
 
@@ -142,3 +146,37 @@ def test_numbers_that_change_with_every_picture_are_shown_four_times_per_second(
       for (let k = 0; k < 30; k++) { shows(true); await new Promise(done => setTimeout(done, 17)); }
       return [changes, (performance.now() - began) / 1000]; }""")
     assert 1 <= changes <= 1 + seconds / 0.25
+
+
+@pytest.mark.parametrize("wide", [1440, 390])
+@pytest.mark.parametrize("of", KINDS)
+def test_a_scene_of_one_function_can_be_touched_by_pointer_and_keys(opened, of, wide):
+    scene = KINDS[of](SOLUTIONS)
+    page = opened(scene, steps=30, wide=wide)
+    assert page.evaluate("document.documentElement.scrollWidth") == wide and page.evaluate(INK, "--ours") > 50
+    boxes = [page.get_by_role("checkbox", name=name).count() for name in ("contact forces", scene.rival or "pymunk")]
+    assert boxes == [int(scene.contacts), int(bool(scene.rival))]
+    assert not scene.rival or page.evaluate(INK, "--engine") > 20
+    k = int(np.flatnonzero(scene.moves)[-1])
+    x, y = page.evaluate("k => document.querySelector('.live-scene').where(k)", k)
+    page.mouse.move(x + 1, y + 1)
+    page.mouse.down()
+    page.mouse.move(x + 20, y + 10, steps=3)
+    page.wait_for_function("told.some(message => message.do === 'move')")
+    page.mouse.up()
+    page.keyboard.press("n")
+    grabbed = page.evaluate("told.filter(message => message.do === 'grab').map(message => message.body)")
+    assert grabbed == [k, int(np.flatnonzero(scene.moves)[0])]
+
+
+def test_the_path_of_a_ball_is_drawn(opened):
+    """The ball flies around in forty pictures and ends where it was."""
+    page = opened(BallOnSpring(SOLUTIONS))
+    before, place = page.evaluate(INK, "--ours"), len(HEAD) + 3
+    page.evaluate("""([t, last, x]) => { const [x0, y0] = [numbers[x], numbers[x + 1]];
+      for (let k = 1; k <= 40; k++) {
+        numbers[t] = numbers[last] = 0.05 * k;
+        numbers[x] = x0 * Math.cos(k * Math.PI / 20); numbers[x + 1] = y0 + 0.8 * Math.sin(k * Math.PI / 20);
+        shows(true); } }""", [HEAD.index("t"), HEAD.index("last"), place])
+    page.wait_for_timeout(200)
+    assert page.evaluate(INK, "--ours") > before + 300

@@ -1,8 +1,9 @@
-"""Live scenes of points: a net that is pulled, a rope that hangs from the pointer, an arm that follows it."""
+"""Live scenes of points: a net that is pulled, a rope that hangs from the pointer, an arm that follows it.
 
-import os
+The last part is about all live scenes but those of a Model.
+"""
+
 import re
-import time
 
 import numpy as np
 import pytest
@@ -15,9 +16,13 @@ from validate.notebook.live import FILM_ONLY, live, running
 from validate.notebook.live.canvas import drawn
 from validate.notebook.live.files import sentence
 from validate.notebook.live.hand import HERTZ, pulled_point
+from validate.notebook.live.kinds import BallOnSpring, Bucket, Hulls
 from validate.notebook.live.points import FASTEST, Arm, Network
+from validate.notebook.live.solids import Block, Brick, Pendulum
 from validate.subject.generate import stub
 from validate.subject.modules import SOLUTIONS
+
+from .conftest import begun
 
 DOWN = np.array((0.0, -9.81))
 ROUND_OFF = 1e-9             # of energies of some joules after some hundred steps [J]
@@ -229,37 +234,22 @@ def test_the_damping_is_a_slider_and_without_it_the_arm_flails_out_of_reach():
 
 # ---------------------------------------------------------------------------------------------- what all have
 
-@pytest.fixture
-def learner(tmp_path):
-    """save(lesson, text): write a file of the learner's folder, in which all lessons are solved."""
-    for file in SOLUTIONS.glob("*.py"):
-        (tmp_path / file.name).write_text(file.read_text())
-    stamps = iter(range(1, 1000))
-
-    def save(lesson, text):
-        file = tmp_path / f"{lesson}.py"
-        file.write_text(text)
-        os.utime(file, ns=(0, time.time_ns() + next(stamps)))
-    save.folder = tmp_path
-    return save
+KINDS = {"integrators": BallOnSpring, "friction": Block, "inertia_tensors": Pendulum, "rotation": Brick,
+         "collisions": Hulls, "sensitivities": Bucket}
+EVERY = {**SCENES, **{lesson: lambda folder=SOLUTIONS, kind=kind: kind(folder) for lesson, kind in KINDS.items()}}
+MOVED_BY = {                 # {lesson: a function of it that every step runs}
+    "springs": "spring_forces", "pbd": "distance_sweep", "kinematics": "damped_step", "integrators": "euler_step",
+    "friction": "sliding_step", "inertia_tensors": "combine", "rotation": "rigid_body_step", "collisions": "gjk",
+    "sensitivities": "aim"}
 
 
-FIRST_LINES = {              # {lesson: (a line that every step runs, the function it is in)}
-    "springs": ("    force = np.zeros(x.shape)\n    for s in", "spring_forces"),
-    "pbd": ("    x, w = float_copy(x), network.inv_mass\n", "distance_sweep"),
-    "kinematics": ("    e, J = task(theta, target, arm)\n    A = row_products(J)", "damped_step"),
-}
-
-
-@pytest.mark.parametrize("of", SCENES)
+@pytest.mark.parametrize("of", EVERY)
 def test_a_save_is_followed_and_an_error_is_one_sentence_with_its_line(of, learner):
-    scene, text = ran(SCENES[of](learner.folder), 5), (SOLUTIONS / f"{of}.py").read_text()
-    line, function = FIRST_LINES[of]
-    assert text.count(line) == 1
+    scene, text = ran(EVERY[of](learner.folder), 5), (SOLUTIONS / f"{of}.py").read_text()
     for spoiled, said in ((stub(text), r"○ Not attempted yet: \d+\.\d+: \w+\."),
-                          (text.replace(line, f"    1 / 0\n{line}"),
-                           rf"✗ ZeroDivisionError: division by zero \({of}\.py, line \d+, in {function}\)\."),
-                          (text.replace(line, f"    v = = 1\n{line}"), rf"✗ .*{of}\.py cannot be loaded.*line.*")):
+                          (begun(of, MOVED_BY[of], "1 / 0"),
+                           rf"✗ ZeroDivisionError: division by zero \({of}\.py, line \d+, in {MOVED_BY[of]}\)\."),
+                          (begun(of, MOVED_BY[of], "v = = 1"), rf"✗ .*{of}\.py cannot be loaded.*line.*")):
         t, before = scene.t, scene.state
         learner(of, spoiled)
         assert scene.follow()
@@ -271,9 +261,9 @@ def test_a_save_is_followed_and_an_error_is_one_sentence_with_its_line(of, learn
     assert scene.follow() and ran(scene, 1).t > t
 
 
-@pytest.mark.parametrize("of", SCENES)
+@pytest.mark.parametrize("of", EVERY)
 def test_a_scene_that_is_set_back_goes_on_as_it_did_and_its_past_is_a_film(of):
-    scene = SCENES[of]()
+    scene = EVERY[of]()
     scene.grab(int(np.flatnonzero(scene.moves)[-1]), (0.0, 0.0), (0.4, 0.1))
     ran(scene, 40)
     scene.grip = None
@@ -290,9 +280,9 @@ def test_a_scene_that_is_set_back_goes_on_as_it_did_and_its_past_is_a_film(of):
     assert scene.t == 0.0 and scene.grip is None and scene.energy() == scene.origin
 
 
-@pytest.mark.parametrize("of", SCENES)
+@pytest.mark.parametrize("of", EVERY)
 def test_the_canvas_knows_every_point_and_what_can_be_taken(of):
-    scene = SCENES[of]()
+    scene = EVERY[of]()
     found = drawn(scene, "x", 300, None)
     n, (left, right, low, high) = len(scene.now().x), found["view"]
     assert len(found["bodies"]) == n and [body["moves"] for body in found["bodies"]] == list(map(bool, scene.moves))
@@ -303,13 +293,16 @@ def test_the_canvas_knows_every_point_and_what_can_be_taken(of):
         assert one["low"] <= one["value"] <= one["high"]
 
 
-@pytest.mark.parametrize("of", SCENES)
+@pytest.mark.parametrize("of", EVERY)
 def test_where_no_kernel_stays_it_is_a_film(of, monkeypatch):
     monkeypatch.setenv(FILM_ONLY, "film")
     monkeypatch.setenv("WORKBOOK_LESSONS", str(SOLUTIONS))
     monkeypatch.setattr("validate.notebook.live.FILM_SECONDS", 0.2)
-    scene = SCENES[of]()
-    shown = live(scene.arm) if of == "kinematics" else live(scene.network, start=scene.first.x)
+    scene = EVERY[of]()
+    if of in KINDS:
+        shown = live(KINDS[of])
+    else:
+        shown = live(scene.arm) if of == "kinematics" else live(scene.network, start=scene.first.x)
     assert shown.data.count('<canvas data-picture="p') == 1
 
 

@@ -4,6 +4,7 @@
     live(model)                       # bodies, by the learner's simulator; pymunk runs the same Model beside it
     live(network, start=x)            # a net of springs, or links that are projected
     live(arm)                         # an arm that follows the pointer
+    live(BallOnSpring)                # a scene of one function, from kinds.py or solids.py
 
 A save of the lesson, or of one that it calls, is followed at once.  *Left out:* space.
 """
@@ -21,6 +22,7 @@ from .canvas import drawn, film_of
 from .loops import LOOPS
 from .points import NETWORKS, Arm, Network
 from .simulation import Simulation, Tuning
+from .touched import Touched
 
 FILM_ONLY = "WORKBOOK_LIVE"  # environment variable; "film": show a film, where no kernel will stay, as in the book
 FILM_SECONDS = 4.0
@@ -33,18 +35,20 @@ def live(model, beside="pymunk", dt=1.0 / 120.0, sweeps=20, lesson="simulator", 
          play=True, start=None, method=""):
     """Return a live scene, which a cell shows if it is its last line; a film where nothing can be live.
 
-    model     a Model; a SpringNetwork or a ConstraintNetwork; an Arm2D
+    model     a Model; a SpringNetwork or a ConstraintNetwork; an Arm2D; a class of kinds.py or solids.py
     beside    "pymunk" or None;   dt [s];   sweeps over all contacts in a step, at most
     lesson    of a Model: whose exercises the loop calls: "simulator"; "contact" and "impulses" get the rest as given
     view      (left, right, low, high) [m]; None: all bodies at the start
     height    of the canvas, at most [px];   play: begin at once
-    start     positions (n, 2) of the points of a network [m]; angles (n,) of an arm [rad], or None
-    method    the name of the learner's step, for a network or an arm
+    start     positions (n, 2) of the points of a network [m]; angles (n,) of an arm [rad]; or None: what the kind has
+    method    the name of the learner's function, for all but a Model
     Raises BadInput for a model that the learner's code cannot run, and for settings that cannot be.
     """
     check_not_negative("the height of the canvas [px]", height)
     if isinstance(model, Model):
         simulation = of_model(model, beside, dt, sweeps, lesson)
+    elif isinstance(model, type) and issubclass(model, Touched):
+        simulation = model(folder(), method, start)
     else:
         simulation = of_points(model, start, method, dt)
     if os.environ.get(FILM_ONLY) == "film":
@@ -84,7 +88,8 @@ def of_points(model, start, method, dt):
         if start is None:
             raise BadInput("the start of a live network", start, "give the positions of its points")
         return Network(model, start, folder(), method, dt)
-    raise BadInput("the model of a live scene", kind, "give what make_model returns, a network, or an Arm2D")
+    remedy = "give what make_model returns, a network, an Arm2D, or a class of kinds.py or solids.py"
+    raise BadInput("the model of a live scene", kind, remedy)
 
 
 def film(simulation, first=""):

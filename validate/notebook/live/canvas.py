@@ -27,7 +27,7 @@ def drawn(simulation, name, height, view):
 
 
 NOTHING = {"planes": [], "pins": [], "springs": [], "links": [], "weight": 1.0, "beside": "", "engine": False,
-           "contacts": False, "anywhere": -1}
+           "contacts": False, "anywhere": -1, "trail": -1, "rival": "pymunk"}
 ENERGY = {"energy": "energy", "unit": "J", "overlap": "overlap",
           "expected": "at the start, plus work of hand and belts:"}
 

@@ -26,22 +26,26 @@ def offset(grip, q):
     return np.array((c * grip.place[0] - s * grip.place[1], s * grip.place[0] + c * grip.place[1]))
 
 
-def hand_force(grip, dt, x, q, v, omega, inv_mass, inv_inertia):
-    """Return (F (2,) [N], τ [N m]) of the hand on its body.
+def implicit_force(e, u, K, m, dt):
+    """Return F (2,) [N] of the hand on a place that moves as a mass m where nothing else holds it.
 
     F = −k (e + dt u′) − c u′,      u′ = u + dt K F
 
     e is the way from the pointer to the place that is held, u its velocity, and K F its acceleration.
     """
-    r = offset(grip, q)
-    across, rate = np.array((-r[1], r[0])), 2.0 * np.pi * HERTZ
-    k, c = rate * rate / inv_mass, 2.0 * ZETA * rate / inv_mass
-    K = inv_mass * np.eye(2) + inv_inertia * np.outer(across, across)
-    e, u = x + r - np.asarray(grip.target), v + omega * across
+    rate = 2.0 * np.pi * HERTZ
+    k, c = m * rate * rate, 2.0 * ZETA * m * rate
     F = -np.linalg.solve(np.eye(2) + dt * (c + dt * k) * K, k * (e + dt * u) + c * u)
-    size, most = np.hypot(*F), STRONGEST * WEIGHT / inv_mass
-    if size > most:
-        F = F * (most / size)
+    size, most = np.hypot(*F), STRONGEST * WEIGHT * m
+    return F * (most / size) if size > most else F
+
+
+def hand_force(grip, dt, x, q, v, omega, inv_mass, inv_inertia):
+    """Return (F (2,) [N], τ [N m]) of the hand on its body."""
+    r = offset(grip, q)
+    across = np.array((-r[1], r[0]))
+    K = inv_mass * np.eye(2) + inv_inertia * np.outer(across, across)
+    F = implicit_force(x + r - np.asarray(grip.target), v + omega * across, K, 1.0 / inv_mass, dt)
     return F, float(r[0] * F[1] - r[1] * F[0])
 
 

@@ -78,7 +78,7 @@ function parts(el, scene, tell) {
   };
   const look = { forces: null, beside: null };
   look.forces = box("contact forces", true, () => root.dispatchEvent(new Event("look")));
-  look.beside = box("pymunk", !!scene.beside, on => tell({ do: "beside", on }));
+  look.beside = box(scene.rival, !!scene.beside, on => tell({ do: "beside", on }));
   add(look.beside.parentNode, "i");
   look.forces.parentNode.hidden = !scene.contacts; look.beside.parentNode.hidden = !scene.engine;
   button("film", "Save the last thirty seconds as a page that any browser plays", () => tell({ do: "film" }));
@@ -92,7 +92,7 @@ function parts(el, scene, tell) {
   }
   const keys = add(root, "div", { className: "keys" }), trace = add(root, "canvas", { className: "trace" });
   trace.setAttribute("role", "img");
-  trace.setAttribute("aria-label", `${scene.says.energy}${scene.engine ? ", and distance from pymunk," : ""} against time`);
+  trace.setAttribute("aria-label", `${scene.says.energy}${scene.engine ? `, and distance from ${scene.rival},` : ""} against time`);
   const numbers = {};
   for (const name of ["energy", "expected", "apart", "overlap", "pace"]) numbers[name] = add(keys, "span", { className: name });
   const printed = add(root, "pre", { hidden: true });
@@ -115,7 +115,7 @@ function render({ model, el }) {
       HEAD.forEach((name, i) => { head[name] = frame[i]; });
       if (head.n % ACK === 0) tell({ do: "ack", n: head.n });
       while (history.length && history.at(-1)[0] > head.last + 1e-4) history.pop();
-      if (!history.length || head.t > history.at(-1)[0]) history.push([head.t, head.energy, head.expected, head.apart]);
+      if (!history.length || head.t > history.at(-1)[0]) history.push([head.t, head.energy, head.expected, head.apart, ...scene.trail < 0 ? [] : pose(0, scene.trail)]);
       if (history.length > TRACE) history.shift();
       if (head.last < 1e-4) view = [...scene.view];
       frames++;
@@ -279,13 +279,22 @@ function render({ model, el }) {
     for (let i = 1; i < 12; i++) { const w = l > 14 ? (i % 2 ? -4 : 4) : 0; pen.lineTo(a[0] + dx * i / 12 - w * dy / l, a[1] + dy * i / 12 + w * dx / l); }
     pen.lineTo(...b);
   };
+  const trail = () => {
+    if (scene.trail < 0) return;
+    pen.strokeStyle = colours.ours; pen.globalAlpha = 0.4; pen.beginPath();
+    for (const [t, , , , x, y] of history) if (t <= head.t) pen.lineTo(sx(x), sy(y));
+    pen.stroke(); pen.globalAlpha = 1;
+  };
+  const linked = (which, colour) => {
+    pen.strokeStyle = colour; pen.lineWidth = n > CROWD ? 1 : 2; pen.beginPath();
+    for (const [a, b] of scene.links) { const [ax, ay] = pose(which, a), [bx, by] = pose(which, b); pen.moveTo(sx(ax), sy(ay)); pen.lineTo(sx(bx), sy(by)); }
+    pen.stroke(); pen.lineWidth = 1.5;
+  };
   const links = () => {
     pen.strokeStyle = pen.fillStyle = colours.ink; pen.lineWidth = 1; pen.beginPath();
     for (const [a, ax, ay, b, bx, by] of scene.springs) spring(...[[a, [ax, ay]], [b, [bx, by]]].map(([k, at]) => { const [x, y] = there(0, k, at); return [sx(x), sy(y)]; }));
     pen.stroke();
-    pen.strokeStyle = colours.ours; pen.lineWidth = n > CROWD ? 1 : 2; pen.beginPath();
-    for (const [a, b] of scene.links) { const [ax, ay] = pose(0, a), [bx, by] = pose(0, b); pen.moveTo(sx(ax), sy(ay)); pen.lineTo(sx(bx), sy(by)); }
-    pen.stroke();
+    linked(0, colours.ours);
     for (const [k, u, w] of scene.pins) { const [x, y] = there(0, k, [u, w]); pen.beginPath(); pen.arc(sx(x), sy(y), 3, 0, 7); pen.fill(); }
     pen.lineWidth = 1.5;
   };
@@ -320,13 +329,14 @@ function render({ model, el }) {
     pen.lineWidth = 1.5; pen.strokeStyle = colours.soft;
     scene.planes.forEach(hatched);
     if (!frame) return;
+    trail();
     shapes(0, k => !free[k] && bodies[k].points.length, colours.soft, 0.3);
     shapes(0, k => free[k] && k !== head.held, colours.ours, 0.22);
     if (head.held >= 0) shapes(0, k => k === head.held, colours.hand, 0.3);
     links();
     if (head.beside) {
       pen.setLineDash([4, 3]); if (n > CROWD) { pen.lineWidth = 0.8; pen.globalAlpha = 0.6; }
-      shapes(1, k => free[k], colours.engine, 0);
+      shapes(1, k => free[k], colours.engine, 0); linked(1, colours.engine);
       pen.setLineDash([]); pen.lineWidth = 1.5; pen.globalAlpha = 1;
     }
     if (ui.look.forces.checked) forces();
@@ -361,7 +371,7 @@ function render({ model, el }) {
     const { energy, expected, apart, overlap, pace } = ui.numbers;
     energy.textContent = `${scene.says.energy} ${short(head.energy)} ${scene.says.unit}`;
     expected.textContent = `${scene.says.expected} ${short(head.expected)} ${scene.says.unit}`;
-    apart.textContent = head.beside ? `farthest from pymunk: ${length(head.apart)}` : "";
+    apart.textContent = head.beside ? `farthest from ${scene.rival}: ${length(head.apart)}` : "";
     overlap.textContent = scene.says.overlap && `${scene.says.overlap} ${length(head.overlap)}`;
     pace.textContent = `${short(head.ms)} ms per step${playing && head.pace < 0.9 ? `; slow motion, ${short(head.pace * +ui.speed.value)} of real time` : ""}`;
   };
