@@ -13,12 +13,10 @@ from solutions.support.model import WORLD, BallJoint, Body, Drag, Hinge, Spring,
 from solutions.support.shapes import Ball, Box, HalfSpace
 
 from ..products import PYBULLET
-from ..reference.impulses import APART, COPIES
 from ..reference.orientation import about, quaternion
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
-from ..scenes.impulses._common import copies_of
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
@@ -65,19 +63,6 @@ def driven(p):
         F[0, 0] = p.force / p.m * np.cos(p.omega * t)
         return F, np.zeros(omega.shape)
     return block((0.0, -p.g), p.mu, 0.0, [push])
-
-
-# ---------------------------------------------------------------------------------------------- impacts
-
-def two_discs(p):
-    """Make the copies of two discs.  Each disc has √e, so that the pair has e."""
-    x, v, _ = oblique_discs.start(p)
-    return make_model([Body((x[k, i, 0], x[k, i, 1] + APART * k), m, Ball(p.R), e=np.sqrt(p.e), v=arrays(v[k, i, :2]))
-                       for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))], (0.0, 0.0))
-
-
-def see_discs(s, p):
-    return np.concatenate(copies_of(s, 2), axis=2).ravel()
 
 
 # ---------------------------------------------------------------------------------------------- many contacts
@@ -164,7 +149,7 @@ DESCRIBED = {                # name of the scene: Described
     "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
     "slide_then_roll": of(slide_then_roll.SCENE),
     "cradle": of(cradle.SCENE),
-    "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
+    "oblique_discs": of(oblique_discs.SCENE),
     "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
                               {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
     "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
