@@ -164,18 +164,6 @@ def contacts(mu):
             f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
 
 
-def block(gravity, mu, v, dt, read):
-    """Make the EngineRun of a ball of one kilogram that cannot turn, on the plane z = 0; gravity (2,) along x and z.
-
-    read(position (3,)) of its lowest point.
-    """
-    slides = "".join(f'<joint type="slide" axis="{text(axis)}"/>' for axis in np.eye(3))
-    model, data = world(dt, f'<geom type="plane" size="0 0 1"/><body>{slides}<geom size="0.1" pos="0 0 0.1" mass="1"/>'
-                        "</body>", (gravity[0], 0.0, gravity[1]), "Euler", contacts(mu))
-    data.qpos[2], data.qvel[0] = -1e-9, v                # below the plane, so that the first step has a contact
-    return running(model, data, lambda: read(data.qpos))
-
-
 def tower(cubes, dt):
     """Build a Tower of cubes; return a function that runs it and returns (force under each cube [N], its depth [m])."""
     half, bodies = np.full(3, 0.5 * cubes.size), ""
@@ -221,10 +209,10 @@ def let_all_pass(model):
 
 
 def rub_nothing(model):
-    """Give contacts a normal force only."""
-    rubbing = int((model.geom_condim > 1).sum())
-    model.geom_condim[:] = 1
-    return rubbing > 1
+    """Give contacts a normal force only: those of shapes, and those of the pairs that a Model names."""
+    dims = np.append(model.geom_condim[model.geom_contype > 0], model.pair_dim)
+    model.geom_condim[:] = model.pair_dim[:] = 1
+    return model.ngeom > 1 and bool((dims > 1).any())
 
 
 def forget_contacts(model):

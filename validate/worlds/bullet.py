@@ -66,6 +66,7 @@ class Settings(NamedTuple):
     warm: float = WARM       # share of the last impulses with which the solver begins [-]
     ground: bool | None = None       # maximal coordinates of fixed bodies; None: as those that move
     lasts: float = 0.0       # [s]: until then a sliding contact is kept; 0: as the engine does
+    pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
 
@@ -128,7 +129,7 @@ def configure(parts, dt):
         numSolverIterations=settings.iterations or max(100, 10 * len(model.joints)), erp=settings.erp,
         warmStartingFactor=settings.warm, contactSlop=0.0 if impacts else settings.slop,
         contactERP=0.0 if impacts else CONTACT_ERP, restitutionVelocityThreshold=0.0,
-        contactBreakingThreshold=breaking)
+        contactBreakingThreshold=breaking, enableConeFriction=int(not settings.pyramid))
 
 
 # ---------------------------------------------------------------------------------------------- bodies

@@ -23,7 +23,6 @@ from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_c
 from ..scenes.springs import spring_net
 
 FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
-SLAB = (1.0, 0.1)            # half sizes of a block that slides [m]
 OF_PYMUNK = "its truth is a run of pymunk"
 
 
@@ -44,25 +43,6 @@ def of(scene):
 def arrays(rows):
     """Return an array as a tuple of floats."""
     return tuple(map(float, rows))
-
-
-# ---------------------------------------------------------------------------------------------- friction
-
-def block(gravity, mu, v, loads=()):
-    """Make a slab on a floor; gravity is tilted like the slope."""
-    return make_model([Body((0.0, SLAB[1]), 1.0, Box(SLAB), mu, v=(v, 0.0)), FLOOR], gravity, loads=loads)
-
-
-def on_a_slope(p):
-    return block(incline.tilted(p), p.mu, p.v0)
-
-
-def driven(p):
-    def push(t, x, q, v, omega):
-        F = np.zeros(x.shape)
-        F[0, 0] = p.force / p.m * np.cos(p.omega * t)
-        return F, np.zeros(omega.shape)
-    return block((0.0, -p.g), p.mu, 0.0, [push])
 
 
 # ---------------------------------------------------------------------------------------------- many contacts
@@ -138,15 +118,14 @@ def top_on_its_tip(p):
 
 # ---------------------------------------------------------------------------------------------- all of them
 
-SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
     "throw": of(throw.SCENE),
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
     "spring_net": of(spring_net.SCENE),
-    "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
-    "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
+    "incline": of(incline.SCENE),
+    "stick_slip": of(stick_slip.SCENE),
     "slide_then_roll": of(slide_then_roll.SCENE),
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
