@@ -10,7 +10,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..reference.orientation import quaternion
 from ..scene import EngineRun
 from . import quiet_import
 from .switches import Switch, made
@@ -115,26 +114,6 @@ def net(net, dt, observe):
         x[free] += data.qpos.reshape(-1, d)
         return observe(x)
     return running(model, data, read)
-
-
-# ---------------------------------------------------------------------------------------------- bodies that turn
-
-def rotation_of(q):
-    """Return R (3, 3) of the quaternion in the first four entries of q."""
-    R = np.empty(9)
-    module().mju_quat2Mat(R, q)
-    return R.reshape(3, 3)
-
-
-def top(m, moments, length, R, spin, g, dt):
-    """Make the EngineRun of a top on a ball joint; moments about its centre, `length` [m] up its axis from the joint.
-
-    read: the horizontal coordinates of the axis.
-    """
-    body = f'<body><joint type="ball"/>{inertial(m, moments, (0.0, 0.0, length))}</body>'
-    model, data = world(dt, body, (0.0, 0.0, -g))
-    data.qpos[:], data.qvel[:] = quaternion(R), (0.0, 0.0, spin)
-    return running(model, data, lambda: rotation_of(data.qpos)[:2, 2])
 
 
 # ---------------------------------------------------------------------------------------------- bodies on hinges

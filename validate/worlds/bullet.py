@@ -1,14 +1,13 @@
 """pybullet.  It pushes, then moves.  Friction and restitution of a pair are products, as in a Model.
 
 A planar Model moves in the plane x, z.  In maximal coordinates joints are constraints.  In reduced coordinates a tree
-of hinges is one body with links.
+of hinges is one body with links, and a BallJoint is a constraint.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -49,6 +48,7 @@ WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
 BREAKING = 0.02              # the engine's contactBreakingThreshold, over the size of a body [-]
 SLAB = 50.0                  # half size of the box that stands for a half-space [m]
 FAR = 1000.0                 # where bodies are while they get their moments [m]
+LINKS = Hinge, Weld          # joints that are coordinates of a body with links
 ARM = 0.5                    # distance from a joint of further points that are held together [m]
 TO_CAPSULE = (0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5))  # turns z, the engine's axis of a capsule, to x; w is last
 
@@ -90,7 +90,7 @@ def refuses(model):
 
 
 def build(model, dt, **settings):
-    """Make a World.  Raises BadInput for joints that reduced coordinates do not have here."""
+    """Make a World."""
     settings, model = Settings(**settings), with_plain_springs(model)
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:
@@ -229,9 +229,8 @@ def release(parts, x, age, linked):
 def join(parts):
     """Add the joints that are constraints, and let joined bodies pass through each other."""
     pb, model = parts.pb, parts.model
-    loops = range(len(model.joints)) if parts.settings.maximal else tree(model)[1]
-    for n in loops:
-        joint = model.joints[n]
+    links = set() if parts.settings.maximal else {n for _, n in tree(model, LINKS)[0].values()}
+    for joint in [joint for n, joint in enumerate(model.joints) if n not in links]:
         ends = [handle_of(parts, k, joint.place) for k in (joint.a, joint.b)]
         for place in points_of(joint, model.d):
             constrain(parts, joint, ends, place)
@@ -276,10 +275,7 @@ def constrain(parts, joint, ends, place):
 
 def add_linked(parts, x):
     """Add each tree of joints as one body with links, and return the numbers of its bodies."""
-    above, _ = tree(parts.model)
-    kinds = {type(parts.model.joints[n]) for _, n in above.values() if n is not None}
-    if BallJoint in kinds:
-        raise BadInput("a joint in reduced coordinates", "a BallJoint", "take maximal coordinates, or hinges")
+    above, _ = tree(parts.model, LINKS)
     below = {k: [i for i in above if above[i][0] == k and above[i][1] is not None] for k in (WORLD, *above)}
     linked = []
     for k in below:

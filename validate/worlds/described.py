@@ -9,11 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.support.model import WORLD, BallJoint, Body, Drag, Hinge, Spring, make_model, rotation_of
+from solutions.support.model import WORLD, Body, Drag, Hinge, Spring, make_model
 from solutions.support.shapes import Ball, Box, HalfSpace
 
 from ..products import PYBULLET
-from ..reference.orientation import about, quaternion
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
@@ -106,16 +105,6 @@ def cradle_on_rods(p):
     return make_model(balls, (0.0, -p.g), [Hinge(k, WORLD, arrays(x)) for k, x in enumerate(rod_cradle.pivots(p))])
 
 
-# ---------------------------------------------------------------------------------------------- in space
-
-def top_on_its_tip(p):
-    R, m = about(np.array([1.0, 0.0, 0.0]), p.tilt), heavy_top.mass(p)
-    across = p.I1 - m * heavy_top.LENGTH**2
-    body = Body(arrays(heavy_top.LENGTH * R[:, 2]), m, q=arrays(quaternion(R)), omega=arrays(p.spin * R[:, 2]),
-                v=(0.0, 0.0, 0.0), inertia=(across, across, p.I3))
-    return make_model([body], (0.0, 0.0, -heavy_top.G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
-
-
 # ---------------------------------------------------------------------------------------------- all of them
 
 DESCRIBED = {                # name of the scene: Described
@@ -136,5 +125,5 @@ DESCRIBED = {                # name of the scene: Described
     "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),
     "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
     "asymmetric_top": of(asymmetric_top.SCENE),
-    "heavy_top": Described(heavy_top.SCENE, top_on_its_tip, lambda s, p: rotation_of(s.q[0])[:2, 2]),
+    "heavy_top": of(heavy_top.SCENE),
 }
