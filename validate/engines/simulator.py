@@ -1,7 +1,5 @@
 """Boxes and balls on a floor, and bodies on joints, in both engines."""
 
-from itertools import pairwise
-
 import numpy as np
 
 from validate.engines import watched
@@ -101,45 +99,6 @@ def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
 
 
 # ---------------------------------------------------------------------------------------------- bodies on joints
-
-def pymunk_chain(ends, m, inertia, g, iterations, bias, dt, read):
-    """Make an EngineRun of rods between neighbouring ends (n + 1, 2), on PivotJoints; the first end is fixed.
-
-    read(centres (n, 2), angles (n,)).  bias: the fraction of a joint's gap that remains after a second.
-    """
-    import pymunk
-    space = pymunk_space((0.0, -g))
-    space.iterations = iterations
-    above, rods = space.static_body, []
-    for begin, end in pairwise(ends):
-        rod = pymunk.Body(m, inertia)
-        rod.position, rod.angle = tuple(map(float, 0.5 * (begin + end))), float(np.arctan2(*(end - begin)[::-1]))
-        joint = pymunk.PivotJoint(above, rod, tuple(map(float, begin)))
-        joint.error_bias = bias
-        space.add(rod, joint)
-        rods.append(rod)
-        above = rod
-    return EngineRun(lambda: space.step(dt), lambda: read(np.array([rod.position for rod in rods]),
-                                                          np.array([rod.angle for rod in rods])), lambda: None)
-
-
-def pybullet_chain(ends, m, moments, g, iterations, erp, dt, read):
-    """Make the same of rods in the plane of x and z, by point-to-point constraints; moments: about its own x, y, z."""
-    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=iterations, erp=erp)
-    pb, rods, half = bullet.pb, [], [0.5 * float(np.linalg.norm(ends[1] - ends[0])), 0.0, 0.0]
-    for begin, end in pairwise(ends):
-        R, centre = about(np.array([0.0, 1.0, 0.0]), -np.arctan2(*(end - begin)[::-1])), 0.5 * (begin + end)
-        rods.append(bullet.body(m, moments, (centre[0], 0.0, centre[1]), np.zeros(3), True, R=R))
-    back = [-a for a in half]
-    bullet.begin().pivot(rods[0], back, True)
-    for above, rod in pairwise(rods):
-        pb.createConstraint(above, -1, rod, -1, pb.JOINT_POINT2POINT, [0, 0, 0], half, back)
-
-    def where():
-        x, along = np.array([bullet.position(rod) for rod in rods]), np.array([bullet.R(rod)[:, 0] for rod in rods])
-        return read(x[:, ::2], np.arctan2(along[:, 2], along[:, 0]))
-    return EngineRun(bullet.step, where, bullet.close)
-
 
 def pymunk_cradle(pivots, x, m, inertia, R, g, dt, read):
     """Make an EngineRun of balls at x (n, 2) on rods to their pivots (n, 2), elastic, without friction.

@@ -4,7 +4,6 @@ Parameters and truth stay with the scenes.
 """
 
 from collections.abc import Callable
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -91,13 +90,6 @@ def many_parts(p):
 
 # ---------------------------------------------------------------------------------------------- joints
 
-def chain(p):
-    ends = rod_chain.straight(p)
-    rods = [Body(arrays(0.5 * (a + b)), p.m, q=np.arctan2(*(b - a)[::-1]), inertia=rod_chain.inertia(p))
-            for a, b in pairwise(ends)]
-    return make_model(rods, (0.0, -p.g), [Hinge(k, k - 1 if k else WORLD, arrays(ends[k])) for k in range(p.rods)])
-
-
 def cradle_on_rods(p):
     angles = rod_cradle.angles(p)
     balls = [Body(arrays(x), 1.0, Ball(p.R), e=1.0, q=q, inertia=rod_cradle.moment(p))
@@ -122,7 +114,7 @@ DESCRIBED = {                # name of the scene: Described
                               {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
     "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
-    "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),
+    "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
     "asymmetric_top": of(asymmetric_top.SCENE),
     "heavy_top": of(heavy_top.SCENE),
