@@ -3,8 +3,8 @@
 import numpy as np
 
 from validate.engines import watched
-from validate.engines.bullet import Impacts, Rigid
-from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
+from validate.engines.bullet import Rigid
+from validate.engines.chipmunk import pymunk_space
 from validate.reference.orientation import about
 from validate.scene import EngineRun
 
@@ -99,47 +99,6 @@ def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
 
 
 # ---------------------------------------------------------------------------------------------- bodies on joints
-
-def pymunk_cradle(pivots, x, m, inertia, R, g, dt, read):
-    """Make an EngineRun of balls at x (n, 2) on rods to their pivots (n, 2), elastic, without friction.
-
-    read(centres (n, 2), velocities (n, 2), angular velocities (n,)).
-    """
-    import pymunk
-    space, balls = pymunk_space((0.0, -g)), []
-    space.iterations = ITERATIONS
-    for pivot, place in zip(pivots, x):
-        ball = pymunk_ball(space, m, inertia, R, place, (0.0, 0.0), 0.0, 1.0, 0.0)
-        joint = pymunk.PivotJoint(space.static_body, ball, tuple(map(float, pivot)))
-        joint.error_bias = 0.0
-        space.add(joint)
-        balls.append(ball)
-    rows = lambda name: np.array([getattr(ball, name) for ball in balls])
-    return pymunk_world(space, dt, lambda: read(rows("position"), rows("velocity"), rows("angular_velocity")))
-
-
-def pybullet_cradle(pivots, x, m, inertia, R, g, dt, read):
-    """Make the same of spheres in the plane of x and z."""
-    bullet, zero = Impacts(dt, (0.0, 0.0, -g)), (0.0,) * 3
-    pb = bullet.pb
-    pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, erp=1.0)
-    balls = [bullet.ball(m, inertia, R, (place[0], 0.0, place[1]), zero, zero, 1.0, 0.0) for place in x]
-    bullet.begin()
-    for pivot, place, ball in zip(pivots, x, balls):
-        nail = pb.createMultiBody(0, -1, basePosition=[float(pivot[0]), 0.0, float(pivot[1])], useMaximalCoordinates=1)
-        arm = [float(pivot[0] - place[0]), 0.0, float(pivot[1] - place[1])]
-        pb.createConstraint(ball, -1, nail, -1, pb.JOINT_POINT2POINT, [0, 0, 0], arm, [0, 0, 0])
-
-    def where():
-        plane = lambda values: np.array(values)[:, ::2]
-        return read(plane([bullet.position(b) for b in balls]), plane([bullet.velocity(b) for b in balls]),
-                    np.array([-bullet.omega(b)[1] for b in balls]))
-
-    def close():
-        pb.setPhysicsEngineParameter(erp=0.2)
-        bullet.close()
-    return EngineRun(bullet.step, where, close)
-
 
 # ---------------------------------------------------------------------------------------------- a machine
 

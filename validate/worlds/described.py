@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.support.model import WORLD, Body, Drag, Hinge, Spring, make_model
-from solutions.support.shapes import Ball, Box, HalfSpace
+from solutions.support.model import WORLD, Body, Drag, Spring, make_model
+from solutions.support.shapes import Box, HalfSpace
 
 from ..products import PYBULLET
 from ..scene import Scene
@@ -88,15 +88,6 @@ def many_parts(p):
                       springs=[Spring(hammer, WORLD, (0.0, 0.0), arrays(anchor), rest, k, c)], loads=[Drag(drag)])
 
 
-# ---------------------------------------------------------------------------------------------- joints
-
-def cradle_on_rods(p):
-    angles = rod_cradle.angles(p)
-    balls = [Body(arrays(x), 1.0, Ball(p.R), e=1.0, q=q, inertia=rod_cradle.moment(p))
-             for x, q in zip(rod_cradle.centres(angles, p), angles)]
-    return make_model(balls, (0.0, -p.g), [Hinge(k, WORLD, arrays(x)) for k, x in enumerate(rod_cradle.pivots(p))])
-
-
 # ---------------------------------------------------------------------------------------------- all of them
 
 DESCRIBED = {                # name of the scene: Described
@@ -115,7 +106,7 @@ DESCRIBED = {                # name of the scene: Described
     "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
     "rod_chain": of(rod_chain.SCENE),
-    "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
+    "rod_cradle": of(rod_cradle.SCENE),
     "asymmetric_top": of(asymmetric_top.SCENE),
     "heavy_top": of(heavy_top.SCENE),
 }
