@@ -1,16 +1,14 @@
-"""Boxes and balls on a floor, and bodies on joints, in both engines."""
+"""Boxes and balls on a floor, in both engines."""
 
 import numpy as np
 
 from validate.engines import watched
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_space
-from validate.reference.orientation import about
 from validate.scene import EngineRun
 
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m], because it detects a contact only if bodies overlap
 HEAVY = 1e9                  # mass of pybullet's turntable over that of the ball [-]: it falls by 1e-7 m in 5 s
-WIDE = 1e12                  # moment of inertia of pybullet's wedge, which cannot turn [kg m²]
 ITERATIONS = 100             # of both engines' contact solvers
 
 
@@ -68,37 +66,6 @@ def pybullet_slab(bullet):
     slab = bullet.pb.createMultiBody(0, shape, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=1)
     bullet.pb.changeDynamics(slab, -1, lateralFriction=1.0, rollingFriction=0, spinningFriction=0, restitution=0)
 
-
-def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
-    """Make an EngineRun of a wedge that cannot rotate and a block on it, both boxes, without friction.
-
-    x (2, 2) centres, m (2,), half: half size of the block, which is a cube, thick (2,): half sizes of the wedge.
-    read: x of the wedge, x and y of the block, and their velocities.  The block leaves a contact point behind by its
-    displacement in a step, and loses the point if that exceeds the breaking threshold.
-
-    Each begins a micrometre inside what carries it: without, a rounding decides which contacts the first step has.
-    """
-    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS)
-    pb, R, down = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle), np.array([0.0, -OVERLAP])
-    pb.setPhysicsEngineParameter(contactBreakingThreshold=1.0)
-    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    floor, pair = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal)), []
-    moments = np.full(3, WIDE), np.full(3, 2.0 / 3.0 * m[1] * half**2)
-    places = x[0] + down, x[1] + down - OVERLAP * np.array([np.sin(angle), np.cos(angle)])
-    sizes = (*thick[:1], 2.0 * half, *thick[1:]), (half, half, half)
-    for mass, moment, size, place in zip(m, moments, sizes, places):
-        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, size)))
-        pair.append(bullet.body(mass, moment, (place[0], 0.0, place[1]), np.zeros(3), maximal, R=R, shape=shape))
-    pb.changeDynamics(floor, -1, lateralFriction=0, rollingFriction=0, spinningFriction=0, restitution=0)
-    wedge, block = pair
-
-    def read():
-        return np.array([bullet.position(wedge)[0], *bullet.position(block)[::2], bullet.velocity(wedge)[0],
-                         *bullet.velocity(block)[::2]])
-    return EngineRun(bullet.begin().step, read, bullet.close)
-
-
-# ---------------------------------------------------------------------------------------------- bodies on joints
 
 # ---------------------------------------------------------------------------------------------- a machine
 

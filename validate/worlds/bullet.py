@@ -45,7 +45,7 @@ from .derived import (
 
 OVERLAP = 1e-6               # [m]: a contact exists in the first step
 WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
-BREAKING = 0.02              # the engine's contactBreakingThreshold, over the size of a body [-]
+BREAKING = 0.02              # the engine's default [-]
 SLAB = 50.0                  # half size of the box that stands for a half-space [m]
 FAR = 1000.0                 # where bodies are while they get their moments [m]
 LINKS = Hinge, Weld          # joints that are coordinates of a body with links
@@ -65,7 +65,7 @@ class Settings(NamedTuple):
     erp: float = 1.0         # share of a joint's error that it takes back per step [-]
     warm: float = WARM       # share of the last impulses with which the solver begins [-]
     ground: bool | None = None       # maximal coordinates of fixed bodies; None: as those that move
-    lasts: float = 0.0       # [s]: until then a sliding contact is kept; 0: as the engine does
+    breaking: float = BREAKING       # contactBreakingThreshold, over the size of a body [-]; more at a high first speed
     pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
@@ -122,9 +122,9 @@ def build(model, dt, **settings):
 def configure(parts, dt):
     """Set the solver for impacts or for resting contacts."""
     model, settings, impacts = parts.model, parts.settings, parts.impacts
-    breaking = BREAKING
+    breaking = settings.breaking
     if np.isfinite(smallest(model)) and not impacts:
-        breaking = max(BREAKING, 1.2 * fastest(model, settings.lasts) * dt / smallest(model))
+        breaking = max(breaking, 1.2 * fastest(model) * dt / smallest(model))
     parts.pb.setPhysicsEngineParameter(
         numSolverIterations=settings.iterations or max(100, 10 * len(model.joints)), erp=settings.erp,
         warmStartingFactor=settings.warm, contactSlop=0.0 if impacts else settings.slop,

@@ -33,9 +33,9 @@ class Described(NamedTuple):
     shown: str = ""          # why an engine is shown here and not judged
 
 
-def of(scene):
+def of(scene, settings=None):
     """Return the Described of a scene that has its Model."""
-    return Described(scene, scene.model, scene.read)
+    return Described(scene, scene.model, scene.read, settings)
 
 
 def arrays(rows):
@@ -67,17 +67,6 @@ def see_dominoes(s, p):
     return np.concatenate([dominoes.corners(x[k:k + p.n], s.q[k:k + p.n], p) for k in range(0, len(x), p.n)])
 
 
-def wedge(p):
-    """Make a wedge, which is a box that cannot turn, and a block on it."""
-    x, q = moving_wedge.places(p), -moving_wedge.slope(p)
-    return make_model([Body(arrays(x[0]), p.M, Box((moving_wedge.LONG, moving_wedge.THICK)), q=q, inertia=np.inf),
-                       Body(arrays(x[1]), p.m, Box((p.half, p.half)), q=q), FLOOR], (0.0, -p.g))
-
-
-def see_wedge(s, p):
-    return np.array([s.x[0, 0], *s.x[1], s.v[0, 0], *s.v[1]])
-
-
 def many_parts(p):
     """Make the machine.  Each body has √μ.  The floor is a belt, the crank a body without mass that turns."""
     (x, q, half, m, v, omega), (hammer, anchor, rest, k, c), drag, mu, g, belt = machine.parts(p)
@@ -101,8 +90,7 @@ DESCRIBED = {                # name of the scene: Described
     "slide_then_roll": of(slide_then_roll.SCENE),
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
-    "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
-                              {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
+    "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
     "rod_chain": of(rod_chain.SCENE),
