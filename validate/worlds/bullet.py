@@ -66,6 +66,7 @@ class Settings(NamedTuple):
     warm: float = WARM       # share of the last impulses with which the solver begins [-]
     ground: bool | None = None       # maximal coordinates of fixed bodies; None: as those that move
     breaking: float = BREAKING       # contactBreakingThreshold, over the size of a body [-]; more at a high first speed
+    residual: float = 0.0    # solverResidualThreshold: the solver ends where nothing changes by more [m/s]
     pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
@@ -109,7 +110,8 @@ def build(model, dt, **settings):
     if drag:
         let_damp(parts, drag)
     release(parts, x, settings.ahead * dt, linked)
-    parts.pb.setGravity(*parts.space.point(model.gravity).tolist())
+    world.gravity = tuple(parts.space.point(model.gravity).tolist())
+    parts.pb.setGravity(*world.gravity)
     join(parts)
 
     def close():
@@ -126,6 +128,7 @@ def configure(parts, dt):
     if np.isfinite(smallest(model)) and not impacts:
         breaking = max(breaking, 1.2 * fastest(model) * dt / smallest(model))
     parts.pb.setPhysicsEngineParameter(
+        solverResidualThreshold=settings.residual,
         numSolverIterations=settings.iterations or max(100, 10 * len(model.joints)), erp=settings.erp,
         warmStartingFactor=settings.warm, contactSlop=0.0 if impacts else settings.slop,
         contactERP=0.0 if impacts else CONTACT_ERP, restitutionVelocityThreshold=0.0,

@@ -33,9 +33,9 @@ class Described(NamedTuple):
     shown: str = ""          # why an engine is shown here and not judged
 
 
-def of(scene, settings=None):
+def of(scene, settings=None, shown=""):
     """Return the Described of a scene that has its Model."""
-    return Described(scene, scene.model, scene.read, settings)
+    return Described(scene, scene.model, scene.read, settings, shown)
 
 
 def arrays(rows):
@@ -44,28 +44,6 @@ def arrays(rows):
 
 
 # ---------------------------------------------------------------------------------------------- many contacts
-
-def rows_of_dominoes(p):
-    """Make the rows of dominoes on a floor.  Each body has √μ, so that each pair has μ."""
-    bodies, mu = [], float(np.sqrt(p.mu))
-    for k, t in enumerate(dominoes.moments()):
-        for x, q, v, omega in zip(*dominoes.begin(p, t)):
-            bodies.append(Body((x[0] + shift_of_row(k, p), x[1]), dominoes.MASS, Box((0.5 * p.width, 0.5 * p.height)),
-                               mu, q=q, v=arrays(v), omega=omega, inertia=dominoes.inertia(p)))
-    return make_model([*bodies, FLOOR._replace(mu=mu)], (0.0, -p.g))
-
-
-def shift_of_row(k, p):
-    """Return how far row k is from its place, so that rows do not meet [m]."""
-    return k * p.pitch * (p.n + 5)
-
-
-def see_dominoes(s, p):
-    rows = len(dominoes.moments())
-    shift = np.repeat([shift_of_row(k, p) for k in range(rows)], p.n)
-    x = s.x[:-1] - np.stack((shift, np.zeros(len(shift))), axis=1)
-    return np.concatenate([dominoes.corners(x[k:k + p.n], s.q[k:k + p.n], p) for k in range(0, len(x), p.n)])
-
 
 def many_parts(p):
     """Make the machine.  Each body has √μ.  The floor is a belt, the crank a body without mass that turns."""
@@ -91,7 +69,7 @@ DESCRIBED = {                # name of the scene: Described
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
-    "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
+    "dominoes": of(dominoes.SCENE, shown=OF_PYMUNK),
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
     "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": of(rod_cradle.SCENE),
