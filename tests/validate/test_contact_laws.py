@@ -214,7 +214,7 @@ def weigh_more(world):
 
 WRONG_WORLDS = {"friction 10 % too large": grip(1.1), "friction 10 % too small": grip(0.9), "restitution 0.1": bounce,
                 "gravity 10 % too large": fall_faster, "one body 10 % too heavy": weigh_more}
-MEETING = {"dominoes": (dominoes, "six", 0.6), "card_house": (card_house, "too smooth", 0.5),
+MEETING = {"dominoes": (dominoes, "six", 1.0), "card_house": (card_house, "too smooth", 0.5),
            "machine": (machine, "places", 1.2)}               # the scene, a case, and how long it is watched here [s]
 MEET = pytest.mark.parametrize("name", [
     pytest.param(name, marks=pytest.mark.skipif(name == "dominoes" and not PYBULLET.installed(), reason="no pybullet"))

@@ -10,7 +10,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..reference.orientation import quaternion
 from ..scene import EngineRun
 from . import quiet_import
 from .switches import Switch, made
@@ -117,26 +116,6 @@ def net(net, dt, observe):
     return running(model, data, read)
 
 
-# ---------------------------------------------------------------------------------------------- bodies that turn
-
-def rotation_of(q):
-    """Return R (3, 3) of the quaternion in the first four entries of q."""
-    R = np.empty(9)
-    module().mju_quat2Mat(R, q)
-    return R.reshape(3, 3)
-
-
-def top(m, moments, length, R, spin, g, dt):
-    """Make the EngineRun of a top on a ball joint; moments about its centre, `length` [m] up its axis from the joint.
-
-    read: the horizontal coordinates of the axis.
-    """
-    body = f'<body><joint type="ball"/>{inertial(m, moments, (0.0, 0.0, length))}</body>'
-    model, data = world(dt, body, (0.0, 0.0, -g))
-    data.qpos[:], data.qvel[:] = quaternion(R), (0.0, 0.0, spin)
-    return running(model, data, lambda: rotation_of(data.qpos)[:2, 2])
-
-
 # ---------------------------------------------------------------------------------------------- bodies on hinges
 
 def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4", joint=""):
@@ -162,18 +141,6 @@ def contacts(mu):
     """Return the XML of the default of all shapes: friction, and a critically damped contact."""
     return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
             f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
-
-
-def block(gravity, mu, v, dt, read):
-    """Make the EngineRun of a ball of one kilogram that cannot turn, on the plane z = 0; gravity (2,) along x and z.
-
-    read(position (3,)) of its lowest point.
-    """
-    slides = "".join(f'<joint type="slide" axis="{text(axis)}"/>' for axis in np.eye(3))
-    model, data = world(dt, f'<geom type="plane" size="0 0 1"/><body>{slides}<geom size="0.1" pos="0 0 0.1" mass="1"/>'
-                        "</body>", (gravity[0], 0.0, gravity[1]), "Euler", contacts(mu))
-    data.qpos[2], data.qvel[0] = -1e-9, v                # below the plane, so that the first step has a contact
-    return running(model, data, lambda: read(data.qpos))
 
 
 def tower(cubes, dt):
@@ -221,10 +188,10 @@ def let_all_pass(model):
 
 
 def rub_nothing(model):
-    """Give contacts a normal force only."""
-    rubbing = int((model.geom_condim > 1).sum())
-    model.geom_condim[:] = 1
-    return rubbing > 1
+    """Give contacts a normal force only: those of shapes, and those of the pairs that a Model names."""
+    dims = np.append(model.geom_condim[model.geom_contype > 0], model.pair_dim)
+    model.geom_condim[:] = model.pair_dim[:] = 1
+    return model.ngeom > 1 and bool((dims > 1).any())
 
 
 def forget_contacts(model):

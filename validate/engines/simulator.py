@@ -1,18 +1,14 @@
-"""Boxes and balls on a floor, and bodies on joints, in both engines."""
-
-from itertools import pairwise
+"""Boxes and balls on a floor, in both engines."""
 
 import numpy as np
 
 from validate.engines import watched
-from validate.engines.bullet import Impacts, Rigid
-from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
-from validate.reference.orientation import about
+from validate.engines.bullet import Rigid
+from validate.engines.chipmunk import pymunk_space
 from validate.scene import EngineRun
 
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m], because it detects a contact only if bodies overlap
 HEAVY = 1e9                  # mass of pybullet's turntable over that of the ball [-]: it falls by 1e-7 m in 5 s
-WIDE = 1e12                  # moment of inertia of pybullet's wedge, which cannot turn [kg m²]
 ITERATIONS = 100             # of both engines' contact solvers
 
 
@@ -69,117 +65,6 @@ def pybullet_slab(bullet):
     shape = bullet.pb.createCollisionShape(bullet.pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
     slab = bullet.pb.createMultiBody(0, shape, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=1)
     bullet.pb.changeDynamics(slab, -1, lateralFriction=1.0, rollingFriction=0, spinningFriction=0, restitution=0)
-
-
-def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
-    """Make an EngineRun of a wedge that cannot rotate and a block on it, both boxes, without friction.
-
-    x (2, 2) centres, m (2,), half: half size of the block, which is a cube, thick (2,): half sizes of the wedge.
-    read: x of the wedge, x and y of the block, and their velocities.  The block leaves a contact point behind by its
-    displacement in a step, and loses the point if that exceeds the breaking threshold.
-
-    Each begins a micrometre inside what carries it: without, a rounding decides which contacts the first step has.
-    """
-    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS)
-    pb, R, down = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle), np.array([0.0, -OVERLAP])
-    pb.setPhysicsEngineParameter(contactBreakingThreshold=1.0)
-    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    floor, pair = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal)), []
-    moments = np.full(3, WIDE), np.full(3, 2.0 / 3.0 * m[1] * half**2)
-    places = x[0] + down, x[1] + down - OVERLAP * np.array([np.sin(angle), np.cos(angle)])
-    sizes = (*thick[:1], 2.0 * half, *thick[1:]), (half, half, half)
-    for mass, moment, size, place in zip(m, moments, sizes, places):
-        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, size)))
-        pair.append(bullet.body(mass, moment, (place[0], 0.0, place[1]), np.zeros(3), maximal, R=R, shape=shape))
-    pb.changeDynamics(floor, -1, lateralFriction=0, rollingFriction=0, spinningFriction=0, restitution=0)
-    wedge, block = pair
-
-    def read():
-        return np.array([bullet.position(wedge)[0], *bullet.position(block)[::2], bullet.velocity(wedge)[0],
-                         *bullet.velocity(block)[::2]])
-    return EngineRun(bullet.begin().step, read, bullet.close)
-
-
-# ---------------------------------------------------------------------------------------------- bodies on joints
-
-def pymunk_chain(ends, m, inertia, g, iterations, bias, dt, read):
-    """Make an EngineRun of rods between neighbouring ends (n + 1, 2), on PivotJoints; the first end is fixed.
-
-    read(centres (n, 2), angles (n,)).  bias: the fraction of a joint's gap that remains after a second.
-    """
-    import pymunk
-    space = pymunk_space((0.0, -g))
-    space.iterations = iterations
-    above, rods = space.static_body, []
-    for begin, end in pairwise(ends):
-        rod = pymunk.Body(m, inertia)
-        rod.position, rod.angle = tuple(map(float, 0.5 * (begin + end))), float(np.arctan2(*(end - begin)[::-1]))
-        joint = pymunk.PivotJoint(above, rod, tuple(map(float, begin)))
-        joint.error_bias = bias
-        space.add(rod, joint)
-        rods.append(rod)
-        above = rod
-    return EngineRun(lambda: space.step(dt), lambda: read(np.array([rod.position for rod in rods]),
-                                                          np.array([rod.angle for rod in rods])), lambda: None)
-
-
-def pybullet_chain(ends, m, moments, g, iterations, erp, dt, read):
-    """Make the same of rods in the plane of x and z, by point-to-point constraints; moments: about its own x, y, z."""
-    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=iterations, erp=erp)
-    pb, rods, half = bullet.pb, [], [0.5 * float(np.linalg.norm(ends[1] - ends[0])), 0.0, 0.0]
-    for begin, end in pairwise(ends):
-        R, centre = about(np.array([0.0, 1.0, 0.0]), -np.arctan2(*(end - begin)[::-1])), 0.5 * (begin + end)
-        rods.append(bullet.body(m, moments, (centre[0], 0.0, centre[1]), np.zeros(3), True, R=R))
-    back = [-a for a in half]
-    bullet.begin().pivot(rods[0], back, True)
-    for above, rod in pairwise(rods):
-        pb.createConstraint(above, -1, rod, -1, pb.JOINT_POINT2POINT, [0, 0, 0], half, back)
-
-    def where():
-        x, along = np.array([bullet.position(rod) for rod in rods]), np.array([bullet.R(rod)[:, 0] for rod in rods])
-        return read(x[:, ::2], np.arctan2(along[:, 2], along[:, 0]))
-    return EngineRun(bullet.step, where, bullet.close)
-
-
-def pymunk_cradle(pivots, x, m, inertia, R, g, dt, read):
-    """Make an EngineRun of balls at x (n, 2) on rods to their pivots (n, 2), elastic, without friction.
-
-    read(centres (n, 2), velocities (n, 2), angular velocities (n,)).
-    """
-    import pymunk
-    space, balls = pymunk_space((0.0, -g)), []
-    space.iterations = ITERATIONS
-    for pivot, place in zip(pivots, x):
-        ball = pymunk_ball(space, m, inertia, R, place, (0.0, 0.0), 0.0, 1.0, 0.0)
-        joint = pymunk.PivotJoint(space.static_body, ball, tuple(map(float, pivot)))
-        joint.error_bias = 0.0
-        space.add(joint)
-        balls.append(ball)
-    rows = lambda name: np.array([getattr(ball, name) for ball in balls])
-    return pymunk_world(space, dt, lambda: read(rows("position"), rows("velocity"), rows("angular_velocity")))
-
-
-def pybullet_cradle(pivots, x, m, inertia, R, g, dt, read):
-    """Make the same of spheres in the plane of x and z."""
-    bullet, zero = Impacts(dt, (0.0, 0.0, -g)), (0.0,) * 3
-    pb = bullet.pb
-    pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, erp=1.0)
-    balls = [bullet.ball(m, inertia, R, (place[0], 0.0, place[1]), zero, zero, 1.0, 0.0) for place in x]
-    bullet.begin()
-    for pivot, place, ball in zip(pivots, x, balls):
-        nail = pb.createMultiBody(0, -1, basePosition=[float(pivot[0]), 0.0, float(pivot[1])], useMaximalCoordinates=1)
-        arm = [float(pivot[0] - place[0]), 0.0, float(pivot[1] - place[1])]
-        pb.createConstraint(ball, -1, nail, -1, pb.JOINT_POINT2POINT, [0, 0, 0], arm, [0, 0, 0])
-
-    def where():
-        plane = lambda values: np.array(values)[:, ::2]
-        return read(plane([bullet.position(b) for b in balls]), plane([bullet.velocity(b) for b in balls]),
-                    np.array([-bullet.omega(b)[1] for b in balls]))
-
-    def close():
-        pb.setPhysicsEngineParameter(erp=0.2)
-        bullet.close()
-    return EngineRun(bullet.step, where, close)
 
 
 # ---------------------------------------------------------------------------------------------- a machine

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from typing import NamedTuple
 
-_listening: list[list] = []  # a list for each block of `worlds_made`, innermost last
+_listening: list[list] = []  # a list for each block of `worlds_made`, from the outermost to the innermost
 
 
 class Switch(NamedTuple):
@@ -28,7 +28,7 @@ def worlds_made():
 
 
 def made(world):
-    """Add this world to the list of the innermost block that listens, if there is one, and return the world."""
-    for worlds in _listening[-1:]:
+    """Add this world to the lists of all blocks that listen, and return the world."""
+    for worlds in _listening:
         worlds.append(world)
     return world

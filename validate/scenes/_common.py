@@ -3,6 +3,7 @@
 from typing import Any
 
 from solutions.checks import check_positive
+from validate.engines.switches import worlds_made
 from validate.scene import EXACT, EngineRun, by_order, check_known
 
 # fields of a scene in which nothing moves and nothing can be refined
@@ -49,11 +50,16 @@ def constantly(value):
 ONE_LINK = constantly([(0, 1)])          # of a picture of two points
 
 
-def built(product, model, read, **settings):
-    """Return make(p, dt) of an engine's runner: the world of model(p) in that engine; read(State, p) observes it."""
+def built(product, model, read, watch=None, **settings):
+    """Return make(p, dt) of an engine's runner: the world of model(p) in that engine; read(State, p) observes it.
+
+    watch(the engine's own world, p, dt) → what reports its steps, of validate/engines/watched.py
+    """
     def make(p, dt):
-        world = product.world.build(model(p), dt, **settings)
-        return EngineRun(world.step, lambda: read(world.state(), p), world.close)
+        with worlds_made() as made:
+            world = product.world.build(model(p), dt, **settings)
+        return EngineRun(world.step, lambda: read(world.state(), p), world.close,
+                         watched_step=watch(*made, p, dt).watched if watch else None)
     return make
 
 

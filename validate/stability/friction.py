@@ -12,7 +12,7 @@ import numpy as np
 from solutions import integrators
 from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.given.friction import make_block
-from validate.engines.friction import bullet_block, pymunk_block
+from validate.engines.friction import slab
 from validate.methods import CONTACT, EVENT, GRIPPING, PYRAMID, SLIDING
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
 from validate.reference.schemes import EULER, step_of
@@ -66,35 +66,27 @@ def least_friction(lesson, method, degrees):
     return bisect(lambda mu: moved(lesson, method, degrees, mu, 0.5 * mu) < WAY, 0.01, 4.0)
 
 
-MAKERS = {
-    PYMUNK: lambda gravity, mu, dt: pymunk_block(gravity, mu, 0.0, dt, lambda x: x.x),
-    PYBULLET: lambda gravity, mu, dt: bullet_block(
-        (gravity[0], 0.0, gravity[1]), mu, (0.0, 0.0, 0.0), 0.1, dt, lambda x: x[0]
-    ),
-}
-
-
-def engine_moved(make, degrees, mu, dt=1.0 / 240.0):
+def engine_moved(engine, degrees, mu, dt=1.0 / 240.0):
     """Return the distance [m] that an engine's block slides down from rest in one second."""
-    world = make(tuple(gravity_on(degrees)), mu, dt)
+    world = engine.world.build(slab(gravity_on(degrees), mu), dt)
     try:
         for _ in range(round(1.0 / dt)):
             world.step()
-        return world.read()
+        return world.state().x[0, 0]
     finally:
         world.close()
 
 
-def least_friction_of_an_engine(make, degrees):
+def least_friction_of_an_engine(engine, degrees):
     """Return the smallest friction [-] with which an engine's block holds."""
-    return bisect(lambda mu: abs(engine_moved(make, degrees, mu)) < ENGINE_WAY, 0.3, 1.0)
+    return bisect(lambda mu: abs(engine_moved(engine, degrees, mu)) < ENGINE_WAY, 0.3, 1.0)
 
 
 # ---------------------------------------------------------------------------------------------- stick and slip
 
-def held_by_an_engine(engine, make):
+def held_by_an_engine(engine):
     """Return what bisection finds of a block on 30° in an engine, for Checks.by."""
-    found = least_friction_of_an_engine(make, 30.0)
+    found = least_friction_of_an_engine(engine, 30.0)
     return {"law": np.tan(np.radians(30.0)), "found": found,
             "within": EDGE + 2.0 * ENGINE_WAY / (G * np.cos(np.radians(30.0))),
             "saw": f"By bisection {engine} holds a block at 30° from μ = {found:.5f} on."}
@@ -118,9 +110,9 @@ def stick_threshold(lesson, check):
                   saw=f"By bisection the {method.label} step holds at {degrees:g}° from μ = {edges[degrees]:.6f} on; "
                       f"tan θ is {bound:.6f}.")
         drawn.append(series(f"{method.label}, measured", angles, edges.values(), DOTS))
-    for engine, make in MAKERS.items():
+    for engine in (PYMUNK, PYBULLET):
         check.by(engine, "An engine's block holds from μ = tan θ on, to the accuracy of its position.",
-                 f"{engine}: least friction that holds at 30° [-]", partial(held_by_an_engine, engine, make))
+                 f"{engine}: least friction that holds at 30° [-]", partial(held_by_an_engine, engine))
     fine = np.linspace(0.0, 62.0, 125)
     return Picture(
         "Stick or slip on a slope", "slope θ [°]", "least friction that holds [-]",

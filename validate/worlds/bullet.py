@@ -1,14 +1,13 @@
 """pybullet.  It pushes, then moves.  Friction and restitution of a pair are products, as in a Model.
 
 A planar Model moves in the plane x, z.  In maximal coordinates joints are constraints.  In reduced coordinates a tree
-of hinges is one body with links.
+of hinges is one body with links, and a BallJoint is a constraint.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -46,9 +45,10 @@ from .derived import (
 
 OVERLAP = 1e-6               # [m]: a contact exists in the first step
 WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
-BREAKING = 0.02              # the engine's contactBreakingThreshold, over the size of a body [-]
+BREAKING = 0.02              # the engine's default [-]
 SLAB = 50.0                  # half size of the box that stands for a half-space [m]
 FAR = 1000.0                 # where bodies are while they get their moments [m]
+LINKS = Hinge, Weld          # joints that are coordinates of a body with links
 ARM = 0.5                    # distance from a joint of further points that are held together [m]
 TO_CAPSULE = (0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5))  # turns z, the engine's axis of a capsule, to x; w is last
 
@@ -65,7 +65,9 @@ class Settings(NamedTuple):
     erp: float = 1.0         # share of a joint's error that it takes back per step [-]
     warm: float = WARM       # share of the last impulses with which the solver begins [-]
     ground: bool | None = None       # maximal coordinates of fixed bodies; None: as those that move
-    lasts: float = 0.0       # [s]: until then a sliding contact is kept; 0: as the engine does
+    breaking: float = BREAKING       # contactBreakingThreshold, over the size of a body [-]; more at a high first speed
+    residual: float = 0.0    # solverResidualThreshold: the solver ends where nothing changes by more [m/s]
+    pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
 
@@ -89,7 +91,7 @@ def refuses(model):
 
 
 def build(model, dt, **settings):
-    """Make a World.  Raises BadInput for joints that reduced coordinates do not have here."""
+    """Make a World."""
     settings, model = Settings(**settings), with_plain_springs(model)
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:
@@ -108,7 +110,8 @@ def build(model, dt, **settings):
     if drag:
         let_damp(parts, drag)
     release(parts, x, settings.ahead * dt, linked)
-    parts.pb.setGravity(*parts.space.point(model.gravity).tolist())
+    world.gravity = tuple(parts.space.point(model.gravity).tolist())
+    parts.pb.setGravity(*world.gravity)
     join(parts)
 
     def close():
@@ -121,14 +124,15 @@ def build(model, dt, **settings):
 def configure(parts, dt):
     """Set the solver for impacts or for resting contacts."""
     model, settings, impacts = parts.model, parts.settings, parts.impacts
-    breaking = BREAKING
+    breaking = settings.breaking
     if np.isfinite(smallest(model)) and not impacts:
-        breaking = max(BREAKING, 1.2 * fastest(model, settings.lasts) * dt / smallest(model))
+        breaking = max(breaking, 1.2 * fastest(model) * dt / smallest(model))
     parts.pb.setPhysicsEngineParameter(
+        solverResidualThreshold=settings.residual,
         numSolverIterations=settings.iterations or max(100, 10 * len(model.joints)), erp=settings.erp,
         warmStartingFactor=settings.warm, contactSlop=0.0 if impacts else settings.slop,
         contactERP=0.0 if impacts else CONTACT_ERP, restitutionVelocityThreshold=0.0,
-        contactBreakingThreshold=breaking)
+        contactBreakingThreshold=breaking, enableConeFriction=int(not settings.pyramid))
 
 
 # ---------------------------------------------------------------------------------------------- bodies
@@ -228,9 +232,8 @@ def release(parts, x, age, linked):
 def join(parts):
     """Add the joints that are constraints, and let joined bodies pass through each other."""
     pb, model = parts.pb, parts.model
-    loops = range(len(model.joints)) if parts.settings.maximal else tree(model)[1]
-    for n in loops:
-        joint = model.joints[n]
+    links = set() if parts.settings.maximal else {n for _, n in tree(model, LINKS)[0].values()}
+    for joint in [joint for n, joint in enumerate(model.joints) if n not in links]:
         ends = [handle_of(parts, k, joint.place) for k in (joint.a, joint.b)]
         for place in points_of(joint, model.d):
             constrain(parts, joint, ends, place)
@@ -275,10 +278,7 @@ def constrain(parts, joint, ends, place):
 
 def add_linked(parts, x):
     """Add each tree of joints as one body with links, and return the numbers of its bodies."""
-    above, _ = tree(parts.model)
-    kinds = {type(parts.model.joints[n]) for _, n in above.values() if n is not None}
-    if BallJoint in kinds:
-        raise BadInput("a joint in reduced coordinates", "a BallJoint", "take maximal coordinates, or hinges")
+    above, _ = tree(parts.model, LINKS)
     below = {k: [i for i in above if above[i][0] == k and above[i][1] is not None] for k in (WORLD, *above)}
     linked = []
     for k in below:

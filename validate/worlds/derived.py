@@ -10,11 +10,14 @@ import numpy as np
 
 from solutions.support.model import (
     WORLD,
+    BallJoint,
     Distance,
     Drag,
     Force,
+    Hinge,
     Spring,
     State,
+    Weld,
     can_move,
     friction_of,
     loads_at,
@@ -142,11 +145,10 @@ def pressed_in(model, depth):
 
 # ---------------------------------------------------------------------------------------------- motion
 
-def fastest(model, T):
-    """Return an upper bound of the speed until T [m/s], from the first speed and the fall.  Loads are not in it."""
+def fastest(model):
+    """Return the largest speed at the start [m/s]."""
     start = start_of(model)
-    first = max([np.linalg.norm(start.v[k]) for k, body in enumerate(model.bodies) if can_move(body)], default=0.0)
-    return first + np.linalg.norm(model.gravity) * T
+    return max([np.linalg.norm(start.v[k]) for k, body in enumerate(model.bodies) if can_move(body)], default=0.0)
 
 
 def acceleration_at_start(model):
@@ -236,13 +238,13 @@ def only_holds(model, k):
     return not can_move(body) and body.shape is None and not any(k in (one.a, one.b) for one in model.joints)
 
 
-def tree(model):
+def tree(model, kinds=(Hinge, BallJoint, Weld)):
     """Return ({body: (body above or WORLD, number of a joint or None)}, numbers of the joints that close loops).
 
     Every body hangs on the first joint that leads to a fixed body.  The first body of a group that nothing holds is
-    free.  A Distance carries nothing.
+    free.  Joints that are not of these kinds carry nothing.
     """
-    left = [n for n, joint in enumerate(model.joints) if not isinstance(joint, Distance)]
+    left = [n for n, joint in enumerate(model.joints) if isinstance(joint, kinds)]
     above = {k: (WORLD, None) for k, body in enumerate(model.bodies) if not can_move(body)}
     loops = []
     known = {WORLD, *above}

@@ -4,28 +4,23 @@ Parameters and truth stay with the scenes.
 """
 
 from collections.abc import Callable
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from solutions.support.model import WORLD, BallJoint, Body, Drag, Hinge, Spring, make_model, rotation_of
-from solutions.support.shapes import Ball, Box, HalfSpace
+from solutions.support.model import WORLD, Body, Drag, Spring, make_model
+from solutions.support.shapes import Box, HalfSpace
 
 from ..products import PYBULLET
-from ..reference.impulses import APART, COPIES
-from ..reference.orientation import about, quaternion
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
-from ..scenes.impulses._common import copies_of
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
 
 FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
-SLAB = (1.0, 0.1)            # half sizes of a block that slides [m]
 OF_PYMUNK = "its truth is a run of pymunk"
 
 
@@ -38,9 +33,9 @@ class Described(NamedTuple):
     shown: str = ""          # why an engine is shown here and not judged
 
 
-def of(scene):
+def of(scene, settings=None, shown=""):
     """Return the Described of a scene that has its Model."""
-    return Described(scene, scene.model, scene.read)
+    return Described(scene, scene.model, scene.read, settings, shown)
 
 
 def arrays(rows):
@@ -48,72 +43,7 @@ def arrays(rows):
     return tuple(map(float, rows))
 
 
-# ---------------------------------------------------------------------------------------------- friction
-
-def block(gravity, mu, v, loads=()):
-    """Make a slab on a floor; gravity is tilted like the slope."""
-    return make_model([Body((0.0, SLAB[1]), 1.0, Box(SLAB), mu, v=(v, 0.0)), FLOOR], gravity, loads=loads)
-
-
-def on_a_slope(p):
-    return block(incline.tilted(p), p.mu, p.v0)
-
-
-def driven(p):
-    def push(t, x, q, v, omega):
-        F = np.zeros(x.shape)
-        F[0, 0] = p.force / p.m * np.cos(p.omega * t)
-        return F, np.zeros(omega.shape)
-    return block((0.0, -p.g), p.mu, 0.0, [push])
-
-
-# ---------------------------------------------------------------------------------------------- impacts
-
-def two_discs(p):
-    """Make the copies of two discs.  Each disc has √e, so that the pair has e."""
-    x, v, _ = oblique_discs.start(p)
-    return make_model([Body((x[k, i, 0], x[k, i, 1] + APART * k), m, Ball(p.R), e=np.sqrt(p.e), v=arrays(v[k, i, :2]))
-                       for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))], (0.0, 0.0))
-
-
-def see_discs(s, p):
-    return np.concatenate(copies_of(s, 2), axis=2).ravel()
-
-
 # ---------------------------------------------------------------------------------------------- many contacts
-
-def rows_of_dominoes(p):
-    """Make the rows of dominoes on a floor.  Each body has √μ, so that each pair has μ."""
-    bodies, mu = [], float(np.sqrt(p.mu))
-    for k, t in enumerate(dominoes.moments()):
-        for x, q, v, omega in zip(*dominoes.begin(p, t)):
-            bodies.append(Body((x[0] + shift_of_row(k, p), x[1]), dominoes.MASS, Box((0.5 * p.width, 0.5 * p.height)),
-                               mu, q=q, v=arrays(v), omega=omega, inertia=dominoes.inertia(p)))
-    return make_model([*bodies, FLOOR._replace(mu=mu)], (0.0, -p.g))
-
-
-def shift_of_row(k, p):
-    """Return how far row k is from its place, so that rows do not meet [m]."""
-    return k * p.pitch * (p.n + 5)
-
-
-def see_dominoes(s, p):
-    rows = len(dominoes.moments())
-    shift = np.repeat([shift_of_row(k, p) for k in range(rows)], p.n)
-    x = s.x[:-1] - np.stack((shift, np.zeros(len(shift))), axis=1)
-    return np.concatenate([dominoes.corners(x[k:k + p.n], s.q[k:k + p.n], p) for k in range(0, len(x), p.n)])
-
-
-def wedge(p):
-    """Make a wedge, which is a box that cannot turn, and a block on it."""
-    x, q = moving_wedge.places(p), -moving_wedge.slope(p)
-    return make_model([Body(arrays(x[0]), p.M, Box((moving_wedge.LONG, moving_wedge.THICK)), q=q, inertia=np.inf),
-                       Body(arrays(x[1]), p.m, Box((p.half, p.half)), q=q), FLOOR], (0.0, -p.g))
-
-
-def see_wedge(s, p):
-    return np.array([s.x[0, 0], *s.x[1], s.v[0, 0], *s.v[1]])
-
 
 def many_parts(p):
     """Make the machine.  Each body has √μ.  The floor is a belt, the crank a body without mass that turns."""
@@ -125,52 +55,24 @@ def many_parts(p):
                       springs=[Spring(hammer, WORLD, (0.0, 0.0), arrays(anchor), rest, k, c)], loads=[Drag(drag)])
 
 
-# ---------------------------------------------------------------------------------------------- joints
-
-def chain(p):
-    ends = rod_chain.straight(p)
-    rods = [Body(arrays(0.5 * (a + b)), p.m, q=np.arctan2(*(b - a)[::-1]), inertia=rod_chain.inertia(p))
-            for a, b in pairwise(ends)]
-    return make_model(rods, (0.0, -p.g), [Hinge(k, k - 1 if k else WORLD, arrays(ends[k])) for k in range(p.rods)])
-
-
-def cradle_on_rods(p):
-    angles = rod_cradle.angles(p)
-    balls = [Body(arrays(x), 1.0, Ball(p.R), e=1.0, q=q, inertia=rod_cradle.moment(p))
-             for x, q in zip(rod_cradle.centres(angles, p), angles)]
-    return make_model(balls, (0.0, -p.g), [Hinge(k, WORLD, arrays(x)) for k, x in enumerate(rod_cradle.pivots(p))])
-
-
-# ---------------------------------------------------------------------------------------------- in space
-
-def top_on_its_tip(p):
-    R, m = about(np.array([1.0, 0.0, 0.0]), p.tilt), heavy_top.mass(p)
-    across = p.I1 - m * heavy_top.LENGTH**2
-    body = Body(arrays(heavy_top.LENGTH * R[:, 2]), m, q=arrays(quaternion(R)), omega=arrays(p.spin * R[:, 2]),
-                v=(0.0, 0.0, 0.0), inertia=(across, across, p.I3))
-    return make_model([body], (0.0, 0.0, -heavy_top.G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
-
-
 # ---------------------------------------------------------------------------------------------- all of them
 
-SLIDES = {PYBULLET: {"lasts": incline.T}}  # a contact that slides is kept
 DESCRIBED = {                # name of the scene: Described
     "throw": of(throw.SCENE),
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
     "spring_net": of(spring_net.SCENE),
-    "incline": Described(incline.SCENE, on_a_slope, lambda s, p: s.x[0, :1], SLIDES),
-    "stick_slip": Described(stick_slip.SCENE, driven, lambda s, p: s.x[0, :1], SLIDES),
+    "incline": of(incline.SCENE),
+    "stick_slip": of(stick_slip.SCENE),
     "slide_then_roll": of(slide_then_roll.SCENE),
     "cradle": of(cradle.SCENE),
-    "oblique_discs": Described(oblique_discs.SCENE, two_discs, see_discs),
-    "moving_wedge": Described(moving_wedge.SCENE, wedge, see_wedge,
-                              {PYBULLET: {"slop": 0.0, "lasts": moving_wedge.T}}),
-    "dominoes": Described(dominoes.SCENE, rows_of_dominoes, see_dominoes, shown=OF_PYMUNK),
+    "oblique_discs": of(oblique_discs.SCENE),
+    "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
+    "dominoes": of(dominoes.SCENE, shown=OF_PYMUNK),
     "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
-    "rod_chain": Described(rod_chain.SCENE, chain, lambda s, p: rod_chain.lower_ends(s.x, s.q, p)),
-    "rod_cradle": Described(rod_cradle.SCENE, cradle_on_rods, lambda s, p: rod_cradle.seen(s.q, s.omega, p)),
+    "rod_chain": of(rod_chain.SCENE),
+    "rod_cradle": of(rod_cradle.SCENE),
     "asymmetric_top": of(asymmetric_top.SCENE),
-    "heavy_top": Described(heavy_top.SCENE, top_on_its_tip, lambda s, p: rotation_of(s.q[0])[:2, 2]),
+    "heavy_top": of(heavy_top.SCENE),
 }

@@ -1,9 +1,15 @@
-"""A block on a plane: the fields of its scenes, and its runners in the engines."""
+"""A block on a plane: the fields of its scenes, and its worlds in the engines."""
 
+from functools import partial
 
 from validate.engines.friction import SWEEPS
 from validate.reference.friction import block_in_space
-from validate.scenes._common import ONE_LINK, coordinates, measured
+from validate.scene import PYBULLET, PYMUNK
+from validate.scenes._common import ONE_LINK, built, coordinates, measured
+
+SLOP = 1e-5                  # pybullet: the overlap that it tolerates in a contact, and with which the slab begins [m]
+in_pymunk = partial(built, PYMUNK, iterations=SWEEPS)
+in_pybullet = partial(built, PYBULLET, iterations=SWEEPS, overlap=SLOP, slop=SLOP)
 
 
 def block_on(ground, start):
@@ -19,6 +25,11 @@ def block_on(ground, start):
             **measured("rotation: it does not tip", f"detection: it does not leave the {ground}"),
         },
     }
+
+
+def read_distance(state, p):
+    """Return how far the block is along x."""
+    return state.x[0, :1]
 
 
 def slab_on_line(before="", after=""):

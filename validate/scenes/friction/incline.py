@@ -7,19 +7,28 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Ball
 from validate.check import Whose, states
-from validate.engines.friction import bullet_block, pymunk_block
+from validate.engines.friction import LOW, floor, slab
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
-from validate.engines.mujoco import block as mujoco_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import CLOSE, NOTHING_LEFT, SoftBlock
 from validate.reference.schemes import summed
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
-from validate.scenes._common import round_off
-from validate.scenes.friction._common import block_on, slab_on_box, slab_on_line
+from validate.scenes._common import built, round_off
+from validate.scenes.friction._common import (
+    block_on,
+    in_pybullet,
+    in_pymunk,
+    read_distance,
+    slab_on_box,
+    slab_on_line,
+)
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+INSIDE = 1e-9                # where MuJoCo's ball begins, so that its first step has a contact [m]
 rounded = round_off(T)
 
 
@@ -132,28 +141,26 @@ def held(p, t):
     return truth(p, t) if slides else np.array([soft(p).arrest(p.v0, t)])
 
 
-def pymunk_make(p, dt):
-    return pymunk_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array([x.x]))
+def model(p):
+    """Make the slab of pymunk and pybullet."""
+    return slab(tilted(p), p.mu, (p.v0, 0.0))
 
 
-def pybullet_make(p, dt):
-    along, across = tilted(p)
-    fastest = max(abs(p.v0), abs(along + p.mu * across) * T)
-    return bullet_block((along, 0.0, across), p.mu, (p.v0, 0.0, 0.0), fastest, dt, lambda x: np.array(x[:1]))
-
-
-def mujoco_make(p, dt):
-    return mujoco_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array(x[:1]))
-
+def on_a_point(p):
+    """Make MuJoCo's block, a ball that cannot turn: its law is known for one contact, and a slab has four."""
+    ball = Body((0.0, LOW - INSIDE), 1.0, Ball(LOW), p.mu, v=(p.v0, 0.0), inertia=np.inf)
+    return make_model([ball, floor(tilted(p))], tilted(p))
 
 TILTED = "gravity tilted, "
 RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
     # nothing changes between two events, and a midpoint step is then exact
     ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
-    engine(PYMUNK, "", pymunk_make, slab_on_line(TILTED), order=1, limit=limits, predicted=old_velocity),
-    engine(PYBULLET, "", pybullet_make, slab_on_box(TILTED), order=1, limit=limits, predicted=new_velocity),
-    engine(MUJOCO, "", mujoco_make, f"{TILTED}a ball that cannot turn; {SOFT}",
+    engine(PYMUNK, "", in_pymunk(model, read_distance), slab_on_line(TILTED),
+           order=1, limit=limits, predicted=old_velocity),
+    engine(PYBULLET, "", in_pybullet(model, read_distance), slab_on_box(TILTED),
+           order=1, limit=limits, predicted=new_velocity),
+    engine(MUJOCO, "", built(MUJOCO, on_a_point, read_distance), f"{TILTED}a ball that cannot turn; {SOFT}",
            order=1, limit=limits, predicted=hops,
            departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
                                "slope that can hold it, a block creeps", held, Whose.LAW)),
@@ -183,7 +190,7 @@ SCENE = Scene(
     **block_on("slope", start), cases=CASES, duration=T, steps=STEPS,
     acceleration=lambda lessons: lessons.friction.driven_acceleration, run=run,
     runners=RUNNERS,
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read_distance,
     omitted_methods=("the integrators of lesson 1 have no stopping condition; the stability case "
                      "regularised-friction-creeps shows the effect"),
     sanity_checks=sanity_checks,

@@ -3,8 +3,9 @@
 import numpy as np
 
 from solutions.given.friction import make_block
+from solutions.support.model import Force
 from validate.check import states
-from validate.engines.friction import MASS, bullet_block, pymunk_block
+from validate.engines.friction import slab
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import (
     DrivenBlock,
@@ -12,7 +13,6 @@ from validate.reference.friction import (
     carried_limit,
     carried_slip_error,
     old_velocity_slip_error,
-    pushed_in_steps,
     slip_error,
     slip_limits,
     slip_position,
@@ -20,7 +20,7 @@ from validate.reference.friction import (
 )
 from validate.scene import PYBULLET, PYMUNK, Scene, engine, ours
 from validate.scenes._common import check_positives
-from validate.scenes.friction._common import block_on, slab_on_box, slab_on_line
+from validate.scenes.friction._common import block_on, in_pybullet, in_pymunk, read_distance, slab_on_box, slab_on_line
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
 CASES = {"F = 8 cos t": DrivenBlock(), "F = 16 cos 2t, turns without a rest": DrivenBlock(force=16.0, omega=2.0)}
@@ -37,29 +37,19 @@ def run(lessons, step, acceleration, state, p, dt, steps):
     return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
-def push(p, d):
-    """Return t → force (d,) [N] on the engines' block, whose mass differs."""
-    still = (0.0,) * (d - 1)
-    return lambda t: (MASS * p.force / p.m * float(np.cos(p.omega * t)), *still)
-
-
-def pymunk_make(p, dt):
-    return pymunk_block((0.0, -p.g), p.mu, 0.0, dt, lambda x: np.array([x.x]), push(p, 2))
-
-
-def pybullet_make(p, dt):
-    still, fastest = (0.0, 0.0, 0.0), pushed_in_steps(p, round(T / dt), True)[1]
-    return bullet_block((0.0, 0.0, -p.g), p.mu, still, fastest, dt, lambda x: np.array(x[:1]), push(p, 3))
-
+def model(p):
+    """Make the slab on the floor, with its force."""
+    push = lambda t: (p.force * float(np.cos(p.omega * t)), 0.0)
+    return slab((0.0, -p.g), p.mu, m=p.m, loads=[Force(0, push, "t")])
 
 PUSHED = ", the force applied each step"
 RUNNERS = (
     ours(SLIDING, limit=slip_limits, predicted=slip_error),
     ours(EVENT, limit=slip_limits,
          predicted="it cuts its steps where slips begin and end, so its error is not a smooth function of dt"),
-    engine(PYMUNK, "", pymunk_make, slab_on_line(after=PUSHED),
+    engine(PYMUNK, "", in_pymunk(model, read_distance), slab_on_line(after=PUSHED),
            order=1, limit=slip_limits, predicted=old_velocity_slip_error),
-    engine(PYBULLET, "", pybullet_make, slab_on_box(after=PUSHED),
+    engine(PYBULLET, "", in_pybullet(model, read_distance), slab_on_box(after=PUSHED),
            order=1, limit=carried_limit, predicted=carried_slip_error),
 )
 
@@ -86,7 +76,7 @@ SCENE = Scene(
     **block_on("floor", start), cases=CASES, duration=T, steps=STEPS,
     acceleration=lambda lessons: lessons.friction.driven_acceleration, run=run,
     runners=RUNNERS,
-    truth=slip_position, truth_uncertainty=1e-13,
+    truth=slip_position, truth_uncertainty=1e-13, model=model, read=read_distance,
     sanity_checks=sanity_checks,
     points=points,
 )

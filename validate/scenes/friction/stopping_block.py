@@ -8,13 +8,13 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
 from validate.check import Whose, states
-from validate.engines.friction import bullet_block, pymunk_block
+from validate.engines.friction import slab
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
 from validate.scenes._common import ONE_LINK, coordinates, measured, round_off
-from validate.scenes.friction._common import slab_on_box, slab_on_line
+from validate.scenes.friction._common import in_pybullet, in_pymunk, slab_on_box, slab_on_line
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -105,27 +105,34 @@ def new_velocities(p, dt):
 BOX = Departure("it clamps friction along x and y separately, each to μ F_N", pyramid, Whose.LAW)
 
 
-def pymunk_make(p, dt):
-    """Use the vertical plane of the launch; positions are rotated back into the floor."""
-    ahead = thrown(p)[:2] / p.v0
-    return pymunk_block((0.0, -p.g), p.mu, p.v0, dt, lambda x: x.x * ahead)
+def model(p):
+    return slab((0.0, 0.0, -p.g), p.mu, tuple(thrown(p)))
 
 
-def pybullet_make(p, dt, pyramid=False):
-    return bullet_block((0.0, 0.0, -p.g), p.mu, thrown(p), p.v0, dt, lambda x: np.array(x[:2]), pyramid=pyramid)
+def in_the_plane_of_the_throw(p):
+    return slab((0.0, -p.g), p.mu, (p.v0, 0.0))
 
+
+def read(state, p):
+    """Return x and y on the floor."""
+    return state.x[0, :2]
+
+
+def read_ahead(state, p):
+    """Return the same of the block in the plane of the throw."""
+    return state.x[0, 0] * thrown(p)[:2] / p.v0
 
 RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
     ours(PYRAMID, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
     # the deceleration is constant, and the stop is found
     ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
-    engine(PYMUNK, "", pymunk_make, slab_on_line("the vertical plane of the throw, "),
-           order=1, limit=limits, predicted=old_velocity),
-    engine(PYBULLET, "pyramid", partial(pybullet_make, pyramid=True),
+    engine(PYMUNK, "", in_pymunk(in_the_plane_of_the_throw, read_ahead),
+           slab_on_line("the vertical plane of the throw, "), order=1, limit=limits, predicted=old_velocity),
+    engine(PYBULLET, "pyramid", in_pybullet(model, read, maximal=False, pyramid=True),
            "reduced coordinates, enableConeFriction 0; otherwise as in pybullet",
            order=1, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
-    engine(PYBULLET, "", pybullet_make, slab_on_box(), order=1, limit=limits, predicted=new_velocity),
+    engine(PYBULLET, "", in_pybullet(model, read), slab_on_box(), order=1, limit=limits, predicted=new_velocity),
 )
 
 
@@ -154,7 +161,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.friction.driven_acceleration, start=start, run=run, observe=coordinates(2),
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=ONE_LINK,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),

@@ -9,13 +9,14 @@ from validate.reference.impulses import APART, BULLET_RULE, CHIPMUNK_RULE, COPIE
 from validate.scene import EXACT, PYBULLET, PYMUNK, engine, ours
 
 
-def impact_runners(methods, limits, late, in_pymunk, in_pybullet, pymunk_errs=None, **pybullet):
+def impact_runners(methods, limits, late, in_pymunk, in_pybullet, pymunk_errs=None, bullet_errs=None,
+                   **pybullet):
     """Return the runners of a scene of impacts: our methods, pymunk and pybullet.
 
     methods        one that projects, and one that goes back to the moment of the impact
     late           (p, dt, rule) → Prediction of a runner that detects an impact at the end of a step
     in_*           (make, settings) of an engine
-    pymunk_errs    further arguments of `late` for pymunk
+    *_errs         further arguments of `late` for an engine
     pybullet       further fields of pybullet's runner
     """
     projecting, backtracking = methods
@@ -27,7 +28,7 @@ def impact_runners(methods, limits, late, in_pymunk, in_pybullet, pymunk_errs=No
         engine(PYMUNK, "", pymunk_make, f"{COPIES} {circles}",
                order=1, limit=limits, predicted=partial(late, rule=CHIPMUNK_RULE, **pymunk_errs or {})),
         engine(PYBULLET, "", pybullet_make, f"{COPIES} {spheres}; {IMPACT_SETTINGS}",
-               order=1, limit=limits, predicted=partial(late, rule=BULLET_RULE), **pybullet),
+               order=1, limit=limits, predicted=partial(late, rule=BULLET_RULE, **bullet_errs or {}), **pybullet),
     )
 
 

@@ -1,20 +1,22 @@
 """A disc strikes another off-centre: without friction, only the line between their centres at contact matters."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from solutions.given.impulses import Discs
 from solutions.impulses import check_restitution
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Ball
 from validate.check import states
-from validate.engines.bullet import Impacts
-from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
+from validate.engines.bullet import IMPACT_ITERATIONS
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
 from validate.reference.impulses import APART, COPIES, delays, rounded_steps, struck
-from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
-from validate.scenes._common import check_positives, constantly
+from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order
+from validate.scenes._common import built, check_positives, constantly
 from validate.scenes.drawing import circle, outlines
-from validate.scenes.impulses._common import impact_runners, in_space
+from validate.scenes.impulses._common import copies_of, impact_runners, in_space
 
 T = 1.0                      # [s]: they meet before half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -121,29 +123,24 @@ def late_impact(p, dt, rule, far=5.0):
                       rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
 
 
-def pymunk_make(p, dt):
-    space, (x, v, _) = pymunk_space(), start(p)
-    discs = [pymunk_ball(space, m, 1.0, p.R, x[k, i, :2] + (0.0, APART * k), v[k, i, :2], 0.0, p.e if i else 1.0, 0.0)
-             for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))]
-    seen_of = lambda k, b: (*(np.array(b.position) - (0.0, APART * (k // 2))), *b.velocity)
-    return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(discs)]))
+def model(p):
+    """Make the copies of both discs, APART from each other.  Each has √e: a pair has the product."""
+    x, v, _ = start(p)
+    return make_model([Body((x[k, i, 0], x[k, i, 1] + APART * k), m, Ball(p.R), e=np.sqrt(p.e), v=tuple(v[k, i, :2]))
+                       for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))], (0.0, 0.0))
 
 
-def pybullet_make(p, dt):
-    bullet, (x, v, _) = Impacts(dt), start(p)
-    balls = [
-        bullet.ball(m, 1.0, p.R, (*x[k, i, :2], APART * k), (*v[k, i, :2], 0.0), (0.0,) * 3, p.e if i else 1.0, 0.0)
-        for k in range(COPIES)
-        for i, m in enumerate((p.m1, p.m2))
-    ]
-    read = lambda: np.array([(*bullet.position(b)[:2], *bullet.velocity(b)[:2]) for b in balls]).ravel()
-    return EngineRun(bullet.begin().step, read, bullet.close)
+def read(state, p):
+    return np.concatenate(copies_of(state, 2), axis=2).ravel()
 
 
+FAR = {"far": APART * COPIES}
+world = partial(built, model=model, read=read)
 RUNNERS = impact_runners(
     (PROJECTING_DISCS, BACKTRACKING_DISCS), limits, late_impact,
-    (pymunk_make, "pairs of circles; no other setting matters"), (pybullet_make, "pairs of spheres"),
-    pymunk_errs={"far": APART * COPIES}, most_steps=500)
+    (world(PYMUNK, iterations=10), "pairs of circles; no other setting matters"),
+    (world(PYBULLET, iterations=IMPACT_ITERATIONS), "pairs of spheres"),
+    pymunk_errs=FAR, bullet_errs=FAR, most_steps=500)
 
 
 def sanity_checks():
@@ -176,7 +173,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=constantly(outlines(6, 2)),
     uses=("two coordinates", "two radii", "one number e for the impact"),

@@ -8,16 +8,15 @@ import numpy as np
 from solutions.checks import BadInput, check_positive
 from solutions.given.rotation import check_moments
 from solutions.rotation import Top, exponential
+from solutions.support.model import WORLD, BallJoint, Body, make_model, rotation_of
 from validate.check import states
-from validate.engines.bullet import Rigid
-from validate.engines.mujoco import top as mujoco_top
 from validate.methods import COMPOSED_SPLITTING, GYROSCOPIC, QUATERNION, RUNGE_KUTTA, SPLITTING, TURNS
-from validate.reference.orientation import about
+from validate.reference.orientation import about, quaternion
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import MUNTHE_KAAS, TurningBody, rotation
-from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, EngineRun, Scene, by_order, engine, in_substeps
+from validate.scene import MUJOCO, PYBULLET, ROUND_OFF, Scene, by_order, engine, in_substeps
 from validate.scenes import drawing
-from validate.scenes._common import ONE_LINK, floor_of
+from validate.scenes._common import ONE_LINK, built, floor_of
 from validate.scenes.rotation._common import turn_runners
 
 T = 2.0                      # [s]: nearly three nutations
@@ -38,7 +37,7 @@ class Params(NamedTuple):
 
 
 CASES = {"fast": Params()}
-# for pybullet: distance from the pivot to the centre of mass [m], gravity [m/s²]; only Mgl matters
+# for the engines: distance from the pivot to the centre of mass [m], gravity [m/s²]; only Mgl matters
 LENGTH, G = 1.0, 9.81
 
 
@@ -109,35 +108,32 @@ def mass(p):
     return p.mgl / (G * LENGTH)
 
 
-def pybullet_make(p, dt, maximal=False):
-    """Hold a body at its pivot by a point-to-point constraint; moments are about the centre of mass: I₁ − ml²."""
-    across = p.I1 - mass(p) * LENGTH**2
-    R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
-    axis = R[:, 2]
-    bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
-    body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
-    bullet.begin().pivot(body, (0.0, 0.0, -LENGTH), maximal)
-    return EngineRun(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
+def model(p):
+    """Make a body on a ball joint at the origin; moments are about the centre of mass: I₁ − ml²."""
+    R, across = about(np.array([1.0, 0.0, 0.0]), p.tilt), p.I1 - mass(p) * LENGTH**2
+    body = Body(tuple(LENGTH * R[:, 2]), mass(p), q=tuple(quaternion(R)), v=(0.0, 0.0, 0.0),
+                omega=tuple(p.spin * R[:, 2]), inertia=(across, across, p.I3))
+    return make_model([body], (0.0, 0.0, -G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
 
 
-def mujoco_make(p, dt):
-    across = p.I1 - mass(p) * LENGTH**2
-    R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
-    return mujoco_top(mass(p), (across, across, p.I3), LENGTH, R, p.spin, G, dt)
+def read(state, p):
+    return rotation_of(state.q[0])[:2, 2]
 
 
+world = partial(built, model=model, read=read)
+in_pybullet = partial(world, PYBULLET, iterations=200)
 BODY = TurningBody(T, Params.moments, released, weight, seen, truth, floor_of(limits, 1e-11))
 SWEPT = "its pivot is a constraint, and the sweeps that hold it are not modelled"
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
-MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), f"useMaximalCoordinates=1; {SETTINGS}",
+MAXIMAL = engine(PYBULLET, "", in_pybullet(), f"useMaximalCoordinates=1; {SETTINGS}",
                  order=1, limit=pybullet_limit, predicted=SWEPT)
 RUNNERS = (
     *turn_runners(BODY, TURNS, limits, IN_QUICK),
-    engine(PYBULLET, "reduced coordinates", pybullet_make, f"createMultiBody, no clamp of velocity; {SETTINGS}",
-           order=1, limit=pybullet_limit, predicted=SWEPT),
+    engine(PYBULLET, "reduced coordinates", in_pybullet(maximal=False),
+           f"createMultiBody, no clamp of velocity; {SETTINGS}", order=1, limit=pybullet_limit, predicted=SWEPT),
     MAXIMAL,
     in_substeps(MAXIMAL, 100),
-    engine(MUJOCO, "", mujoco_make, "ball joint; Runge–Kutta 4",
+    engine(MUJOCO, "", world(MUJOCO), "ball joint; Runge–Kutta 4",
            order=4, limit=limits, predicted=BODY.predict(MUNTHE_KAAS), most_steps=5000),
 )
 
@@ -189,7 +185,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.rotation.heavy_top_torque, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-12,
+    truth=truth, truth_uncertainty=1e-12, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=ONE_LINK,
     bodies=bodies, poses=poses, arrows=arrows,

@@ -15,18 +15,17 @@ import numpy as np
 from solutions.checks import BadInput, check_friction, check_positive
 from solutions.contact import make_pile_2d
 from solutions.given.bodies import Bodies
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Box, HalfSpace
 from validate.check import states
 from validate.engines import watched
-from validate.engines.bullet import Rigid
-from validate.engines.chipmunk import pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import PILE, SETTLED_LOOP
 from validate.reference.contact_laws import Physics
 from validate.reference.impulses import delays
-from validate.reference.orientation import about
 from validate.reference.simulator import rocking
 from validate.reference.stored import agreed
-from validate.scene import PYBULLET, PYMUNK, EngineRun, Scene, engine, no_limit, ours
-from validate.scenes._common import check_positives
+from validate.scene import PYBULLET, PYMUNK, Scene, engine, no_limit, ours
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import outlines
 
 T = 1.0                      # [s]
@@ -58,7 +57,6 @@ CASES = {"six": Params(), "fifteen": Params(n=15), "six, smoother": Params(mu=0.
 AGREED_CASES = tuple(CASES)
 ABOUT_1 = "about 1"          # an order that four runs do not show well
 LEVELS_OFF = "1, then none"  # an order, towards another limit than pymunk's
-AROUND = 10.0                # pybullet's moments about x and z over that about y, about which dominoes turn [-]
 MASS = 1.0                   # of each [kg]; nothing depends on it
 
 
@@ -135,12 +133,12 @@ class Motion(NamedTuple):
 
 def by_pymunk(p, begins, dt, steps, every):
     """Return places (steps/every + 1, rows, n, 3) of rows that begin at these moments, by pymunk."""
-    space, dominoes = pymunk_rows(p, begins, 200, 1e-6)
-    found = [seen_in_pymunk(dominoes, p, len(begins))]
+    world = PYMUNK.world.build(model(p, begins), dt, iterations=200, slop=1e-6, overlap=0.0)
+    found = [places_of(world.state(), p)]
     for n in range(1, steps + 1):
-        space.step(dt)
+        world.step()
         if n % every == 0:
-            found.append(seen_in_pymunk(dominoes, p, len(begins)))
+            found.append(places_of(world.state(), p))
     return np.array(found)
 
 
@@ -235,85 +233,60 @@ def limit(p, dt):
 
 # ---------------------------------------------------------------------------------------------- engines
 
-def pymunk_rows(p, begins, iterations, slop):
-    """Return (space, its dominoes): a row for each of these moments, one beside the other."""
-    import pymunk
-    space, dominoes = pymunk_space((0.0, -p.g)), []
-    space.iterations, space.collision_slop = iterations, slop
-    pymunk_floor(space)
+def model(p, begins=None):
+    """Make a row for each of these moments, one beside the other, on a floor.  Each has √μ: a pair has the product."""
+    begins, mu, bodies = moments() if begins is None else begins, float(np.sqrt(p.mu)), []
+    floor = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=mu)
     for t, shift in zip(begins, rows_apart(p, len(begins))):
         for x, angle, v, omega in zip(*begin(p, t)):
-            body = pymunk.Body(MASS, inertia(p))
-            body.position, body.velocity = tuple(map(float, x + shift[0])), tuple(map(float, v))
-            body.angle, body.angular_velocity = float(angle), float(omega)
-            space.add(body, pymunk.Poly.create_box(body, (p.width, p.height)))
-            dominoes.append(body)
-    for shape in space.shapes:
-        shape.friction, shape.elasticity = np.sqrt(p.mu), 0.0            # pymunk multiplies the two
-    return space, dominoes
+            bodies.append(Body(tuple(x + shift[0]), MASS, Box((0.5 * p.width, 0.5 * p.height)), mu, q=angle,
+                               v=tuple(v), omega=omega, inertia=inertia(p)))
+    return make_model([floor, *bodies], (0.0, -p.g))
 
 
 def rows_apart(p, rows):
-    """Return by how much (rows, 1, 2) [m] pymunk's rows are moved, so that they do not meet."""
+    """Return by how much (rows, 1, 2) [m] the rows are moved, so that they do not meet."""
     return np.outer(np.arange(rows), (p.pitch * (p.n + 5), 0.0))[:, None]
 
 
-def seen_in_pymunk(dominoes, p, rows):
-    """Return places and angles (rows, n, 3) of the dominoes."""
-    places = np.array([(*body.position, body.angle) for body in dominoes]).reshape(rows, p.n, 3)
-    places[..., :2] -= rows_apart(p, rows)
+def places_of(state, p):
+    """Return places and angles (rows, n, 3) of the dominoes of an engine."""
+    places = np.column_stack((state.x, state.q))[1:].reshape(-1, p.n, 3)
+    places[..., :2] -= rows_apart(p, len(places))
     return places
 
 
-def pymunk_make(p, dt, iterations, slop):
-    space, dominoes = pymunk_rows(p, moments(), iterations, slop)
-    return pymunk_world(space, dt, lambda: all_corners(seen_in_pymunk(dominoes, p, ROWS), p))
+def read(state, p):
+    return all_corners(places_of(state, p), p)
 
 
 def physics_in_space(p):
-    """Return the Physics of the dominoes of all rows in pybullet, which turn about y only."""
-    about = 1.0 / (inertia(p) * np.array([AROUND, 1.0, AROUND]))
+    """Return the Physics of the dominoes of all rows in pybullet."""
     n = ROWS * p.n
-    return Physics(np.array([0.0, 0.0, -p.g]), np.full(n, 1.0 / MASS), np.tile(about, (n, 1)), p.mu)
+    return Physics(np.array([0.0, 0.0, -p.g]), np.full(n, 1.0 / MASS), np.full((n, 3), 1.0 / inertia(p)), p.mu)
 
 
-def pybullet_make(p, dt, residual):
-    bullet = Rigid(dt, (0.0, 0.0, -p.g), ITERATIONS)
-    pb = bullet.pb
-    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-6)
-    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[50.0, 5.0, 1.0])
-    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
-    pb.changeDynamics(ground, -1, lateralFriction=np.sqrt(p.mu), restitution=0)
-    shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * p.width, 0.2, 0.5 * p.height])
-    inertias = inertia(p) * np.array([AROUND, 1.0, AROUND])
-    dominoes = [bullet.body(MASS, inertias, (x[0], k - 0.5 * ROWS, x[1]), (0.0, -omega, 0.0), True, v=(v[0], 0.0, v[1]),
-                            R=about((0.0, 1.0, 0.0), -angle), shape=shape, mu=np.sqrt(p.mu))
-                for k, t in enumerate(moments()) for x, angle, v, omega in zip(*begin(p, t))]
-
-    def read():
-        x = np.array([bullet.position(body) for body in dominoes])[:, [0, 2]]
-        turned = np.array([bullet.R(body) for body in dominoes])
-        return corners(x, np.arctan2(turned[:, 2, 0], turned[:, 0, 0]), p)
-    bullet.begin()
-    world = watched.Bullet(pb, dt, bullet.gravity, physics_in_space(p))
-    return EngineRun(bullet.step, read, bullet.close, watched_step=world.watched)
+def watch(bullet, p, dt):
+    return watched.Bullet(bullet.pb, dt, None, physics_in_space(p))
 
 
+in_pymunk = partial(built, PYMUNK, model, read, overlap=0.0)
+in_pybullet = partial(built, PYBULLET, model, read, watch, iterations=ITERATIONS, overlap=0.0, ground=False)
 BY_CHANCE = "the phase of an impact in its step is random, and each impact passes this error on"
 LONG_LIVED = "its contact points persist over several steps, so it does not converge to this motion"
 RUNNERS = (
     ours(PILE, order=ABOUT_1, limit=limit, predicted=BY_CHANCE),
     ours(SETTLED_LOOP, order=ABOUT_1, limit=limit, predicted=BY_CHANCE, most_in_quick=100,
          finer_in_full=(2000, 5000, 10_000, 20_000)),
-    engine(PYMUNK, "", partial(pymunk_make, iterations=50, slop=1e-6), "50 iterations, collision_slop 1e-6",
+    engine(PYMUNK, "", in_pymunk(iterations=50, slop=1e-6), "50 iterations, collision_slop 1e-6",
            order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
-    engine(PYMUNK, "default", partial(pymunk_make, iterations=10, slop=0.1), "10 iterations, collision_slop 0.1",
+    engine(PYMUNK, "default", in_pymunk(iterations=10, slop=0.1), "10 iterations, collision_slop 0.1",
            order=ABOUT_1, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
-    engine(PYBULLET, "", partial(pybullet_make, residual=0),
+    engine(PYBULLET, "", in_pybullet(),
            "boxes 0.4 m deep, maximal coordinates; solverResidualThreshold 0, contactSlop 1e-6, 50 iterations",
            order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED,
            laws=watched.bullet_rules(ITERATIONS, rests=False), watched=WATCHED),
-    engine(PYBULLET, "default", partial(pybullet_make, residual=1e-7),
+    engine(PYBULLET, "default", in_pybullet(residual=1e-7),
            "boxes 0.4 m deep, maximal coordinates; contactSlop 1e-6, 50 iterations",
            order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED,
            laws=watched.bullet_rules(ITERATIONS, rests=False), watched=WATCHED),
@@ -366,7 +339,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=UNCERTAINTY,
+    truth=truth, truth_uncertainty=UNCERTAINTY, model=model, read=read,
     slow_cases=("fifteen", "six, smoother"),
     omitted_methods="sweeps and Murty's method alone are missing: they find forces and move no bodies",
     sanity_checks=sanity_checks,

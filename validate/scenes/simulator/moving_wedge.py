@@ -10,21 +10,25 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.simulator import make_bodies_2d
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Box, HalfSpace
 from validate.check import states
 from validate.engines.bullet import CONTACT_ERP
-from validate.engines.chipmunk import pymunk_world
-from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
 from validate.methods import LOOP_2D, LOOP_WITH_MEANS
 from validate.reference.simulator import wedge_pushed_out
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import outlines
+from validate.worlds.bullet import WIDE
 
 T = 0.4                      # [s]
 STEPS = (8, 16, 40, 80, 160, 400, 800)
 SWEEPS = 25                  # [-]; each leaves less than a third of the error
 MARGIN = 0.01                # [m]
+OVERLAP = 1e-6               # of the engines' bodies at the start [m]
 LONG, THICK = 0.5, 0.3       # half sizes of the box that is the wedge [m]
+# pybullet's contactBreakingThreshold [-]: a contact point lags behind by the way of the block in a step
+KEPT = 1.0
 ABOVE = -0.35                # where the block begins, along the slope from its middle [m]
 
 
@@ -187,42 +191,34 @@ def bullet_error(p, dt):
                       turned(p) + 1e-14 + T / dt * ROUND_OFF)
 
 
-def pymunk_make(p, dt, iterations):
-    """Make a triangle that cannot rotate, and a block on it; each begins a micrometre inside its support."""
-    import pymunk
-    space, x, n = pymunk_floor_space(p.g, 0.0), places(p), normal(p)
-    s, c, down = np.sin(slope(p)), np.cos(slope(p)), np.array([0.0, -OVERLAP])
-    space.iterations = iterations
-    top = np.array([(-LONG, THICK), (LONG, THICK)]) @ np.array([(c, -s), (s, c)])             # ends of the upper side
-    foot = -(LONG * s + THICK * c)
-    corners = [tuple(map(float, corner)) for corner in (*top, (top[1, 0], foot), (top[0, 0], foot))]
-    wedge = pymunk_body(space, p.M, float("inf"), x[0] + down, 0.0, lambda body: pymunk.Poly(body, corners))
-    block = pymunk_body(space, p.m, 2.0 / 3.0 * p.m * p.half**2, x[1] + down - OVERLAP * n, -slope(p),
-                        lambda body: pymunk.Poly.create_box(body, (2.0 * p.half, 2.0 * p.half)))
-    for shape in (*wedge.shapes, *block.shapes):
-        shape.friction = 0.0
-    return pymunk_world(space, dt, lambda: np.array([wedge.position.x, *block.position, wedge.velocity.x,
-                                                     *block.velocity]))
+def model(p):
+    """Make a wedge, which is a box that cannot turn, and a block on it. """
+    x, q = places(p), -slope(p)
+    return make_model([Body(tuple(x[0]), p.M, Box((LONG, THICK)), q=q, inertia=np.inf),
+                       Body(tuple(x[1]), p.m, Box((p.half, p.half)), q=q),
+                       Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)))], (0.0, -p.g))
 
 
-def pybullet_make(p, dt, maximal):
-    return pybullet_wedge(places(p), (p.M, p.m), p.half, (LONG, THICK), slope(p), p.g, maximal, dt)
+def read(state, p):
+    return np.array([state.x[0, 0], *state.x[1], state.v[0, 0], *state.v[1]])
 
 
-SETTINGS = "100 iterations, no residual threshold, no slop, contactBreakingThreshold 1, overlaps of 1e-6 m"
+world = partial(built, model=model, read=read, overlap=OVERLAP)
+in_pybullet = partial(world, PYBULLET, slop=0.0, breaking=KEPT)
+SETTINGS = f"100 iterations, no residual threshold, no slop, contactBreakingThreshold {KEPT:g}, overlaps of 1e-6 m"
 PYMUNK_ERROR = partial(lag_error, sign=-1.0, limit=pymunk_limit)
 RUNNERS = (
     ours(LOOP_2D, limit=loop_limit, predicted=partial(lag_error, sign=1.0, limit=loop_limit)),
     ours(LOOP_WITH_MEANS, order=EXACT, limit=mean_limit, predicted=partial(lag_error, sign=0.0, limit=mean_limit)),
-    engine(PYMUNK, "", partial(pymunk_make, iterations=100),
-           "a triangle with an infinite moment; 100 iterations, collision_slop 1e-5, overlaps of 1e-6 m",
+    engine(PYMUNK, "", world(PYMUNK),
+           "a box with an infinite moment; 100 iterations, collision_slop 1e-5, overlaps of 1e-6 m",
            order=1, limit=pymunk_limit, predicted=PYMUNK_ERROR),
-    engine(PYMUNK, "fewer iterations", partial(pymunk_make, iterations=20), "the same with 20 iterations",
+    engine(PYMUNK, "fewer iterations", world(PYMUNK, iterations=20), "the same with 20 iterations",
            order=1, limit=pymunk_limit, predicted=PYMUNK_ERROR),
-    engine(PYBULLET, "", partial(pybullet_make, maximal=False),
+    engine(PYBULLET, "", in_pybullet(maximal=False),
            f"two boxes in reduced coordinates, no damping; {SETTINGS}",
            order=1, limit=bullet_limit, predicted=bullet_error),
-    engine(PYBULLET, "maximal coordinates", partial(pybullet_make, maximal=True),
+    engine(PYBULLET, "maximal coordinates", in_pybullet(),
            f"the same in maximal coordinates; {SETTINGS}; a step without gravity beforehand, after which the moments "
            "count", order=1, limit=bullet_limit, predicted=bullet_error),
 )
@@ -260,7 +256,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     slow_cases=("45°, light wedge", "10°, heavy wedge"),
     sanity_checks=sanity_checks,
     points=points, links=links,

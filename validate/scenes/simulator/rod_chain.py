@@ -5,6 +5,7 @@ Angles need no joints at all: the chain obeys Lagrange's equations, and Runge–
 """
 
 from functools import partial
+from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,9 +14,9 @@ from solutions.checks import BadInput
 from solutions.given.simulator import RodsInAngles
 from solutions.rotation import SUZUKI
 from solutions.simulator import make_bodies, make_bodies_2d, make_joints
+from solutions.support.model import WORLD, Body, Hinge, make_model
 from validate.check import states
-from validate.engines import bullet, mujoco
-from validate.engines.simulator import pybullet_chain, pymunk_chain
+from validate.engines.bullet import HINGES
 from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE, SYMPLECTIC_EULER
 from validate.reference.orientation import about
 from validate.reference.schemes import Motion
@@ -30,12 +31,11 @@ from validate.reference.simulator import (
 )
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Scene, by_order, engine, in_substeps, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import pose
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
-SWEEPS = 10                  # of both engines for each rod: an impulse travels one rod per sweep
 HEADING = np.array([0.6, 0.8, 0.0])      # of the chain in space: along no axis
 THICK = 0.01                 # moment of a rod about its axis over the other two [-]
 FIVE = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)
@@ -187,39 +187,37 @@ def ends_of(theta, p):
 ANGLES = Motion(T, hanging, released, ends_of, truth, lambda p, dt: 1e-9)
 
 
-def pymunk_make(p, dt):
-    return pymunk_chain(straight(p), p.m, inertia(p), p.g, SWEEPS * p.rods, 0.0, dt,
-                        lambda x, angle: lower_ends(x, angle, p))
+def model(p):
+    """Make the rods on hinges; the first hangs on the world."""
+    ends = straight(p)
+    rods = [Body(tuple(0.5 * (a + b)), p.m, inertia=inertia(p)) for a, b in pairwise(ends)]
+    return make_model(rods, (0.0, -p.g), [Hinge(k, k - 1 if k else WORLD, tuple(ends[k])) for k in range(p.rods)])
 
 
-def pybullet_make(p, dt):
-    return pybullet_chain(straight(p), p.m, inertia(p) * np.array([THICK, 1.0, 1.0]), p.g, SWEEPS * max(p.rods, 10),
-                          1.0, dt, lambda x, angle: lower_ends(x, angle, p))
+def read(state, p):
+    return lower_ends(state.x, state.q, p)
 
 
-def hinged(p, dt, chain):
-    """Make the EngineRun of rods on hinges, whose coordinates are angles; chain of validate/engines."""
-    return chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: ends_of(angles + 0.5 * np.pi, p))
-
-
+world = partial(built, model=model, read=read)
 LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which is in its limit"
+SWEEPS = "10 iterations for each rod, at least 100"          # an impulse travels one rod per iteration
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
 FINER = (2000, 5000, 10_000, 20_000)
-HINGED = engine(PYBULLET, "reduced coordinates", partial(hinged, chain=bullet.chain), bullet.HINGES,
+HINGED = engine(PYBULLET, "reduced coordinates", world(PYBULLET, maximal=False), HINGES,
                 order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), finer_in_full=FINER)
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=LAGRANGIAN),
     ours(COMPOSED_JOINTS, limit=limits, predicted=LAGRANGIAN, in_quick=False),
     ours(JOINTS_IN_SPACE, limit=limits, predicted=LAGRANGIAN, in_quick=False),
     ours(IN_ANGLES, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
-    engine(PYMUNK, "", pymunk_make, f"PivotJoints, error_bias 0, {SWEEPS} iterations for each rod",
+    engine(PYMUNK, "", world(PYMUNK), f"PivotJoints, error_bias 0, {SWEEPS}",
            order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
-    engine(PYBULLET, "", pybullet_make,
-           f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane",
+    engine(PYBULLET, "", world(PYBULLET),
+           f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS}; it moves in one plane",
            order=1, limit=swept_limit, predicted=SWEPT, finer_in_full=FINER),
     HINGED,
     in_substeps(HINGED, 10),
-    engine(MUJOCO, "", partial(hinged, chain=mujoco.chain), "hinges; Runge–Kutta 4",
+    engine(MUJOCO, "", world(MUJOCO), "hinges; Runge–Kutta 4",
            order=4, limit=angles_limit, predicted=ANGLES.predict(IN_ANGLES.table)),
 )
 
@@ -266,7 +264,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-9,
+    truth=truth, truth_uncertainty=1e-9, model=model, read=read,
     slow_cases=("50 rods",),
     sanity_checks=sanity_checks,
     points=points, links=links,

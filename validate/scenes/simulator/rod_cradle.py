@@ -3,26 +3,29 @@
 A hinge and a contact act in the same instant.  The loop visits them alternately until both hold.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from solutions.checks import BadInput, check_not_negative
 from solutions.simulator import make_bodies_2d, make_joints
+from solutions.support.model import WORLD, Body, Hinge, make_model
+from solutions.support.shapes import Ball
 from validate.check import states
-from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
 from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
 from validate.reference.simulator import cradle_motion
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Scene, engine, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import circle, outlines, pose
 
 T = 0.7                      # [s]: all impacts are over after 0.6
 STEPS = (5, 10, 20, 50, 100, 200, 500)
 BALLS = 5
 SWEEPS = 4                   # of the loop, one contact and hinges: each leaves I/mL² = 1e-3 of an error [-]
+ITERATIONS = 100             # of the engines [-]
 TOGETHER = 60                # of four contacts at once: each leaves cos²(π/5) = 0.65 [-]
 TOUCHING = 1e-9              # margin of the loop [m]: it detects only contacts that touch
 BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on the phases of the impacts
@@ -140,29 +143,27 @@ def limit(p, dt):
     return (moves + rests) / size + rounded
 
 
-def engine_read(p):
-    """Return read(x, v, ω) of the engines; the angle is that of the centre about its pivot."""
-    def read(x, v, omega):
-        r = np.asarray(x) - pivots(p)
-        return seen(np.arctan2(r[:, 0], -r[:, 1]), (r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / np.sum(r * r, axis=1), p)
-    return read
+def model(p):
+    """Make the balls, each on a hinge at its pivot; each turns with its rod."""
+    balls = [Body(tuple(x), 1.0, Ball(p.R), e=1.0, q=angle, inertia=moment(p))
+             for x, angle in zip(centres(angles(p), p), angles(p))]
+    return make_model(balls, (0.0, -p.g), [Hinge(k, WORLD, tuple(pivot)) for k, pivot in enumerate(pivots(p))])
 
 
-def pymunk_make(p, dt):
-    return pymunk_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
+def read(state, p):
+    """Observe the engines' balls; the angle is that of the centre about its pivot."""
+    r, v = state.x - pivots(p), state.v
+    return seen(np.arctan2(r[:, 0], -r[:, 1]), (r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / np.sum(r * r, axis=1), p)
 
 
-def pybullet_make(p, dt):
-    return pybullet_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
-
-
+world = partial(built, model=model, read=read, iterations=ITERATIONS)
 JUDGED = {"order": BY_PHASE, "limit": limit, "predicted": "the delays of its impacts depend on their phases in a step"}
 RUNNERS = (
     ours(JOINTED_LOOP, **JUDGED),
-    engine(PYMUNK, "", pymunk_make, f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations",
+    engine(PYMUNK, "", world(PYMUNK), f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations",
            **JUDGED),
-    engine(PYBULLET, "", pybullet_make, f"JOINT_POINT2POINT, erp 1; settings for impacts, {ITERATIONS} iterations",
-           **JUDGED),
+    engine(PYBULLET, "", world(PYBULLET, weighed=False),
+           f"JOINT_POINT2POINT, erp 1; settings for impacts, {ITERATIONS} iterations", **JUDGED),
 )
 
 
@@ -216,7 +217,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-9,
+    truth=truth, truth_uncertainty=1e-9, model=model, read=read,
     slow_cases=("two balls", "touching"),
     sanity_checks=sanity_checks,
     points=points, links=links,
