@@ -1,4 +1,4 @@
-"""Scenes as Models: the engines err as in the scenes' own set-ups, and within the limits that these derive."""
+"""Scenes as Models: engines err by default as with the settings of a scene, and within the limits that it derives."""
 
 import numpy as np
 import pytest
@@ -10,11 +10,11 @@ from validate.worlds.conformance import Beside, error_of
 from validate.worlds.described import DESCRIBED
 
 MOST = 500                   # steps
-SAME = 1e-3                  # of an error: bodies that touch begin a micrometre apart from those of the set-up by hand
+SAME = 1e-3                  # of an error: bodies that touch begin a micrometre apart from those of the scene
 OTHER_MODEL = {("incline", MUJOCO)}      # the scene's block is a ball there
 JUDGED = [(name, product) for name, one in DESCRIBED.items() if not one.shown for product in BUILDERS
           if product.installed() and not product.world.refuses(one.model(one.scene.parameters))]
-BY_HAND = [(name, runner) for name, one in DESCRIBED.items() if not one.shown for runner in one.scene.engine_runners
+CHOSEN = [(name, runner) for name, one in DESCRIBED.items() if not one.shown for runner in one.scene.engine_runners
            if not runner.who.variant and (name, runner.who.product) in JUDGED]
 
 
@@ -26,15 +26,15 @@ def errors(name, product, most=MOST):
     return steps, error_of(product, one, p, truth, steps), truth
 
 
-@pytest.mark.parametrize(("name", "runner"), BY_HAND, ids=[f"{name}-{runner.label}" for name, runner in BY_HAND])
-def test_a_model_errs_as_the_set_up_by_hand(name, runner):
+@pytest.mark.parametrize(("name", "runner"), CHOSEN, ids=[f"{name}-{runner.label}" for name, runner in CHOSEN])
+def test_a_model_errs_by_default_as_with_the_settings_of_its_scene(name, runner):
     scene = DESCRIBED[name].scene
     steps, error, truth = errors(name, runner.who.product)
     limit = runner.largest_error(scene.parameters, scene.duration / steps)
     assert error <= limit or limit >= ASYMPTOTIC
     if (name, runner.who.product) not in OTHER_MODEL:
-        by_hand = relative(run_engine_to_end(scene, runner.who, scene.parameters, steps).observed, truth)
-        assert error == pytest.approx(by_hand, rel=SAME)
+        chosen = relative(run_engine_to_end(scene, runner.who, scene.parameters, steps).observed, truth)
+        assert error == pytest.approx(chosen, rel=SAME)
 
 
 @pytest.mark.parametrize("name", ["linear_drag", "oscillator", "spring_net"])

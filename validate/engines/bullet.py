@@ -49,12 +49,10 @@ class Bullet:
         # threshold is global to the process and survives reconnecting, so every scene sets it
         self.pb.setPhysicsEngineParameter(solverResidualThreshold=0, contactBreakingThreshold=0.02)
 
-    def point_mass(self, m, x, v, default=False):
-        """Make a free body in maximal coordinates, without damping or clamp; default: as the engine does."""
-        maximal = 0 if default else 1
-        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=maximal)
-        if not default:
-            self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
+    def point_mass(self, m, x, v):
+        """Make a free body in maximal coordinates, without damping or clamp."""
+        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=1)
+        self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
         self.pb.resetBaseVelocity(body, list(map(float, v)))
         return body
 
@@ -122,10 +120,10 @@ class Rigid(Bullet):
     Bodies have no damping, and their velocity is not clamped.
     """
 
-    def __init__(self, dt, gravity=(0.0, 0.0, 0.0), iterations=50, erp=0.2):
+    def __init__(self, dt, gravity=(0.0, 0.0, 0.0), iterations=50):
         super().__init__(dt, gravity)
         # a contact begins at the depth of the slop; until then a body falls, 1e-5 m in 1.4 ms, without friction
-        self.pb.setPhysicsEngineParameter(numSolverIterations=iterations, erp=erp, contactSlop=0)
+        self.pb.setPhysicsEngineParameter(numSolverIterations=iterations, contactSlop=0)
 
     def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=UPRIGHT, shape=-1, mu=0.0):
         """Make a body at x with the rotation R."""
@@ -158,16 +156,6 @@ class Rigid(Bullet):
     def omega(self, body):
         return self.pb.getBaseVelocity(body)[1]
 
-    def pivot(self, body, offset, maximal):
-        """Hold the point of the body at this offset from its centre at the origin, by a fixed body without size.
-
-        (Bodies with maximal coordinates cannot be constrained to the world itself.)
-        """
-        nail = self.pb.createMultiBody(0, -1, useMaximalCoordinates=int(maximal))
-        self.pb.createConstraint(
-            body, -1, nail, -1, self.pb.JOINT_POINT2POINT, [0, 0, 0], list(map(float, offset)), [0, 0, 0]
-        )
-
     def ball(self, radius):
         return self.pb.createCollisionShape(self.pb.GEOM_SPHERE, radius=radius)
 
@@ -179,7 +167,7 @@ class Rigid(Bullet):
 
     def close(self):
         """Restore the engine's own settings for the next world."""
-        self.pb.setPhysicsEngineParameter(erp=0.2, contactSlop=1e-5)
+        self.pb.setPhysicsEngineParameter(contactSlop=1e-5)
         super().close()
 
 

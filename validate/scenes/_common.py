@@ -58,8 +58,12 @@ def built(product, model, read, watch=None, **settings):
     def make(p, dt):
         with worlds_made() as made:
             world = product.world.build(model(p), dt, **settings)
-        return EngineRun(world.step, lambda: read(world.state(), p), world.close,
-                         watched_step=watch(*made, p, dt).watched if watch else None)
+        run = EngineRun(world.step, lambda: read(world.state(), p), world.close)
+        if watch is None:
+            return run
+        watching = watch(*made, p, dt)
+        watching.step = world.step                       # with the loads of the Model
+        return run._replace(watched_step=watching.watched)
     return make
 
 

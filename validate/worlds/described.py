@@ -6,11 +6,6 @@ Parameters and truth stay with the scenes.
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-
-from solutions.support.model import WORLD, Body, Drag, Spring, make_model
-from solutions.support.shapes import Box, HalfSpace
-
 from ..products import PYBULLET
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
@@ -20,7 +15,6 @@ from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
 
-FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
 OF_PYMUNK = "its truth is a run of pymunk"
 
 
@@ -38,25 +32,6 @@ def of(scene, settings=None, shown=""):
     return Described(scene, scene.model, scene.read, settings, shown)
 
 
-def arrays(rows):
-    """Return an array as a tuple of floats."""
-    return tuple(map(float, rows))
-
-
-# ---------------------------------------------------------------------------------------------- many contacts
-
-def many_parts(p):
-    """Make the machine.  Each body has √μ.  The floor is a belt, the crank a body without mass that turns."""
-    (x, q, half, m, v, omega), (hammer, anchor, rest, k, c), drag, mu, g, belt = machine.parts(p)
-    root = float(np.sqrt(mu))
-    bodies = [Body(arrays(x[n]), m[n], Box(arrays(half[n])), root, q=q[n], v=arrays(v[n]), omega=omega[n])
-              for n in range(len(m))]
-    return make_model([*bodies, FLOOR._replace(v=(belt, 0.0), mu=root)], (0.0, -g),
-                      springs=[Spring(hammer, WORLD, (0.0, 0.0), arrays(anchor), rest, k, c)], loads=[Drag(drag)])
-
-
-# ---------------------------------------------------------------------------------------------- all of them
-
 DESCRIBED = {                # name of the scene: Described
     "throw": of(throw.SCENE),
     "linear_drag": of(linear_drag.SCENE),
@@ -70,7 +45,7 @@ DESCRIBED = {                # name of the scene: Described
     "oblique_discs": of(oblique_discs.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": of(dominoes.SCENE, shown=OF_PYMUNK),
-    "machine": Described(machine.SCENE, many_parts, lambda s, p: machine.corners(s.x[:-1], s.q[:-1]), shown=OF_PYMUNK),
+    "machine": of(machine.SCENE, shown=OF_PYMUNK),
     "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": of(rod_cradle.SCENE),
     "asymmetric_top": of(asymmetric_top.SCENE),

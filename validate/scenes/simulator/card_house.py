@@ -4,7 +4,7 @@ It has two tents, a roof across them, and a tent on the roof.  The cards of a te
 through a contact that leans as they do: μ ≥ tan of the lean.
 """
 
-from functools import cache
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,13 +13,12 @@ from solutions.checks import BadInput, check_friction
 from solutions.simulator import make_bodies_2d
 from validate.check import states
 from validate.engines import watched
-from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.simulator import least_friction
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import outlines
-from validate.scenes.simulator._common import physics_of_boxes, reported_by_loop
+from validate.scenes.simulator._common import boxes_on_floor, filmed, physics_of_boxes, reported_by_loop, watched_boxes
 
 T = 1.0                      # [s]
 STEPS = (8, 20, 60, 120, 240, 480, 960)
@@ -118,13 +117,22 @@ def observe(state, p):
     return corners(state[0].x[:7], state[0].q[:7])
 
 
-def parts(p):
-    return (*house(p), halves(), masses(), np.zeros((7, 2)), np.zeros(7)), None, 0.0, p.rough * least(p), p.g, 0.0
+def model(p):
+    return boxes_on_floor(*house(p), halves(), masses(), np.zeros((7, 2)), np.zeros(7), p.rough * least(p), p.g)
+
+
+def read(state, p):
+    return corners(state.x[1:], state.q[1:])
+
+
+def by_pymunk(p, steps, every):
+    """Return the corners at the start and after every `every` steps by pymunk."""
+    return filmed(model(p), partial(read, p=p), T / steps, steps, every, iterations=ITERATIONS, overlap=0.0)
 
 
 @cache
 def reference(p):
-    return np.array(PymunkBoxes(parts(p), T / FINE, 100, 1e-5).film(FINE, KEPT, corners))
+    return by_pymunk(p, FINE, KEPT)
 
 
 def truth(p, t):
@@ -167,16 +175,13 @@ def reports(before, after, p, dt):
     return reported_by_loop(before[0], after[0], dt, physics(p))
 
 
-def pymunk_make(p, dt):
-    return PymunkBoxes(parts(p), dt, ITERATIONS, 1e-5).run(corners, physics(p))
-
-
 UNPREDICTED = "a standing house has the error of its sweeps, and no theory predicts the motion of a falling one"
 RUNNERS = (
     # a house that falls needs short steps
     ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("too smooth",), most_in_quick=60,
          laws=watched.sweeps_rules(SWEEPS), watched=WATCHED),
-    engine(PYMUNK, "", pymunk_make, "boxes; 100 iterations, collision_slop 1e-5",
+    engine(PYMUNK, "", built(PYMUNK, model, read, watched_boxes(physics), iterations=ITERATIONS, overlap=0.0),
+           "boxes; 100 iterations, collision_slop 1e-5",
            order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, is_truth=falls,
            laws=watched.pymunk_rules(ITERATIONS, rests=False), watched=WATCHED),
 )
@@ -203,7 +208,7 @@ def sanity_checks():
         claims.append(states(f"least friction by a linear program, {degrees:g}° [-]", found, least(p), 1e-6))
     for rough, moves in ((0.98, 1.0), (1.02, 0.0)):
         p = Params(rough=rough)
-        end = PymunkBoxes(parts(p), T / 1000, 100, 1e-5).film(1000, 1000, corners)[-1]
+        end = by_pymunk(p, 1000, 1000)[-1]
         claims.append(states(f"whether a corner moves by a millimetre in pymunk, with {rough:g} of that [-]",
                              float(np.max(np.abs(end - corners(*house(p)))) > 1e-3), moves, 0.0))
     return tuple(claims)
@@ -224,7 +229,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    reports=reports, truth=truth, truth_uncertainty=1e-15,
+    reports=reports, truth=truth, model=model, read=read, truth_uncertainty=1e-15,
     slow_cases=("barely",),
     omitted_methods="the house was not set up in pybullet",
     sanity_checks=sanity_checks,

@@ -16,15 +16,15 @@ from solutions.simulator import (
     make_bodies_2d,
     mechanical_energy_2d,
 )
+from solutions.support.model import WORLD, Drag, Spring
 from validate.check import states
 from validate.engines import watched
-from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.reference.stored import agreed
 from validate.scene import PYMUNK, Scene, engine, no_limit, ours
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import outlines
-from validate.scenes.simulator._common import physics_of_boxes, reported_by_loop
+from validate.scenes.simulator._common import boxes_on_floor, filmed, physics_of_boxes, reported_by_loop, watched_boxes
 
 T = 10.0                     # [s]
 UNKNOWN = "unknown"          # an order
@@ -168,9 +168,9 @@ class Motion(NamedTuple):
 
 def motion_by_pymunk(p, per_second):
     """Return (film (k, n, 3), ends (n, 3)) by pymunk."""
-    every = per_second // KEPT
-    place = lambda x, angle: np.column_stack((x, angle))
-    film = np.array(PymunkBoxes(parts(p), 1.0 / per_second, 200, 1e-6).film(every * round(KEPT * T), every, place))
+    every, see = per_second // KEPT, lambda state: np.column_stack((state.x, state.q))[1:]
+    film = filmed(model(p), see, 1.0 / per_second, every * round(KEPT * T), every, iterations=200, slop=1e-6,
+                  overlap=0.0)
     return film, film[-1]
 
 
@@ -235,11 +235,17 @@ def limit(p, dt):
     return limits[p.seen]
 
 
-def parts(p):
-    """Return the parts for an engine: (PLACES, ANGLES, HALF, MASS, first velocities, spring, drag, μ, g, belt)."""
+def model(p):
+    """Make the machine.  The floor is a belt, the crank a body without mass that turns."""
     v, omega = np.zeros((len(HALF), 2)), np.zeros(len(HALF))
     v[HAMMER], omega[CRANK] = (p.blow, 0.0), p.crank
-    return (PLACES, ANGLES, HALF, MASS, v, omega), (HAMMER, ANCHOR, REST, SPRING, DAMPER), DRAG, p.mu, p.g, p.belt
+    spring = Spring(1 + HAMMER, WORLD, (0.0, 0.0), tuple(ANCHOR), REST, SPRING, DAMPER)      # body 0 is the floor
+    return boxes_on_floor(PLACES, ANGLES, HALF, MASS, v, omega, p.mu, p.g, p.belt, springs=[spring],
+                          loads=[Drag(DRAG)])
+
+
+def read(state, p):
+    return corners(state.x[1:], state.q[1:])
 
 
 def physics(p):
@@ -256,8 +262,18 @@ def reports(before, after, p, dt):
     return reported_by_loop(before.now, after.now, dt, physics(p), dt * F)
 
 
-def pymunk_make(p, dt):
-    return PymunkBoxes(parts(p), dt, ITERATIONS, 1e-5).run(corners, physics(p))
+def pushed(space, p, dt, before, after):
+    """Return the impulses (n, 2) [N s] of the spring and of the air on boxes and floor in a step of pymunk.
+
+    The engine reports the impulse of its spring.  It moves the boxes, pulls with the new length of the spring, and
+    finds what the damper gives last.  The force of the air is that of the velocity before the step.
+    *Source:* Chipmunk's cpDampedSpring.c and cpSpaceStep.c.
+    """
+    damped, = space.constraints
+    J = -DRAG * dt * before.v * (physics(p).inv_mass[:, None] > 0.0)
+    way = after.x[HAMMER] - ANCHOR
+    J[HAMMER] += damped.impulse * way / np.linalg.norm(way)
+    return J
 
 
 def is_alone(p):
@@ -275,8 +291,9 @@ RUNNERS = (
     # the positions need shorter steps than a quick run has, and are not judged
     ours(LOOP_2D, order=UNKNOWN, limit=limit, predicted=UNPREDICTED, slow_cases=("places",), most_in_quick=120,
          laws=watched.sweeps_rules(SWEEPS), watched=WATCHED),
-    engine(PYMUNK, "", pymunk_make, "boxes on a kinematic floor, a DampedSpring, air by a velocity function; 100 "
-           "iterations, collision_slop 1e-5", order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, most_in_quick=600,
+    engine(PYMUNK, "", built(PYMUNK, model, read, watched_boxes(physics, pushed), iterations=ITERATIONS, overlap=0.0),
+           "boxes on a kinematic floor, a DampedSpring, air as a force; 100 iterations, collision_slop 1e-5",
+           order=UNKNOWN, limit=no_limit, predicted=UNPREDICTED, most_in_quick=600,
            laws=watched.pymunk_rules(ITERATIONS, rests=False), watched=WATCHED, supports=tells_places,
            is_truth=is_alone),
 )
@@ -316,7 +333,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    reports=reports, truth=truth, truth_uncertainty=1e-15,
+    reports=reports, truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     slow_cases=("overlap", "residual"),
     omitted_methods="the machine was not set up in pybullet: its belt and its crank are bodies without mass that carry "
                     "others along, which pybullet has only in reduced coordinates",
