@@ -8,7 +8,7 @@ from solutions.support.quaternions import rotate, unrotate
 
 from .canvas import knob, of_dt, point
 from .hand import implicit_force
-from .touched import Touched, placed, rectangle, seen_at
+from .touched import Touched, disc, placed, rectangle, seen_at
 
 # ---------------------------------------------------------------------------------------------- lesson 3
 
@@ -202,7 +202,7 @@ class Brick(Touched):
     lesson, method, rival, view = "rotation", "rigid_body_step", "the exact motion", (-1.2, 1.2, -0.8, 0.8)
     knobs = of_dt(1.0 / 120.0),
     links = (*EDGES, (8, 9))
-    bodies = (*(point(False, True) for _ in range(8)), point(True, False), point(False, False))
+    bodies = (*(disc(0.05) for _ in CORNERS), point(True, False), point(False, False))
     I_body = BRICK_MASS / 12.0 * (np.sum(SIDES**2) - SIDES**2)
 
     def begin(self, start):
