@@ -84,7 +84,8 @@ class Running:
 
     def held_place(self):
         """Return the place (2,) that the hand holds [m]."""
-        return self.now().x[self.grip.body]
+        k = self.grip.body                   # first, because the hand may let go while the places are computed
+        return self.now().x[k]
 
     # ------------------------------------------------------------------------------------------ what is seen
 

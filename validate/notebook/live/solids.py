@@ -142,10 +142,10 @@ class Pendulum(Touched):
         """Return (state after dt, work of the hand)."""
         moment, dt, work = self.moment(), self.tuning.dt, 0.0
         if self.grip is not None:
-            r = self.held_place()
+            target, r = self.grip.target, self.held_place()
             across = np.array((-r[1], r[0]))
             K = np.outer(across, across) / moment
-            F = implicit_force(r - self.grip.target, state.omega[0] * across, K, 1.0, dt)
+            F = implicit_force(r - target, state.omega[0] * across, K, 1.0, dt)
             kick = dt * float(across @ F) / moment
             work = dt * float(across @ F) * (state.omega[0] + 0.5 * kick)
             state = state._replace(omega=state.omega + kick)
@@ -164,8 +164,8 @@ class Pendulum(Touched):
 
     def held_place(self):
         """Return the place (2,) that the hand holds [m]."""
-        seen = self.now()
-        return placed(np.array([self.grip.place]), seen.x[self.grip.body], seen.q[self.grip.body])[0]
+        grip, seen = self.grip, self.now()
+        return placed(np.array([grip.place]), seen.x[grip.body], seen.q[grip.body])[0]
 
     def seen(self, state):
         """Return where rod, weight and nail are."""
@@ -221,11 +221,12 @@ class Brick(Touched):
 
     def torque(self, state):
         """Return the torque (3,) [N m] of the hand, which pulls a corner across the picture."""
-        r, dt = rotate(state.q, CORNERS[self.grip.body]), self.tuning.dt
+        grip, dt = self.grip, self.tuning.dt
+        r = rotate(state.q, CORNERS[grip.body])
         size = FAR / (FAR - EYE[2] @ r)
         across = EYE[:2] @ np.array(((0.0, r[2], -r[1]), (-r[2], 0.0, r[0]), (r[1], -r[0], 0.0)))     # u = across ω
         K = np.array([across @ rotate(state.q, unrotate(state.q, row) / self.I_body) for row in across])
-        F = implicit_force(EYE[:2] @ r - np.array(self.grip.target) / size, across @ state.omega, K,
+        F = implicit_force(EYE[:2] @ r - np.array(grip.target) / size, across @ state.omega, K,
                            LIGHT * BRICK_MASS, dt)
         return across.T @ F
 

@@ -281,7 +281,8 @@ class LiveScene(anywidget.AnyWidget):
     def _head(self):
         """Return the numbers that live.js names in HEAD, in their order."""
         s = self.simulation
-        held = (s.grip.body, *s.held_place(), *s.grip.target) if s.grip else (-1, 0.0, 0.0, 0.0, 0.0)
+        grip = s.grip
+        held = (grip.body, *s.held_place(), *grip.target) if grip else (-1, 0.0, 0.0, 0.0, 0.0)
         return [self.sent, s.t, self.pace, 1e3 * self.cost, s.energy(), s.expected(), s.apart(), s.overlap(), *held,
                 self.echo, s.past[0].t, s.past[-1].t, min(len(s.forces()), MOST_FORCES), s.engine_state is not None]
 
