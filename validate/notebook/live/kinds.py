@@ -45,8 +45,8 @@ class BallOnSpring(Touched):
     def moved(self, state):
         """Return (state after dt, work of the hand)."""
         (x, v), work, dt = state, 0.0, self.tuning.dt
-        if self.grip is not None:
-            v, work = pulled_point(np.array(self.grip.target), dt, x, v, 1.0, 1.0)
+        if (grip := self.grip) is not None:
+            v, work = pulled_point(np.array(grip.target), dt, x, v, 1.0, 1.0)
         p = self.module.Oscillator(self.tuning.omega, self.tuning.zeta)
         return Flying(*self.function(self.module.oscillator_acceleration, self.t, x.copy(), v.copy(), dt, p)), work
 
@@ -100,14 +100,14 @@ class Hulls(Touched):
     def moved(self, state):
         """Return (state after dt, 0)."""
         dt, x, turn = self.tuning.dt, state.x, state.turn + self.tuning.dt * self.tuning.rate
-        if self.grip is not None:
-            x = towards(np.array(self.grip.target) - self.grip.place, x, FASTEST * dt)
+        if (grip := self.grip) is not None:
+            x = towards(np.array(grip.target) - grip.place, x, FASTEST * dt)
         found = self.function(*self.corners(x, turn[0]))
         return Apart(x, turn, np.array((found.p_a, found.p_b), float)), 0.0
 
-    def held_place(self):
-        """Return the place (2,) that the hand holds [m]."""
-        return self.state.x + self.grip.place
+    def held_place(self, grip):
+        """Return the place (2,) that a Grip holds [m]."""
+        return self.state.x + grip.place
 
     def seen(self, state):
         """Return where the shapes and their nearest points are."""
@@ -173,8 +173,8 @@ class Bucket(Touched):
     def moved(self, state):
         """Return (state after dt, 0).  A search that fails begins anew with the throw that would hit without walls."""
         velocity, target, (ball,) = state
-        if self.grip is not None:
-            target = towards(inside(np.array(self.grip.target)), target, FASTEST * self.tuning.dt)
+        if (grip := self.grip) is not None:
+            target = towards(inside(np.array(grip.target)), target, FASTEST * self.tuning.dt)
         self.before = self.miss(velocity, target)
         e = np.array((self.tuning.e, 0.875 * self.tuning.e))
         normals, points = np.array((FLOOR, WALL)).transpose(1, 0, 2)

@@ -114,7 +114,7 @@ class Network(Running):
         for name, found in (("x", x_new), ("v", v_new)):
             check_found(f"{name} of point", found, x, self.t)
         after = Moving(np.array(x_new, float), np.array(v_new, float))
-        if self.grip is not None and not self.free[self.grip.body]:
+        if (grip := self.grip) is not None and not self.free[grip.body]:
             work = self.energy_of(after) - self.energy_of(self.state)  # nothing else tells the work on a fixed point
         elif self.lesson == "springs":
             work += float(np.sum((after.x - x)[self.free] @ self.network.wind))
@@ -124,8 +124,8 @@ class Network(Running):
         """Return (velocities after the hand has acted for dt, its work)."""
         v, work = self.state.v.copy(), 0.0
         v[~self.free] = 0.0
-        if self.grip is not None:
-            k, target = self.grip.body, np.array(self.grip.target)
+        if (grip := self.grip) is not None:
+            k, target = grip.body, np.array(grip.target)
             if self.free[k]:
                 v[k], work = pulled_point(target, self.tuning.dt, self.state.x[k], v[k], self.mass[k], self.mass.sum(),
                                           self.hand)
@@ -208,8 +208,8 @@ class Arm(Running):
     def advance(self):
         """Let the arm follow the pointer by some iterations; return (state, 0)."""
         theta, target = self.state
-        if self.grip is not None:
-            target = np.array(self.grip.target)
+        if (grip := self.grip) is not None:
+            target = np.array(grip.target)
         arm = self.arm._replace(damping=self.tuning.damping, gain=self.tuning.gain)
         for _ in range(self.tuning.iterations):
             found = self.one_step(self.task, theta.copy(), target.copy(), arm)
@@ -226,13 +226,13 @@ class Arm(Running):
         """Return where the joints, the end and the target are."""
         return Seen(np.vstack((self.joints(self.state.theta), self.state.target)), np.zeros(self.state.theta.size + 2))
 
-    def held_place(self):
+    def held_place(self, _):
         """Return the place (2,) of the end of the arm [m]."""
         return self.joints(self.state.theta)[-1]
 
     def energy(self):
         """Return how far the end is from the target [m]."""
-        return float(np.hypot(*(self.held_place() - self.state.target)))
+        return float(np.hypot(*(self.held_place(None) - self.state.target)))
 
     def expected(self):
         """Return how far the end of this arm must at least be from the target [m]."""

@@ -82,10 +82,9 @@ class Running:
             raise BadInput("the body to grab", body, "choose one that can move")
         self.grip = Grip(int(body), tuple(map(float, place)), tuple(map(float, target)))
 
-    def held_place(self):
-        """Return the place (2,) that the hand holds [m]."""
-        k = self.grip.body                   # first, because the hand may let go while the places are computed
-        return self.now().x[k]
+    def held_place(self, grip):
+        """Return the place (2,) that a Grip holds [m].  The hand may let go at any time, so it is read once."""
+        return self.now().x[grip.body]
 
     # ------------------------------------------------------------------------------------------ what is seen
 

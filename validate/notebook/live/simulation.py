@@ -103,12 +103,12 @@ class Simulation(Running):
 
     def _with_hand(self, state):
         """Return (state after the hand has acted for dt, its work)."""
-        if self.grip is None:
+        if (grip := self.grip) is None:
             return state, 0.0
-        i, p = self.row[self.grip.body], self.loop.p
+        i, p = self.row[grip.body], self.loop.p
         inv_inertia = p.inv_inertia[i] if self.turns else 0.0
         v, omega = state.v.copy(), state.omega.copy()
-        v[i], omega[i], work = pulled(self.grip, self.tuning.dt, state.x[i], state.q[i], v[i], omega[i],
+        v[i], omega[i], work = pulled(grip, self.tuning.dt, state.x[i], state.q[i], v[i], omega[i],
                                       p.inv_mass[i], inv_inertia)
         return state._replace(v=v, omega=omega), work
 
@@ -132,10 +132,10 @@ class Simulation(Running):
     def _hand_load(self, t, x, q, v, omega):
         """Return (F, tau) of the hand on all bodies: the load that pymunk gets."""
         F, tau = np.zeros_like(x), np.zeros_like(omega)
-        if self.grip is not None:
-            k = self.grip.body
+        if (grip := self.grip) is not None:
+            k = grip.body
             body = self.model.bodies[k]
-            F[k], tau[k] = hand_force(self.grip, self.tuning.dt, x[k], q[k], v[k], omega[k], 1.0 / body.m,
+            F[k], tau[k] = hand_force(grip, self.tuning.dt, x[k], q[k], v[k], omega[k], 1.0 / body.m,
                                       1.0 / body.inertia)
         return F, tau
 
@@ -144,10 +144,9 @@ class Simulation(Running):
         self.beside, self.engine, self.ahead = on, None, AHEAD
         self.engine_state = self.now() if on else None
 
-    def held_place(self):
-        """Return the place (2,) of the body that the hand holds [m]."""
-        state, k = self.now(), self.grip.body
-        return world_place(state, k, np.array(self.grip.place))
+    def held_place(self, grip):
+        """Return the place (2,) of the body that a Grip holds [m]."""
+        return world_place(self.now(), grip.body, np.array(grip.place))
 
     # ------------------------------------------------------------------------------------------ what is seen
 

@@ -42,9 +42,9 @@ class Block(Touched):
 
     def pull(self, t, x, v, p):
         """Return the acceleration (3,) by everything but the table: gravity, and the band to the hand."""
-        if self.grip is None:
+        if (grip := self.grip) is None:
             return self.gravity()
-        return self.gravity() + BAND * np.append(np.array(self.grip.target) - self.grip.place - x[:2], 0.0)
+        return self.gravity() + BAND * np.append(np.array(grip.target) - grip.place - x[:2], 0.0)
 
     def gravity(self):
         """Return g (3,): down the picture where the table is tilted [m/s²]."""
@@ -73,9 +73,9 @@ class Block(Touched):
         """Return where the block is."""
         return seen_at(state.x[:2])
 
-    def held_place(self):
-        """Return the place (2,) that the band holds [m]."""
-        return self.state.x[:2] + self.grip.place
+    def held_place(self, grip):
+        """Return the place (2,) that the band of a Grip holds [m]."""
+        return self.state.x[:2] + grip.place
 
     def forces(self):
         """Return the place and the friction of the last step on a block of 1 kg."""
@@ -141,11 +141,11 @@ class Pendulum(Touched):
     def moved(self, state):
         """Return (state after dt, work of the hand)."""
         moment, dt, work = self.moment(), self.tuning.dt, 0.0
-        if self.grip is not None:
-            target, r = self.grip.target, self.held_place()
+        if (grip := self.grip) is not None:
+            r = self.held_place(grip)
             across = np.array((-r[1], r[0]))
             K = np.outer(across, across) / moment
-            F = implicit_force(r - target, state.omega[0] * across, K, 1.0, dt)
+            F = implicit_force(r - grip.target, state.omega[0] * across, K, 1.0, dt)
             kick = dt * float(across @ F) / moment
             work = dt * float(across @ F) * (state.omega[0] + 0.5 * kick)
             state = state._replace(omega=state.omega + kick)
@@ -162,9 +162,9 @@ class Pendulum(Touched):
         """Return the state after dt with the moment of inertia by hand."""
         return self.swung(state, self.true_moment())
 
-    def held_place(self):
-        """Return the place (2,) that the hand holds [m]."""
-        grip, seen = self.grip, self.now()
+    def held_place(self, grip):
+        """Return the place (2,) that a Grip holds [m]."""
+        seen = self.now()
         return placed(np.array([grip.place]), seen.x[grip.body], seen.q[grip.body])[0]
 
     def seen(self, state):
@@ -212,17 +212,16 @@ class Brick(Touched):
     def moved(self, state):
         """Return (state after dt, work of the hand)."""
         (q, omega), dt, none = state, self.tuning.dt, np.zeros(3)
-        tau = self.torque(state) if self.grip is not None else none
+        tau = none if (grip := self.grip) is None else self.torque(state, grip)
         body = self.module.RigidBody(BRICK_MASS, self.I_body.copy())
         found = self.function(lambda *_: (none, tau), self.t, none, q.copy(), none, omega.copy(), dt, body)
         after = Turning(found[1], found[3])
         gained = rotate(q, unrotate(q, tau) / self.I_body)
         return after, dt * float(tau @ (omega + 0.5 * dt * gained))
 
-    def torque(self, state):
+    def torque(self, state, grip):
         """Return the torque (3,) [N m] of the hand, which pulls a corner across the picture."""
-        grip, dt = self.grip, self.tuning.dt
-        r = rotate(state.q, CORNERS[grip.body])
+        r, dt = rotate(state.q, CORNERS[grip.body]), self.tuning.dt
         size = FAR / (FAR - EYE[2] @ r)
         across = EYE[:2] @ np.array(((0.0, r[2], -r[1]), (-r[2], 0.0, r[0]), (r[1], -r[0], 0.0)))     # u = across ω
         K = np.array([across @ rotate(state.q, unrotate(state.q, row) / self.I_body) for row in across])

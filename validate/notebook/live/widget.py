@@ -157,8 +157,8 @@ class LiveScene(anywidget.AnyWidget):
 
     def _move(self, message):
         self.echo = message["n"]
-        if self.simulation.grip is not None:
-            self.simulation.grip = self.simulation.grip._replace(target=tuple(map(float, message["target"])))
+        if (grip := self.simulation.grip) is not None:
+            self.simulation.grip = grip._replace(target=tuple(map(float, message["target"])))
 
     def _release(self, _):
         self.simulation.grip = None
@@ -282,7 +282,7 @@ class LiveScene(anywidget.AnyWidget):
         """Return the numbers that live.js names in HEAD, in their order."""
         s = self.simulation
         grip = s.grip
-        held = (grip.body, *s.held_place(), *grip.target) if grip else (-1, 0.0, 0.0, 0.0, 0.0)
+        held = (grip.body, *s.held_place(grip), *grip.target) if grip else (-1, 0.0, 0.0, 0.0, 0.0)
         return [self.sent, s.t, self.pace, 1e3 * self.cost, s.energy(), s.expected(), s.apart(), s.overlap(), *held,
                 self.echo, s.past[0].t, s.past[-1].t, min(len(s.forces()), MOST_FORCES), s.engine_state is not None]
 
