@@ -24,8 +24,8 @@ from validate.grading import points
 from validate.subject import modules
 from validate.subject.generate import exercises
 
-PROCESSORS = {"Prescott": False, "Nehalem": True, "Haswell": True, "SkylakeX": True}   # OpenBLAS rounds differently on
-SIMD = "SIMD Extensions"     # each of them; on the first, NumPy has no wide vectors either
+# OpenBLAS rounds differently on each of these kinds of processors.  {kind: whether NumPy uses its wide vectors, too}
+PROCESSORS = {"Prescott": False, "Nehalem": True, "Haswell": True, "SkylakeX": True}
 
 
 def mutants_of(lesson):
@@ -101,10 +101,11 @@ def in_any_order(worked, right):
 def tables_of(lesson):
     """The tables of a lesson as each of the PROCESSORS computes it."""
     program = f"import json; from tests.mutants.traces import table_of; print(json.dumps(table_of({lesson!r})))"
-    for name, vectors in PROCESSORS.items():
-        narrow = {} if vectors else {"NPY_DISABLE_CPU_FEATURES": " ".join(np.show_config(mode="dicts")[SIMD]["found"])}
+    wide = " ".join(np.show_config(mode="dicts")["SIMD Extensions"]["found"])
+    for kind, vectors in PROCESSORS.items():
+        rounding = {"OPENBLAS_CORETYPE": kind, "NPY_DISABLE_CPU_FEATURES": "" if vectors else wide}
         said = subprocess.run([sys.executable, "-W", "ignore", "-c", program], cwd=modules.ROOT, check=True, text=True,
-                              env={**os.environ, **narrow, "OPENBLAS_CORETYPE": name}, stdout=subprocess.PIPE).stdout
+                              env={**os.environ, **rounding}, stdout=subprocess.PIPE).stdout
         yield json.loads(said.splitlines()[-1])
 
 

@@ -1095,13 +1095,15 @@ def tipped(lesson, corners, slope):
 
 @case("solids-on-a-plane", "Pyramids that tip and pyramids that slide", compiled=False, in_quick=False)
 def solids_on_a_plane(lesson, check):
-    """Compare the slope on which a pyramid tips, and the way that it slides, with their closed forms.
+    """Compare the slope on which a pyramid tips, and the distance that it slides, with their closed forms.
 
     The centre of mass of a pyramid is at a quarter of its height.  Its line of gravity leaves the base, whose half edge
-    is b, at tan α = 4 b/h.  A pyramid that is slightly beyond that tips slowly: within 1.2 s one that is 0.5 % beyond
-    it has moved by more than a centimetre.  A pyramid that slides on a horizontal floor stops after v²/(2 μ g).
-    Symplectic Euler reduces the velocity first, so the way is shorter by ½ v dt.  The velocity is a whole number of
-    changes by μ g dt and a part f of one, and the step that ends the slide adds ½ μ g dt² f (1 − f).
+    is b, at tan α = 4 b/h.  On a slope that is a little steeper, a pyramid tips slowly.  If the slope is 0.5 % steeper,
+    the pyramid has moved by more than a centimetre after 1.2 s.
+
+    A pyramid that slides on a horizontal floor stops after v²/(2 μ g).  Symplectic Euler reduces the velocity first, so
+    the distance is shorter by ½ v dt.  Each step reduces the velocity by μ g dt, and the last one by a fraction f of
+    that, which adds ½ μ g dt² f (1 − f), at most ⅛ μ g dt².
     """
     edges, dt, v = [], 2e-3, 1.0
     laws = [np.arctan(4.0 * base / height) for base, height in PYRAMIDS]
@@ -1112,10 +1114,10 @@ def solids_on_a_plane(lesson, check):
               f"slope on which it tips, base {2.0 * base:g} m, height {height:g} m [rad]", law=law, found=edges[-1],
               within=0.005 * law, saw=f"It tips on a slope of {np.degrees(edges[-1]):.2f}°.")
     for mu in (0.2, 0.3):
-        way = moved_solid(lesson, pyramid(0.3, 0.4), mu, (0.0, 0.0, -G), v, dt, 300)[0]
+        slid = moved_solid(lesson, pyramid(0.3, 0.4), mu, (0.0, 0.0, -G), v, dt, 300)[0]
         check("A pyramid that slides stops where friction has used up its kinetic energy.",
-              f"way at 1 m/s, friction {mu:g} [m]", law=v * v / (2.0 * mu * G) - 0.5 * v * dt, found=way,
-              within=mu * G * dt * dt / 8.0, saw=f"It stops after {100.0 * way:.2f} cm.")
+              f"distance at 1 m/s, friction {mu:g} [m]", law=v * v / (2.0 * mu * G) - 0.5 * v * dt, found=slid,
+              within=mu * G * dt * dt / 8.0, saw=f"It stops after {100.0 * slid:.2f} cm.")
     ratio = [base / height for base, height in PYRAMIDS]
     across = np.linspace(0.8 * ratio[0], 1.2 * ratio[-1], 30)
     return Picture("Which slope a pyramid stands on", "half of an edge of the base over the height [-]", "slope [°]", [

@@ -226,13 +226,17 @@ class Arm(Running):
         """Return where the joints, the end and the target are."""
         return Seen(np.vstack((self.joints(self.state.theta), self.state.target)), np.zeros(self.state.theta.size + 2))
 
-    def held_place(self, _):
+    def end(self):
         """Return the place (2,) of the end of the arm [m]."""
         return self.joints(self.state.theta)[-1]
 
+    def held_place(self, _):
+        """Return the place (2,) that the hand pulls [m]: whatever it holds, the end follows."""
+        return self.end()
+
     def energy(self):
         """Return how far the end is from the target [m]."""
-        return float(np.hypot(*(self.held_place(None) - self.state.target)))
+        return float(np.hypot(*(self.end() - self.state.target)))
 
     def expected(self):
         """Return how far the end of this arm must at least be from the target [m]."""
