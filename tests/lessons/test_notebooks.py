@@ -207,6 +207,8 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, states, t
                 if asked and known.get(asked[1]) == expected:
                     continue
                 said = ran(client, source)
+                failed = re.search(r"✗ \w+Error: [^<]*", said)
+                assert not failed, f"right answers end in {failed[0]}:\n{source}"
                 for alt, (size, text) in described(said):
                     assert len(alt) > 20 and alt != figures.NOTHING, f"a figure has too few words ({alt}):\n{source}"
                     assert size >= LEAST, f"{text!r} has {size:.1f} points on a page of {PAGE} px:\n{source}"
