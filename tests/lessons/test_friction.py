@@ -249,9 +249,17 @@ def slope(draw, lesson, mu_s_over, mu_k_over, d=3):
     return p, down, np.tan(theta), G * np.cos(theta)
 
 
+def anchor(p):
+    """The place of a Block where tethered_acceleration has no spring force: neither above nor below the origin."""
+    return p.n + p.drive
+
+
 def tethered_acceleration(t, x, v, p):
-    """The load of a Block at the place p.n; from any other place a strong spring pulls it back there."""
-    return p.gravity + np.cos(p.omega * t) * p.drive - 1000.0 * (x - p.n)
+    """The load of a Block at its anchor; from any other place a strong spring pulls it back there.
+
+    At the origin the spring lifts the block and pulls it along the surface, by far more than the drive does.
+    """
+    return p.gravity + np.cos(p.omega * t) * p.drive - 1000.0 * (x - anchor(p))
 
 
 def run(lesson, step, p, x, v, dt, steps, t=0.0):
@@ -320,7 +328,7 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
           mu * (G - now @ axes[0]), 1e-10, given=given)
     close("displacement over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
     close("velocity under the load of its place [m/s]",
-          lesson.sliding_step(tethered_acceleration, t, p.n, v, dt, p)[1], v_new, ROUND_OFF, given=given)
+          lesson.sliding_step(tethered_acceleration, t, anchor(p), v, dt, p)[1], v_new, ROUND_OFF, given=given)
     close("input x and v after the call: return new arrays", np.array((x, v)), np.array(before), 0.0)
 
 
@@ -386,7 +394,7 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     omega = draw(1.0, 3.0)
     p, to = on_the_line(draw, lesson, draw(0.3, 0.9), draw(1.1, 2.0), omega)
     for turn, expected in ((0.0, to), (0.5 * np.pi, 0.0 * to), (np.pi, -to)):
-        got = lesson.slip_direction(tethered_acceleration, turn / omega, p.n, np.zeros(2), p)
+        got = lesson.slip_direction(tethered_acceleration, turn / omega, anchor(p), np.zeros(2), p)
         close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
               expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
@@ -451,7 +459,7 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     for floor, dt, expected, tolerance in ((level, late, slips - t, 1e-13), (p, late, slips - t, 1e-13),
                                            (p, 1.01 * (slips - t), slips - t, 1e-13),
                                            *((p, share * (slips - t), None, 0.0) for share in draw.within())):
-        got = lesson.breakaway_time(tethered_acceleration, t, floor.n, rest, dt, floor)
+        got = lesson.breakaway_time(tethered_acceleration, t, anchor(floor), rest, dt, floor)
         close("time to the slip [s], or the whole step if it holds", got,
               dt if expected is None else expected, tolerance, given=f"{floor}, t = {t} s, dt = {dt} s")
     # a_n = g − lift cos ωt: the block slips where A |cos| = μ_s (g + lift |cos|), with A = amplitude μ_s g.
@@ -504,7 +512,7 @@ def test_a_block_at_rest_waits_for_its_breakaway(lesson, draw):
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
     p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
     slips = (np.pi - np.arccos(1.0 / amplitude)) / omega
-    begin = p.n
+    begin = anchor(p)
     t = np.arccos(1.0 / amplitude) / omega * draw(1.05, 1.2)
     t = min(t, 0.5 * np.pi / omega)
     tau, x, v = lesson.advance_to_event(tethered_acceleration, t, begin, np.zeros(2), slips - t + 0.01, p)

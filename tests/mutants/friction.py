@@ -376,7 +376,7 @@ edit("3.10", "returns the rest of the step, after the slip", "return slips", "re
 edit("3.10", "returns zero if the block still holds", "return dt", "return 0.0")
 edit("3.10", "returns infinity if the block still holds", "return dt", "return np.inf")
 edit("3.10", "takes a slip along an axis for rest", "if np.any(slip", "if np.all(slip")
-edit("3.10", "exchanges place and velocity", "t + dt, x, v, p", "t + dt, v, x, p")
+edit("3.10", "exchanges place and velocity", "t + middle, x, v, p", "t + middle, v, x, p")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
