@@ -17,9 +17,11 @@ import sys
 import threading
 import time
 import tomllib
+import types
 import zipfile
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from importlib.machinery import SourcelessFileLoader
 from pathlib import Path
 from typing import ClassVar
 
@@ -83,8 +85,9 @@ def test_another_pyodide_is_refused_with_the_name_of_its_file(tmp_path):
 def small_wheel(name):
     """The bytes of a wheel with a file of each package that is left out, and one that is kept."""
     unused = {"scipy": "scipy/stats/x.py", "matplotlib": "matplotlib/testing/x.py",
-              "pillow": "PIL/_webp.x.so", "pygments": "pygments/lexers/x.py"}
-    packed, paths = io.BytesIO(), [*unused.values(), "kept/x.py"]
+              "pillow": "PIL/_webp.x.so", "pygments": "pygments/lexers/x.py", "ipython": "IPython/testing/x.py",
+              "python-dateutil": "dateutil/zoneinfo/x.py"}
+    packed, paths = io.BytesIO(), [*unused.values(), "kept/x.py", "kept/x.pyx"]
     with zipfile.ZipFile(packed, "w") as archive:
         for path, text in (*zip(paths, paths, strict=True),
                            ("x.dist-info/RECORD", "".join(f"{path},,\n" for path in paths))):
@@ -105,13 +108,60 @@ def test_the_lock_of_what_is_taken_names_its_files_and_their_digests(tmp_path, m
     for name, one in lock["packages"].items():
         data = (tmp_path / "out" / one["file_name"]).read_bytes()
         assert pyodide.sha256(data) == one["sha256"], name
-        if name in pyodide.UNUSED:
+        if name in wanted["packages"]:
             with zipfile.ZipFile(io.BytesIO(data)) as archive:
                 record = archive.read("x.dist-info/RECORD").decode().split(",,\n")[:-1]
-                assert {*record, "x.dist-info/RECORD"} == {*archive.namelist()}, name
-                assert len(record) == (5 if name == "openblas" else 4), name
+                assert record == archive.namelist(), name
+                assert len(record) == (7 if name in pyodide.UNUSED else 8) and "kept/x.py" in record, name
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         *wanted["files"], "pyodide-lock.json", *(one["file_name"] for one in lock["packages"].values())}
+
+
+MODULE = b'''"""Text."""
+
+from __future__ import annotations
+
+
+def only_text(x):
+    """Nothing else."""
+
+
+class One:
+    "Text."
+
+    def fails(self):
+        assert False
+'''
+
+
+@pytest.mark.parametrize("documented", [True, False])
+def test_bytecode_stands_in_for_its_source(documented, tmp_path):
+    content = {"one.py": MODULE, "two.txt": b"2", "old.py": b"print 1"}
+    made = pyodide.compiled(content, sys.executable, documented, "/place")
+    assert made.keys() == {"one.pyc", "two.txt", "old.py"} and made["old.py"] == content["old.py"]
+    (tmp_path / "one.pyc").write_bytes(made["one.pyc"])
+    one = types.ModuleType("one")
+    SourcelessFileLoader("one", str(tmp_path / "one.pyc")).exec_module(one)
+    assert one.only_text(1) is None
+    assert [one.__doc__, one.only_text.__doc__, one.One.__doc__] == (
+        ["Text.", "Nothing else.", "Text."] if documented else [None] * 3)
+    with pytest.raises(AssertionError) as fault:
+        one.One().fails()
+    assert [(str(fault.traceback[-1].path), fault.traceback[-1].lineno + 1)] == [("/place/one.py", 14)]
+    assert pyodide.compiled(content, None) is content
+
+
+def test_packages_are_compiled_by_a_python_of_the_version_in_the_browser(monkeypatch):
+    monkeypatch.setattr(pyodide, "PYTHON", f"{sys.version_info[0]}.{sys.version_info[1]}")
+    assert pyodide.interpreter() == sys.executable
+    monkeypatch.setattr(pyodide, "PYTHON", "3.1")
+    assert pyodide.interpreter() is None
+
+
+def test_the_site_has_the_recorded_runs_that_a_notebook_names():
+    files = {"notebooks/01_x.ipynb": b'race("rope", 3)', "validate/recorded/rope.json": b"{}",
+             "validate/recorded/rope_2.json": b"{}", "validate/recorded/agreement.py": b""}
+    assert site.unraced(files) == {"validate/recorded/rope_2.json"}
 
 
 def test_each_notebook_begins_with_the_cell_that_unpacks_the_workbook(tmp_path):

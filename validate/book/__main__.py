@@ -64,8 +64,8 @@ def book(
     for problem in problems:
         console.print(f"✗ {problem}", markup=False, soft_wrap=True)
     console.print(f"{out / 'index.html'}: {len(list(out.rglob('*.html')))} pages, {size(out):.0f} MB")
-    if not shutil.which("node"):
-        console.print("Without node, formulas are set by KaTeX in the reader's browser instead of beforehand.")
+    for sentence in missing(live):
+        console.print(sentence, soft_wrap=True)
     raise typer.Exit(1 if problems else 0)
 
 
@@ -94,6 +94,16 @@ def checked_live(pyodide):
     if pyodide is None or not pyodide.exists():
         raise BadInput(f"--pyodide {str(pyodide or '')!r}", "not there",
                        f"download pyodide-{parts.VERSION}.tar.bz2 from the releases of Pyodide, and name the file")
+
+
+def missing(live):
+    """Yield a sentence for each program that would have saved work in the reader's browser, and is not there."""
+    if not shutil.which("node"):
+        yield "Without node, formulas are set by KaTeX in the reader's browser instead of beforehand."
+    if live:
+        from .live import pyodide as parts
+        if not parts.interpreter():
+            yield f"Without Python {parts.PYTHON}, packages are compiled in the reader's browser instead of beforehand."
 
 
 def sphinx(source, site):

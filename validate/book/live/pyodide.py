@@ -1,13 +1,17 @@
 """The part of Pyodide that the lessons load, taken out of a release and checked against its digests.
 
 `pyodide.json` lists the files of the official release with their SHA-256: those of its core, and those of the packages
-as its own `pyodide-lock.json` gives them.  *Left out:* dependencies that nothing here imports (fonttools, pytz), and
-parts of packages (`UNUSED`).
+as its own `pyodide-lock.json` gives them.  *Left out:* dependencies that nothing here imports (fonttools, pytz), parts
+of packages (`UNUSED`), and the packages' sources where this machine has a Python of Pyodide's version to compile them.
 """
 
 import hashlib
+import io
 import json
 import re
+import shutil
+import subprocess
+import sys
 import tarfile
 import zipfile
 from contextlib import contextmanager
@@ -20,17 +24,25 @@ from solutions.checks import BadInput
 WANTED = json.loads((Path(__file__).parent / "pyodide.json").read_text(encoding="utf-8"))
 VERSION = WANTED["info"]["version"]
 UNUSED = {                   # {package: files of its wheel that no lesson loads}; half of what a first visit would load
-    "scipy": r"scipy/(misc|stats|interpolate|signal|io|cluster|ndimage|odr|fftpack|datasets)/"
+    "scipy": r"scipy/(misc|stats|interpolate|signal|io|cluster|ndimage|odr|fftpack|datasets|optimize/cython_optimize)/"
              r"|scipy/special/cython_special\.|.*/_test\w*\.cpython",
-    "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|matplotlib/(testing|tests)/"
-                  r"|.*/DejaVu(Serif|SansMono-)|matplotlib/backends/(web_backend|qt_editor)/",
-    "pillow": r"PIL/_(imagingft|imagingtk|webp)\.",
-    "openblas": r"(?!)",     # nothing, but its own archive is not compressed
+    "ipython": r"IPython/(testing|sphinxext|terminal/pt_inputhooks)/",
+    "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|mpl_toolkits/axisartist/"
+                  r"|matplotlib/(testing|tests|sphinxext)/"
+                  r"|.*/(DejaVu(Serif|SansMono-|Sans-BoldOblique)|STIXGeneral(Bol|Italic))"
+                  r"|matplotlib/(_qhull|_tri|_ttconv)\.|matplotlib/backends/(web_backend|qt_editor)/"
+                  r"|matplotlib/backends/(_backend_(gtk|tk)|_tk|backend_(gtk|qt|wx|tk|macosx|cairo|nbagg|web|pgf|ps))",
+    "pillow": r"PIL/_(imaging\w+|webp)\.|PIL/(?!Bmp|Gif|Jpeg|Png|Ppm|Tiff)\w+(ImagePlugin|StubPlugin|FontFile)\.",
+    "python-dateutil": r"dateutil/zoneinfo/",
     "pygments": r"pygments/lexers/(?!__init__|_mapping|python|diff|special|shell|console)",
 }
+FOR_COMPILERS = re.compile(r".*\.(pyx|pxd|pxi|pyi|h|a)$|.*/meson\.build$")     # of no use where none is
+DOCUMENTED = "numpy", "ipython"       # a student asks for the text of `np.cross?`; others' docstrings would be 1.5 MB
 ABSENT = "jedi", "ssl"                # the kernel asks for them, and does without: they are empty packages here
 INSTALLED = "comm",                   # the kernel asks for it; pure Python, taken from this environment
 OWN = "workbook_live"
+PYTHON = WANTED["info"]["python"].rpartition(".")[0]
+PACKAGES = f"/lib/python{PYTHON}/site-packages"       # where they lie in the browser: it stands in tracebacks
 # loaded together when a kernel starts
 FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", "sqlite3", *INSTALLED, *ABSENT, OWN.replace("_", "-"))
 ABOUT = re.compile(r"^(METADATA|WHEEL|entry_points\.txt|LICEN[CS]E.*|COPYING.*)$")
@@ -85,38 +97,61 @@ def sha256(data):
     return hashlib.sha256(data).hexdigest()
 
 
-def take(place, out):
-    """Write the part of a Pyodide that the lessons load, with our own packages and a lock of all of them."""
+def take(place, out, python=None):
+    """Write the part of a Pyodide that the lessons load, with our own packages and a lock of all of them.
+
+    python: compiles the packages' sources, see `interpreter`
+    """
     out.mkdir(parents=True)
     with opened(place) as folder:
         refuse_others(folder)
         for name in WANTED["files"]:
             (out / name).write_bytes((folder / name).read_bytes())
-        packages = {name: taken(folder, out, name, facts) for name, facts in WANTED["packages"].items()}
+        packages = {name: taken(folder, out, name, facts, python) for name, facts in WANTED["packages"].items()}
     for name in ABSENT:
         packages[name] = wheel(out, name, "0", {})
     for name in INSTALLED:
-        packages[name] = wheel(out, name, metadata.version(name), installed(name))
+        packages[name] = wheel(out, name, metadata.version(name), compiled(installed(name), python))
     source = (Path(__file__).parent / f"{OWN}.py").read_bytes()
     packages[OWN.replace("_", "-")] = wheel(out, OWN, "0", {f"{OWN}.py": source})
     lock = {"info": WANTED["info"], "packages": packages}
     (out / "pyodide-lock.json").write_text(json.dumps(lock, sort_keys=True), encoding="utf-8")
 
 
-def taken(folder, out, name, facts):
-    """Copy a package without its unused files, compressed; its entry in the lock."""
-    source, target = folder / facts["file_name"], out / facts["file_name"]
-    if name not in UNUSED:
-        target.write_bytes(source.read_bytes())
-        return facts
-    unused = re.compile(UNUSED[name])
-    with zipfile.ZipFile(source) as packed:
-        kept = {one: packed.read(one) for one in packed.namelist() if not unused.match(one) and one[-1] != "/"}
+def taken(folder, out, name, facts, python):
+    """Copy a package without its unused files, compiled and compressed; its entry in the lock."""
+    unused = re.compile(UNUSED.get(name, r"(?!)"))
+    with zipfile.ZipFile(folder / facts["file_name"]) as archive:
+        kept = {one: archive.read(one) for one in archive.namelist()
+                if one[-1] != "/" and not unused.match(one) and not FOR_COMPILERS.match(one)}
+    kept = compiled(kept, python, documented=name in DOCUMENTED)
     for record in [one for one in kept if one.endswith(".dist-info/RECORD")]:
-        lines = kept[record].decode().splitlines(keepends=True)
-        kept[record] = "".join(line for line in lines if not unused.match(line.partition(",")[0])).encode()
+        kept[record] = "".join(f"{path},,\n" for path in kept).encode()
+    target = out / facts["file_name"]
     pack(target, kept)
     return facts | {"sha256": sha256(target.read_bytes())}
+
+
+def interpreter():
+    """Return the path of a Python whose bytecode is that of Pyodide, or None if there is none on this machine."""
+    for path in filter(None, (sys.executable, shutil.which(f"python{PYTHON}"))):
+        told = subprocess.run([path, "-I", "-c", "import sys; print('%d.%d' % sys.version_info[:2])"],
+                              capture_output=True, text=True)
+        if told.stdout.strip() == PYTHON:
+            return path
+    return None
+
+
+def compiled(content, python, documented=True, place=PACKAGES):
+    """Return {path: bytes} with bytecode in place of Python files; the same if python is None."""
+    sources = {path: data for path, data in content.items() if path.endswith(".py")}
+    if python is None or not sources:
+        return content
+    words = [python, "-I", Path(__file__).parent / "bytecode.py", place, *(["--documented"] if documented else [])]
+    made = subprocess.run(words, input=packed(sources), stdout=subprocess.PIPE, check=True).stdout
+    with zipfile.ZipFile(io.BytesIO(made)) as archive:
+        return {path: data for path, data in content.items() if path not in sources} | {
+            name: archive.read(name) for name in archive.namelist()}
 
 
 def installed(name):
@@ -140,6 +175,13 @@ def wheel(out, name, version, content):
 
 def pack(file, content):
     """Write a zip of {path: bytes} whose bytes depend on these only."""
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as packed:
-        for path, data in content.items():
-            packed.writestr(zipfile.ZipInfo(path, DATE), data, zipfile.ZIP_DEFLATED)
+    file.write_bytes(packed(content))
+
+
+def packed(content):
+    """Return the bytes of a zip of {path: bytes}, which depend on these only."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for path, one in content.items():
+            archive.writestr(zipfile.ZipInfo(path, DATE), one, zipfile.ZIP_DEFLATED, compresslevel=9)
+    return data.getvalue()

@@ -10,11 +10,12 @@ from tempfile import TemporaryDirectory
 
 from ...grading import release
 from ...subject import modules
-from . import pyodide
+from . import pyodide, workbook_live
 
 LOADED = ("pytest", "iniconfig", "pluggy", "jinja2", "markupsafe",   # by the tests
           "ipywidgets", "jupyterlab_widgets", "anywidget", "psygnal", "typing_extensions")     # by live scenes
-ELSEWHERE = re.compile(r"docs/|uv\.lock|constraints\.txt|notebooks/.*\.ipynb")      # on the drive or in the book
+ELSEWHERE = re.compile(r"docs/|uv\.lock|constraints\.txt|notebooks/.*\.ipynb"        # on the drive or in the book
+                       r"|validate/stability/")                                     # of the command `validate` alone
 APPS = "lab", "notebooks", "edit", "tree"                            # the last three are for narrow screens
 KERNEL = "@jupyterlite/pyodide-kernel-extension:kernel"
 SAVED_WITHIN = 5                                                     # seconds after an edit: a reload loses no more
@@ -35,14 +36,18 @@ FIRST_CELL = "import workbook_live\n\nawait workbook_live.start()"
 
 def build(place, out):
     """Write the site into an empty folder.  `place` is a Pyodide; raises BadInput if it is another one."""
-    files = students()
+    files, python = students(), pyodide.interpreter()
     with TemporaryDirectory() as scratch:
         scratch = Path(scratch)
-        pyodide.take(place, scratch / "lite" / "static" / "pyodide")
+        pyodide.take(place, scratch / "lite" / "static" / "pyodide", python)
         drive(files, scratch / "content")
         jupyterlite(scratch, out)
-    packages = {f"packages/{path}": data for name in LOADED for path, data in pyodide.installed(name).items()}
-    tree = {f"{release.TOP}/{path}": data for path, data in files.items() if not ELSEWHERE.match(path)}
+    packages = {path: data for name in LOADED for path, data in pyodide.installed(name).items()}
+    packages = {f"packages/{path}": data for path, data in
+                pyodide.compiled(packages, python, documented=False, place=workbook_live.TREE / "packages").items()}
+    unused = unraced(files)
+    tree = {f"{release.TOP}/{path}": data for path, data in files.items()
+            if not ELSEWHERE.match(path) and path not in unused}
     pyodide.pack(out / "static" / "workbook.zip", tree | packages)
     configure(out / "jupyter-lite.json")
 
@@ -53,6 +58,13 @@ def students():
     files = release.contents(release.tracked(dirty=True), lessons, set())
     release.refuse_leaks(files, set())
     return files
+
+
+def unraced(files):
+    """Return the paths of the recorded runs of those scenes that no notebook names."""
+    named = "".join(data.decode() for path, data in files.items() if path.endswith(".ipynb"))
+    words = set(re.findall(r"\w+", named))
+    return {path for path in files if re.match(r"validate/recorded/\w+\.json$", path) and Path(path).stem not in words}
 
 
 def drive(files, folder):
