@@ -470,6 +470,11 @@ def test_conjugate_gradients_solve_positive_systems_and_raise_diverged_for_other
               given=f"of {n} points")
     close("input right-hand side after the call: copy it", right, load, 0.0)
 
+    # After two iterations a few millionths of the residual are left, and after three nothing.
+    near, right = np.diag([1.0, 0.01, 0.0105]), load[0, 0] * np.array([[1.0], [1e-4], [1e-4]])
+    y = lesson.conjugate_gradients(times, near, right.copy())
+    close("product of a diagonal matrix, 1 to 0.01, with the solution", near @ y, right, 2e-10)
+
     # condition number 5e8: about 9 iterations
     hilbert = 1.0 / (np.arange(7)[:, None] + np.arange(1, 8)[None, :])
     right = hilbert @ draw(0.5, 1.5, (7, 1))

@@ -54,6 +54,8 @@ def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), i
 right("6.2", "with new names")(impact())
 edit("6.2", "treats the ball as a point", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
      "plane_distance(x_0, plane), -plane_distance(x_1, plane)")
+edit("6.2", "forgets the radius in the share of the step only",
+     "before / (before + after)", "(before + r) / (before + after)")
 edit("6.2", "misses an impact if the ball touches and leaves", "before <= 0.0", "before < 0.0")
 MISSES_THE_END = edit("6.2", "misses an impact exactly at the end of the step", "after < 0.0", "after <= 0.0")
 wrong("6.2", "subtracts r from the first distance only")(impact(after_skin=0.0))
@@ -167,6 +169,10 @@ edit("6.4", "takes the opposite direction", "x_1[1:] - x_0[1:]", "x_0[1:] - x_1[
 edit("6.4", "forgets dt", "t + s * dt", "t + s")
 edit("6.4", "takes the cylinder's axis along z: uses the first two coordinates",
      "y, w = x_0[1:], x_1[1:] - x_0[1:]", "y, w = x_0[:2], x_1[:2] - x_0[:2]")
+edit("6.4", "divides by 2A, which belongs to A s² + B s + C = 0",
+     "s = C / (np.sqrt(D) - B)", "s = (-B - np.sqrt(D)) / (2.0 * A)")
+edit("6.4", "solves A s² + B s + C = 0, with B in place of 2B", "D = A * rho * rho - (y[0] * w[1] - y[1] * w[0]) ** 2",
+     "D, C = B * B - 4.0 * A * C, 2.0 * C")
 edit("6.4", "uses 2B in place of B", "w @ w, y @ w,", "w @ w, 2.0 * (y @ w),")
 edit("6.4", "exchanges the tests of B: misses a ball that approaches", "B >= 0.0 or", "B <= 0.0 or")
 edit("6.4", "takes the sum of the products in the last form of D",
@@ -389,7 +395,10 @@ def sweep(f=lambda low, high, move: (low + np.clip(move, None, 0.0), high + np.c
 
 right("6.9", "by the parts of the way")(sweep())
 wrong("6.9", "returns the box at the end position only")(sweep(lambda low, high, move: (low + move, high + move)))
-wrong("6.9", "extends the box in the positive directions only")(sweep(lambda low, high, move: (low, high + move)))
+wrong("6.9", "moves the high corner only, whichever way the box moves")(
+    sweep(lambda low, high, move: (low, high + move)))
+edit("6.9", "extends the box in the positive directions only", "np.minimum(low, low + move)", "low")
+edit("6.9", "extends the box in the negative directions only", "np.maximum(high, high + move)", "high")
 wrong("6.9", "extends the box on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
 edit("6.9", "extends the box by the largest move in all coordinates",
      "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
@@ -510,6 +519,10 @@ def find_intersections(a, b):
     return worked.as_pairs(found)
 
 
+edit("6.11", "opens both nodes at once, and compares left with left and right with right only", "elif down_b == 0 or",
+     "elif down_a > 0 and down_b > 0:\n"
+     "                waiting += [(down_a, down_b), (down_a + 1, down_b + 1)]\n"
+     "            elif down_b == 0 or")
 edit("6.11", "forgets the first child", "waiting.append((down_a, j))", "pass")
 edit("6.11", "forgets the second child of b", "waiting.append((i, down_b + 1))", "pass")
 

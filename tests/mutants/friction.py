@@ -209,6 +209,9 @@ edit("3.6", "forgets μ", "cone_radius(mu, j_n)", "j_n")
 edit("3.6", "divides by the mass in place of multiplying by it",
      "limit = cone_radius(mu, j_n)", "limit, m = cone_radius(mu, j_n), 1.0 / m")
 edit("3.6", "forgets the mass along the first tangent", "m * (v_t @ t_1)", "v_t @ t_1")
+edit("3.6", "shortens both parts by one factor, where each has its own limit", "limit = cone_radius(mu, j_n)",
+     "limit, most = cone_radius(mu, j_n), m * max(abs(v_t @ t_1), abs(v_t @ t_2)); "
+     "return -min(1.0, limit / max(most, 1e-300)) * m * v_t")
 edit("3.6", "shortens the impulse of the pyramid to the radius of the cone", "return -first * t_1 - second * t_2",
      "return -min(1.0, limit / max(np.hypot(first, second), 1e-300)) * (first * t_1 + second * t_2)")
 
@@ -434,6 +437,8 @@ wrong("3.12", "divides by a distance of zero")(hollow(safe=False))
 edit("3.12", "treats the bowl as a ball", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
 edit("3.12", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 edit("3.12", "returns the distance from the centre as the gap", "p.radius - distance, -r", "distance, -r")
+edit("3.12", "divides r by the radius of the wall, not by its own length, for the normal",
+     "-r / distance if", "-r / p.radius if")
 edit("3.12", "adds the centre", "x - p.centre", "x + p.centre")
 edit("3.12", "takes the part along the axis in place of the rest",
      "tangential(x - p.centre, p.axis)", "((x - p.centre) @ p.axis) * p.axis")
@@ -518,10 +523,12 @@ for number, particle in (("3.14", contact), ("3.16", gripping)):
     wrong(number, "evaluates the acceleration at time 0")(particle(clock=0.0))
     wrong(number, "finds contact within a gap of 1 mm")(particle(reached=1e-3))
 wrong("3.14", "also corrects the position for friction, which belongs to 3.16")(contact(grip=1.0))
-wrong("3.16", "omits the friction correction of the position")(gripping(grip=0.0))
+NO_GRIP = "never corrects the position for friction: v · n < 0 is asked before the impulse, and the depth is −φ"
+wrong("3.16", NO_GRIP)(gripping(grip=0.0))
+wrong("3.16", NO_GRIP)(gripping(depth=lambda phi: phi))
+edit("3.16", NO_GRIP, "if v @ n < 0.0", "if (v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m) @ n < 0.0")
 wrong("3.16", "reverses the friction correction of the position")(gripping(grip=-1.0))
 wrong("3.16", "applies the correction to a leaving particle, too")(gripping(both_ways=True))
-wrong("3.16", "uses the gap in place of the depth, with the wrong sign")(gripping(depth=lambda phi: phi))
 wrong("3.16", "corrects the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
 edit("3.14", "changes its input", "v = v + dt * acceleration(t, x, v, p)", "v += dt * acceleration(t, x, v, p)")
 edit("3.14", "finds contact at φ = 0 already", "phi < 0.0", "phi <= 0.0")
@@ -580,6 +587,10 @@ edit("3.17", "counts the way from the far edge of the strip", "return width + le
 edit("3.17", "forgets the half of ½mv² where the block enters", "left = 0.5 * v * v", "left = v * v")
 edit("3.17", "forgets the half of ½mv² of a block that stops on the strip", "return 0.5 * v * v", "return v * v")
 edit("3.17", "lets the strip take nothing from the energy", "0.5 * v * v - mu_near * g * width", "0.5 * v * v")
+edit("3.17", "subtracts μ g s from the speed, not 2 μ g s from its square", "left / (mu_far * g)",
+     "0.5 * max(0.0, v - mu_near * g * width) ** 2 / (mu_far * g)")
+edit("3.17", "subtracts μ g s from the speed, not 2 μ g s from its square", "0.5 * v * v - mu_near * g * width",
+     "0.5 * (v - mu_near * g * width) * abs(v - mu_near * g * width)")
 edit("3.17", "divides by the mean of both frictions behind the strip", "left / (mu_far",
      "left / (0.5 * (mu_near + mu_far)")
 
@@ -623,6 +634,7 @@ edit("3.19", "is not limited along the blade: it turns a slow block round",
      "np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))",
      "0.5 * mu * j_n")
 edit("3.19", "never quite stops the block: the drag of a fluid", FIRST, "return -0.1 * m * v_t")
+edit("3.19", "never quite stops the block: the drag of a fluid", FIRST, "return -mu * j_n * v_t")
 edit("3.19", "turns the block round without slowing it", FIRST, "return -2.0 * m * v_t")
 edit("3.19", "brakes along the blade only", "np.sign(v_t[1]) * across", "0.0")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",

@@ -131,7 +131,8 @@ def box_inertia(m, size):
     return np.diag(np.sum(second) - second)
 
 
-edit("4.5", "takes the edges for half edges", "m / 12.0", "m / 3.0")
+edit("4.5", "divides by 3, not by 12: takes the edges for half edges, or integrates from 0 to the edge",
+     "m / 12.0", "m / 3.0")
 edit("4.5", "uses each axis's own edge in place of the two others",
      "[bb + cc, aa + cc, aa + bb]", "[2.0 * aa, 2.0 * bb, 2.0 * cc]")
 edit("4.5", "exchanges the edges of the first two axes", "[bb + cc, aa + cc, aa + bb]", "[aa + cc, bb + cc, aa + bb]")
@@ -649,6 +650,8 @@ edit("4.18", "gives all the energy to the rotation", "(1.0 + I", "(0.0 + I")
 edit("4.18", "takes the drop for the horizontal way: cos in place of sin", "np.sin", "np.cos")
 edit("4.18", "lets the body fall straight down", "np.sin(slope)", "1.0")
 edit("4.18", "forgets the 2 in s = ½ a t²", "2.0 * way", "way")
+edit("4.18", "divides the way by the speed at the end, not by the mean speed",
+     "np.sqrt(2.0 * way / a)", "way / np.sqrt(2.0 * a * way)")
 edit("4.18", "returns the square of the time", "np.sqrt(2.0 * way / a)", "2.0 * way / a")
 edit("4.18", "divides the moment by m R in place of m R²", "m * radius * radius", "m * radius")
 edit("4.18", "adds half of I/(m R²)", "1.0 + I /", "1.0 + 0.5 * I /")

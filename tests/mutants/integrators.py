@@ -65,13 +65,16 @@ edit("1.2", "takes the mean of the slopes at both ends, as Heun's method does",
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
 @variants
-def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6)):
+def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6), chained=False, own=False):
     """A Runge–Kutta method from its table: each stage starts nodes · dt along the slope of the one before."""
     def step(acceleration, t, x, v, dt, p):
         slope, total_x, total_v = (v, acceleration(t, x, v, p)), 0.0, 0.0
+        x_c, v_c = x, v
         for c, w in zip(nodes, weights, strict=True):
-            v_c = v + c * dt * slope[1]
-            slope = v_c, acceleration(t + c * dt, x + c * dt * slope[0], v_c, p)
+            x_0, v_0 = (x_c, v_c) if chained else (x, v)
+            v_c = v_0 + c * dt * slope[1]
+            x_c = x_0 + c * dt * (v_c if own else slope[0])
+            slope = v_c, acceleration(t + c * dt, x_c, v_c, p)
             total_x, total_v = total_x + w * slope[0], total_v + w * slope[1]
         return x + dt * total_x, v + dt * total_v
     return step
@@ -80,6 +83,8 @@ def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6)):
 wrong("1.3", "gives the four slopes equal weights")(runge_kutta(weights=(1 / 4, 1 / 4, 1 / 4, 1 / 4)))
 wrong("1.3", "exchanges the weights of the middle and of the ends")(runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)))
 wrong("1.3", "takes the fourth slope at the middle of the step, not at its end")(runge_kutta(nodes=(0, 0.5, 0.5, 0.5)))
+wrong("1.3", "starts each stage at the stage before it, not at xₙ and vₙ")(runge_kutta(chained=True))
+wrong("1.3", "moves each stage with its own velocity, not with that of the stage before it")(runge_kutta(own=True))
 right("1.3", "from its table")(runge_kutta())
 edit("1.3", "moves the position by an Euler step", "x + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)", "x + dt * v")
 edit("1.3", "does not advance t to the midpoint", "acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
@@ -258,6 +263,11 @@ edit("1.8", "returns the state at the middle of the step", "2.0 * x_mid - x, 2.0
 edit("1.8", "takes two half steps of implicit Euler", "2.0 * x_mid - x, 2.0 * v_mid - v",
      "implicit_euler_step(acceleration, t + 0.5 * dt, x_mid, v_mid, 0.5 * dt, p)")
 edit("1.8", "takes a whole step where half a step belongs", "0.5 * dt, p)", "dt, p)")
+edit("1.8", "takes the mean of the start and of a whole step of implicit Euler for the middle", "0.5 * dt, p)",
+     "dt, p); x_mid, v_mid = 0.5 * (x + x_mid), 0.5 * (v + v_mid); "
+     "return x + dt * v_mid, v + dt * acceleration(t + 0.5 * dt, x_mid, v_mid, p)")
+edit("1.8", "takes the explicit midpoint method, and solves no equation",
+     "0.5 * dt, p)", "0.5 * dt, p); return midpoint_step(acceleration, t, x, v, dt, p)")
 edit("1.8", "starts at the time of the middle of the step",
      "implicit_euler_step(acceleration, t, x", "implicit_euler_step(acceleration, t + 0.5 * dt, x")
 edit("1.8", "returns the velocity in the middle", "2.0 * v_mid - v", "v_mid")
@@ -334,6 +344,8 @@ edit("1.11", "takes the leg ω dt as the growth of a step, not the hypotenuse",
 edit("1.11", "gives the growth of a single step", "** (0.5 * steps)", "** 0.5")
 edit("1.11", "adds the growth of the steps, where each multiplies the one before",
      "(1.0 + angle * angle) ** (0.5 * steps)", "1.0 + 0.5 * steps * angle * angle")
+edit("1.11", "adds the growth of the steps, where each multiplies the one before",
+     "(1.0 + angle * angle) ** (0.5 * steps)", "1.0 + steps * (np.sqrt(1.0 + angle * angle) - 1.0)")
 edit("1.11", "gives the limit for many steps, e^(2π²/steps)",
      "(1.0 + angle * angle) ** (0.5 * steps)", "np.exp(0.5 * steps * angle * angle)")
 edit("1.11", "forgets 2π: a period is 2π/ω, not 1/ω", "2.0 * np.pi / steps", "1.0 / steps")
@@ -390,6 +402,9 @@ edit("1.13", "is symplectic Euler", "x_mid = x + 0.5 * dt * v",
      "return symplectic_euler_step(acceleration, t, x, v, dt, p)")
 edit("1.13", "is the midpoint method, which gains energy", "x_mid = x + 0.5 * dt * v",
      "return midpoint_step(acceleration, t, x, v, dt, p)")
+edit("1.13", "is Heun's method, which gains energy", "x_mid = x + 0.5 * dt * v",
+     "a = acceleration(t, x, v, p); return x + dt * (v + 0.5 * dt * a), "
+     "v + 0.5 * dt * (a + acceleration(t + dt, x + dt * v, v + dt * a, p))")
 edit("1.13", "is Runge–Kutta 4", "x_mid = x + 0.5 * dt * v",
      "return rk4_step(acceleration, t, x, v, dt, p)")
 edit("1.13", "takes the mean of the steps of Euler and symplectic Euler: of first order in the position",

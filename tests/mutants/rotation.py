@@ -38,6 +38,7 @@ def point_velocity(v, omega, r):
 edit("5.2", "takes r × ω in place of ω × r", "cross(omega, r)", "cross(r, omega)")
 edit("5.2", "omits the velocity of the centre of mass", "v + cross(omega, r)", "cross(omega, r)")
 edit("5.2", "omits the rotation, ω × r", "v + cross(omega, r)", "v.copy()")
+edit("5.2", "multiplies ω and r component by component", "cross(omega, r)", "omega * r")
 ROTATION_SUBTRACTED = edit("5.2", "subtracts the rotation", "v + cross", "v - cross")
 
 
@@ -117,6 +118,8 @@ def matrix_update(R, omega, dt):
 
 edit("5.6", "does not renormalise", "first, second = M[:, 0].copy(), M[:, 1].copy()", "return M")
 edit("5.6", "normalises the columns but does not make them orthogonal", "dot(first, second) * first", "0.0")
+edit("5.6", "normalises the columns but does not make them orthogonal",
+     "first, second = M[:, 0].copy(), M[:, 1].copy()", "return M / np.sqrt(np.sum(M * M, axis=0))")
 edit("5.6", "reverses the third column", "cross(first, second)", "cross(second, first)")
 edit("5.6", "takes ω as if it were in body coordinates", "skew(omega) @ R", "R @ skew(omega)")
 edit("5.6", "forgets dt", "dt * (skew(omega) @ R)", "skew(omega) @ R")
@@ -167,6 +170,8 @@ edit("5.7", "exchanges sine and cosine",
      "c, s = np.cos(rate * dt), np.sin(rate * dt)", "s, c = np.cos(rate * dt), np.sin(rate * dt)")
 edit("5.7", "does not normalise the axis", "n = omega / rate", "n = omega")
 edit("5.7", "adds 1 + cos θ along the axis", "1.0 - c", "1.0 + c")
+edit("5.7", "forgets the factor 1 − cos θ", "(1.0 - c) * dot(n, r)", "dot(n, r)")
+edit("5.7", "has cos θ in place of 1 − cos θ", "(1.0 - c)", "c")
 edit("5.7", "takes the part along r in place of n", "dot(n, r) * n", "dot(n, r) * r")
 edit("5.7", "converts the angle to degrees",
      "np.cos(rate * dt), np.sin(rate * dt)", "np.cos(np.degrees(rate * dt)), np.sin(np.degrees(rate * dt))")

@@ -177,6 +177,7 @@ wrong("2.6", "uses the sine of the angle in place of the angle")(
     angular_spring(angle=lambda theta, rest: np.sin(theta - rest)))
 wrong("2.6", "takes the angle without its sign")(angular_spring(angle=lambda theta, rest: abs(theta) - rest))
 wrong("2.6", "does not divide the torque by the length of the arm")(angular_spring(power=1))
+wrong("2.6", "divides r⊥ by |r|³, not by |r|²")(angular_spring(power=3))
 wrong("2.6", "applies no force to the hinge")(angular_spring(hinge=0.0))
 wrong("2.6", "reverses the force on the hinge")(angular_spring(hinge=-1.0))
 wrong("2.6", "reverses all three forces")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
@@ -198,6 +199,7 @@ HALF_A_TURN = edit("2.6", "brings the angle into [−π, π), where −π is not
                    "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
 edit("2.6", "brings the angle into [0, 2π)",
      "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor(turn / (2.0 * np.pi))")
+edit("2.6", "does not bring the angle back into (−π, π]", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "0.0")
 edit("2.6", "adds or subtracts one full turn at most", "turn -= 2.0 * np.pi * np.ceil((turn - np.pi) / (2.0 * np.pi))",
      "turn = turn - 2.0 * np.pi * ((turn > np.pi) * 1.0 - (turn <= -np.pi))")
 edit("2.6", "uses the arccosine, which has no sign",
@@ -616,6 +618,8 @@ edit("2.14", "takes the force at the beginning of the step", HELD, "-(k * (x - t
 edit("2.14", "treats the damper explicitly", "(c + dt * k)", "(dt * k)")
 edit("2.14", "treats the spring explicitly", "k * (x - target + dt * v) + c * v) / (1.0 + dt * (c + dt * k) / m)",
      "k * (x - target) + c * v) / (1.0 + dt * c / m)")
+edit("2.14", "takes x⁺ = x + dt v, with the velocity before the step", "(c + dt * k) / m", "c / m")
+edit("2.14", "multiplies k by dt, not by dt², in the denominator", "(c + dt * k)", "(c + k)")
 edit("2.14", "forgets that the point moves during the step", "x - target + dt * v", "x - target")
 edit("2.14", "pulls away from the target", "-(k * (x", "(k * (x")
 edit("2.14", "forgets the mass", "(c + dt * k) / m", "(c + dt * k)")
