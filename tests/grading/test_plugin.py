@@ -49,6 +49,15 @@ def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
     assert not LEFT_OUT.search(collected(*options))
 
 
+@pytest.mark.parametrize("exercise", ["euler_step", "sliding_step", "1.99", "1", ""])
+def test_an_exercise_without_such_a_number_is_unknown(exercise):
+    """The first name stands in quotes in a test file."""
+    options = ["--of=solutions", f"--exercise={exercise}", "--collect-only"]
+    run = subprocess.run([sys.executable, "-m", "pytest", *options], cwd=modules.ROOT, capture_output=True, text=True)
+    assert run.returncode == pytest.ExitCode.USAGE_ERROR
+    assert run.stderr.strip() == f"ERROR: exercise {exercise!r} is unknown: give its number, like --exercise=1.2"
+
+
 @pytest.mark.long
 def test_the_parts_of_the_long_tests_make_up_the_whole():
     """Each long test belongs to one part, and the others to all of them."""

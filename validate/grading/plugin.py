@@ -9,6 +9,7 @@ import argparse
 import hashlib
 import importlib.util
 import json
+import re
 import signal
 import threading
 import types
@@ -88,7 +89,7 @@ def pytest_configure(config):
             config.cases = FailingCases()
             config.pluginmanager.register(config.cases)
     for exercise in config.getoption("--exercise"):
-        if not tests_of(exercise):
+        if not re.fullmatch(r"\d+\.\d+", exercise) or not tests_of(exercise):
             raise pytest.UsageError(f"exercise {exercise!r} is unknown: give its number, like --exercise=1.2")
 
 
