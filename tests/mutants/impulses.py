@@ -707,6 +707,7 @@ def backtracking_step(acceleration, t, x, v, dt, p):
             raise Diverged("impacts in a step of dt [s]", dt, "take a smaller one")
 edit("7.16", "adds the time of flight to what is left", "left -= tau", "left += 0.0 * tau")
 edit("7.16", "takes only the last flight off the step", "left -= tau", "left = dt - tau")
+edit("7.16", "takes only the last flight off the step", "left -= tau", "left = dt - tau if tau < left else 0.0")
 edit("7.16", "flies for the whole rest at once", "free_flight(x, v, a, tau)", "free_flight(x, v, a, left)")
 edit("7.16", "looks for the impact within dt, not within the time that is left", "a @ p.n, left)", "a @ p.n, dt)")
 edit("7.16", "does not reflect the ball", "v = kinematic_response(v, p.n, p.e)", "pass")
