@@ -274,8 +274,10 @@ def spectral_radius(matrix):
 
 @exercise("9.5", points=0.5, hint="cos²(π/(2n)); for n = 1 it is 0")
 def test_a_stack_contracts_by_the_largest_eigenvalue(lesson, draw):
-    for n in (draw.whole(4, 9), draw.whole(10, 40), 2, 3):               # of small ones many a wrong formula is right
-        close("contraction factor of a stack [-]", lesson.stack_contraction(n),
+    heights = (draw.whole(4, 9), draw.whole(10, 40), 2, 3)               # of small ones many a wrong formula is right
+    # All of them before the first comparison: a wrong formula may return 0 for every odd n, and 1 for every even n.
+    for n, found in [(n, lesson.stack_contraction(n)) for n in heights]:
+        close("contraction factor of a stack [-]", found,
               spectral_radius(iteration_matrix(chain(np.ones(n))[0], 1.0)), 1e-10, given=f"n = {n}")
     close("contraction factor of a single body [-]", lesson.stack_contraction(1), 0.0, ROUND_OFF)
     n = draw.whole(200, 300)
@@ -1405,8 +1407,10 @@ def test_the_function_of_fischer_and_burmeister_and_its_slopes(lesson, draw):
 @exercise("9.18", points=0.25,
           hint="x + y − h = 2xy/(x + y + h), since (x + y)² − h² = 2xy; at (0, 0) both slopes are 1 − 1/√2")
 def test_no_digit_of_a_small_complementarity_is_lost(lesson, draw):
-    for little in (draw(0.1, 1.0), draw(1e-7, 1e-5), draw(1e-13, 1e-11), draw(1e-21, 1e-19)):
-        large = draw(0.5, 2.0)
+    # In the first pair the smaller number vanishes in x + y, and still it is as large as the slopes.
+    for little, size in ((draw(1e-19, 1e-18), 1e18), (draw(0.1, 1.0), 1.0), (draw(1e-7, 1e-5), 1.0),
+                         (draw(1e-13, 1e-11), 1.0), (draw(1e-21, 1e-19), 1.0)):
+        large = size * draw(0.5, 2.0)
         with localcontext(prec=80):
             x, y = Decimal(large), Decimal(large * little)
             expected = float((x + y - (x * x + y * y).sqrt()) / y)

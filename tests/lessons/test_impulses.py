@@ -195,28 +195,29 @@ def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
 @exercise("7.6", points=0.5, hint="v gains J/m, and ω gains (r_x J_y − r_y J_x)/I")
 def test_an_impulse_changes_both_momenta_of_a_flat_body(lesson, draw):
     body = flat(draw, lesson)
-    r, J, x = draw(-1.0, 1.0, 2), draw(-3.0, 3.0, 2), draw(-2.0, 2.0, 2)
-    after = lesson.apply_impulse_2d(body, r, J)
-    given = f"{body}, r = {r} m, J = {J} N s"
-    close("momentum gained [N s]", (np.asarray(after.v) - body.v) / body.inv_mass, J, ROUND_OFF, given=given)
-    momenta = []
-    for b in (body, after):
-        P = np.asarray(b.v) / body.inv_mass
-        orbital = float(np.cross([*x, 0.0], [*P, 0.0])[2])
-        momenta.append(b.omega / body.inv_inertia + orbital)
-    point = x + r
-    close("angular momentum gained about the origin [N m s]", momenta[1] - momenta[0],
-          point[0] * J[1] - point[1] * J[0], 1e-11, given=given)
-    close("inverse mass and inertia after the impulse", [after.inv_mass, after.inv_inertia],
-          [body.inv_mass, body.inv_inertia], 0.0, given=given)
-    _, immovable, axle, stiff = (lesson.apply_impulse_2d(b, r, J) for b in restrained(body))
-    close("velocity of an immovable body [m/s, rad/s]", [*immovable.v, immovable.omega], [*body.v, body.omega], 0.0,
-          given=given)
-    close("velocity of a body on an axle through its centre [m/s]", axle.v, body.v, 0.0, given=given)
-    close("angular velocity of a body on an axle [rad/s]: as without the axle", axle.omega, after.omega, ROUND_OFF,
-          given=given)
-    close("velocity of a body that cannot rotate [m/s]: as if it could", stiff.v, after.v, ROUND_OFF, given=given)
-    close("angular velocity of a body that cannot rotate [rad/s]", stiff.omega, body.omega, 0.0, given=given)
+    r, push, x = draw(-1.0, 1.0, 2), draw(-3.0, 3.0, 2), draw(-2.0, 2.0, 2)
+    for J in (push, -push):                                              # r × J with either sign
+        after = lesson.apply_impulse_2d(body, r, J)
+        given = f"{body}, r = {r} m, J = {J} N s"
+        close("momentum gained [N s]", (np.asarray(after.v) - body.v) / body.inv_mass, J, ROUND_OFF, given=given)
+        momenta = []
+        for b in (body, after):
+            P = np.asarray(b.v) / body.inv_mass
+            orbital = float(np.cross([*x, 0.0], [*P, 0.0])[2])
+            momenta.append(b.omega / body.inv_inertia + orbital)
+        point = x + r
+        close("angular momentum gained about the origin [N m s]", momenta[1] - momenta[0],
+              point[0] * J[1] - point[1] * J[0], 1e-11, given=given)
+        close("inverse mass and inertia after the impulse", [after.inv_mass, after.inv_inertia],
+              [body.inv_mass, body.inv_inertia], 0.0, given=given)
+        _, immovable, axle, stiff = (lesson.apply_impulse_2d(b, r, J) for b in restrained(body))
+        close("velocity of an immovable body [m/s, rad/s]", [*immovable.v, immovable.omega], [*body.v, body.omega], 0.0,
+              given=given)
+        close("velocity of a body on an axle through its centre [m/s]", axle.v, body.v, 0.0, given=given)
+        close("angular velocity of a body on an axle [rad/s]: as without the axle", axle.omega, after.omega, ROUND_OFF,
+              given=given)
+        close("velocity of a body that cannot rotate [m/s]: as if it could", stiff.v, after.v, ROUND_OFF, given=given)
+        close("angular velocity of a body that cannot rotate [rad/s]", stiff.omega, body.omega, 0.0, given=given)
 
 
 # ---------------------------------------------------------------------------------------------- in space
@@ -473,21 +474,28 @@ def test_the_energy_of_an_impact_is_what_both_bodies_gain(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- when
 
+def gap_and_multiplier(lesson, draw, closes, size):
+    """closes: distance travelled in this step as a fraction of the gap."""
+    phi, k, dt = size * draw(0.01, 0.5), draw(0.3, 3.0), draw(0.01, 0.1)
+    u_n = -closes * phi / dt
+    lam = float(lesson.gap_multiplier(phi, u_n, k, dt))
+    given = f"φ = {phi} m, u_n = {u_n} m/s, k_n = {k} 1/kg, dt = {dt} s"
+    after = phi + dt * (u_n + k * lam)
+    between("multiplier [N s]", lam, 0.0, 1e4, given=given)
+    between("gap at the end of the step [m]", after, -ROUND_OFF * size, 1e4, given=given)
+    close("multiplier times gap", lam * after, 0.0, 1e-9 * size**2, given=given)                 # λ is below 1,000 here
+
+
 @exercise("7.12", points=1, hint="either φ + dt u_n stays positive and λ = 0, or λ makes φ + dt (u_n + k_n λ) zero")
 def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson, draw):
-    # closes: distance travelled in this step as a fraction of the gap
-    cases = (*((share, 1.0) for share in (*draw.within(), *draw.beyond(5.0))), (draw(1.1, 5.0), TINY), (0.0, 1.0),
-             (-draw(0.5, 2.0), 1.0))
-    for closes, size in cases:
-        phi, k, dt = size * draw(0.01, 0.5), draw(0.3, 3.0), draw(0.01, 0.1)
-        u_n = -closes * phi / dt
-        lam = float(lesson.gap_multiplier(phi, u_n, k, dt))
-        given = f"φ = {phi} m, u_n = {u_n} m/s, k_n = {k} 1/kg, dt = {dt} s"
-        after = phi + dt * (u_n + k * lam)
-        between("multiplier [N s]", lam, 0.0, 1e4, given=given)
-        between("gap at the end of the step [m]", after, -ROUND_OFF * size, 1e4, given=given)
-        close("multiplier times gap", lam * after, 0.0, 1e-9 * size**2, given=given)             # λ is below 1,000 here
-    close("multiplier of a resting contact [N s]", lesson.gap_multiplier(0.0, -1.0, 2.0, 0.1), 0.5, ROUND_OFF)
+    for share in draw.within():
+        gap_and_multiplier(lesson, draw, share, 1.0)
+    u_n, k = -draw(0.5, 2.0), draw(0.3, 3.0)
+    close("multiplier of a resting contact [N s]", lesson.gap_multiplier(0.0, u_n, k, 0.1), -u_n / k, ROUND_OFF,
+          given=f"φ = 0, u_n = {u_n} m/s, k_n = {k} 1/kg, dt = 0.1 s")
+    for closes, size in (*((share, 1.0) for share in draw.beyond(5.0)), (draw(1.1, 5.0), TINY), (0.0, 1.0),
+                         (-draw(0.5, 2.0), 1.0)):
+        gap_and_multiplier(lesson, draw, closes, size)
     close("multiplier of a closed gap that opens [N s]", lesson.gap_multiplier(0.0, draw(0.5, 2.0), 2.0, 0.1), 0.0, 0.0)
     for u_n, gap in ((-draw(2.0, 5.0), "closes"), (draw(0.5, 2.0), "opens")):
         raises(f"two immovable bodies whose gap {gap}", BadInput, lesson.gap_multiplier, 0.1, u_n, 0.0, 0.1)

@@ -944,15 +944,20 @@ def settled(lengths, target, damping, theta, iterations=3000):
 
 @exercise("11.17", points=1, hint="a damped step does not move the arm if Jᵀ e = 0: which place of its reach is that?")
 def test_damped_steps_leave_the_predicted_distance(lesson, draw):
-    lengths = np.array([draw(1.2, 1.4), draw(0.3, 0.5), draw(0.2, 0.4)])
-    turn, reach, hole = draw(0.0, 6.0), np.sum(lengths), 2.0 * lengths[0] - np.sum(lengths)
-    for away in (draw(1.2, 2.0) * reach, draw(0.5, 0.8) * reach, draw(0.2, 0.7) * hole):
-        for damping in (0.7 * reach, draw(0.9, 1.2) * reach):
-            target = away * np.array([np.cos(turn), np.sin(turn)])
-            left = settled(lengths, target, damping, np.array([turn + 0.4, 0.5, 0.6]))
-            # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
-            close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
-                  given=f"lengths {lengths}, {away} m away, λ = {damping}")
+    l_1, l_2, l_3 = draw(1.2, 1.4), draw(0.3, 0.5), draw(0.2, 0.4)
+    longest_first, longest_last = np.array([l_1, l_2, l_3]), np.array([l_2, l_3, l_1])
+    reach, hole, turn = l_1 + l_2 + l_3, l_1 - l_2 - l_3, draw(0.0, 6.0)
+    # An arm without a hole reaches every place near its base.
+    even, four = draw(0.8, 1.2, 3), draw(0.5, 0.8, 4)
+    cases = [(longest_first, away) for away in (draw(1.2, 2.0) * reach, draw(0.5, 0.8) * reach, draw(0.2, 0.7) * hole)]
+    cases += [(longest_last, draw(1.2, 1.5) * hole), (longest_last, draw(0.2, 0.7) * hole),
+              (even, draw(0.05, 0.2)), (four, draw(0.1, 0.3)), (four, draw(1.2, 2.0) * np.sum(four))]
+    for lengths, away in cases:
+        damping, target = draw(0.7, 1.2) * reach, away * np.array([np.cos(turn), np.sin(turn)])
+        left = settled(lengths, target, damping, np.append(turn + 0.4, np.linspace(0.5, 0.6, len(lengths) - 1)))
+        # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
+        close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
+              given=f"lengths {lengths}, {away} m away, λ = {damping}")
 
 
 @exercise("11.18", points=1,

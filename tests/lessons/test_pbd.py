@@ -928,7 +928,8 @@ def test_a_turn_has_the_rate_that_leads_from_one_orientation_to_the_other(lesson
     for still in (q, np.array([1.0, 0.0, 0.0, 0.0])):
         close("angular velocity of a body that does not turn [rad/s]", lesson.turning_rate(still, still.copy(), dt),
               np.zeros(3), ROUND_OFF, given=f"q = {still}, dt = {dt} s")
-    for angle in (draw(0.1, 2.0), draw(2.9, 3.1), 1e-7 * draw(1.0, 5.0)):
+    # In the first and the last the scalar part is 1 or −1: only its sign matters.
+    for angle in (1e-4 * draw(0.5, 1.0), draw(0.1, 2.0), draw(2.9, 3.1), 1e-7 * draw(1.0, 5.0)):
         half, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
         a, v = q[0], q[1:]
         turned = np.append(half * a - s * axis @ v, half * v + a * s * axis + s * np.cross(axis, v))

@@ -412,7 +412,10 @@ wrong("9.4", "uses the old impulses of all contacts, as Jacobi's method does")(s
 wrong("9.4", "does not limit the impulses to zero or more")(swept(pulls=True))
 wrong("9.4", "omits the relaxation")(swept(relaxed=False))
 wrong("9.4", "visits the contacts from the last to the first")(swept(backwards=True))
-wrong("9.4", "relaxes after the projection, not before")(swept(inside=True))
+wrong("9.4", "relaxes after a pull is cut off, not before")(swept(inside=True))
+edit("9.4", "relaxes after a pull is cut off, not before",
+     "np.maximum(0.0, lam[k] - omega * (A[k] @ lam + b[k]) / A[k, k])",
+     "(1.0 - omega) * lam[k] + omega * np.maximum(0.0, lam[k] - (A[k] @ lam + b[k]) / A[k, k])")
 wrong("9.4", "does not divide by the diagonal")(swept(diagonal=False))
 wrong("9.4", "makes two sweeps")(swept(twice=True))
 edit("9.4", "changes its input", "lam = float_copy(lam)", "pass")
@@ -749,16 +752,17 @@ def murty(check=worked.check_independent, least=True, sides="both", everything=F
     def solve_lcp(A, b):
         check(A, b)
         m = len(b)
-        on = np.full(m, start)
+        on = np.full(m, start or sides.startswith("drops"))
         for _ in range(rounds * m):
             lam = np.zeros(m)
             lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
             u, epsilon = A @ lam + b, slack * size(np.abs(A) @ np.abs(lam) + np.abs(b))
-            bad = np.where(on, (lam < -epsilon / diagonal(A)) & (sides != "on"), (u < -epsilon) & (sides != "off"))
+            bad = np.where(on, (lam < -epsilon / diagonal(A)) & (sides != "on"),
+                           (u < -epsilon) & (sides in ("both", "on")))
             wrongs = np.flatnonzero(bad)
             if len(wrongs) == 0:
                 return lam
-            k = wrongs if everything else wrongs[0] if least else wrongs[-1]
+            k = wrongs if everything or sides == "drops all" else wrongs[0] if least else wrongs[-1]
             k = np.argmin(np.where(on, lam, u)) if most else k
             on[k] = ~on[k]
         if not gives_up:
@@ -776,6 +780,9 @@ def solve_lcp(A, b):
 wrong("9.8", "does not call check_independent")(murty(check=lambda A, b: None))
 wrong("9.8", "never lets a contact go that pushes once")(murty(sides="on"))
 wrong("9.8", "ends with all λ at 0, whatever b is")(murty(sides="off"))
+wrong("9.8", "starts with all contacts pushing, and lets none come back")(murty(sides="drops one"))
+wrong("9.8", "starts with all contacts pushing, lets all go at once that pull, and none come back")(
+    murty(sides="drops all"))
 wrong("9.8", "changes the most wrong contact first, which may go round in circles")(murty(most=True))
 wrong("9.8", "returns the last guess in place of giving up")(murty(gives_up=False))
 wrong("9.8", "names a residual of 0 when it gives up")(murty(residual=0.0))
@@ -906,7 +913,7 @@ def cone_residual(A, b, J, mu):
 wrong("9.9", "omits the friction")(natural(cone=lambda mu, J: 0.0))
 wrong("9.9", "does not limit the friction")(natural(cone=lambda mu, J: np.inf))
 wrong("9.9", "omits μ in the limit")(natural(cone=lambda mu, J: max(J, 0.0)))
-wrong("9.9", "compares an impulse with a velocity, without the diagonal of A")(natural(scaled=False))
+wrong("9.9", "returns an impulse: does not multiply by k_n and k_t")(natural(scaled=False))
 wrong("9.9", "measures the normals only")(natural(tangents=False))
 wrong("9.9", "measures the tangents only")(natural(normals=False))
 wrong("9.9", "limits the friction to one side only")(natural(two_sided=False))
@@ -2229,6 +2236,8 @@ edits("9.18", {
     "adds the hypotenuse": ("else x + y - h", "else x + y + h"),
     "has the slopes of the hypotenuse": ("1.0 - x / h, 1.0 - y / h", "x / h, y / h"),
     "exchanges the slopes": ("1.0 - x / h, 1.0 - y / h", "1.0 - y / h, 1.0 - x / h"),
+    "takes half of the slopes of the hypotenuse": ("1.0 - x / h, 1.0 - y / h", "1.0 - 0.5 * x / h, 1.0 - 0.5 * y / h"),
+    "takes twice the slopes of the hypotenuse": ("1.0 - x / h, 1.0 - y / h", "1.0 - 2.0 * x / h, 1.0 - 2.0 * y / h"),
     "omits the slopes of the legs' sum at (0, 0)": ("return 0.0, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5)",
                                                     "return 0.0, -np.sqrt(0.5), -np.sqrt(0.5)"),
     "has slopes of 1 at (0, 0)": ("return 0.0, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5)", "return 0.0, 1.0, 1.0"),

@@ -76,6 +76,10 @@ edit("7.2", "takes the smaller of the two in place of the larger", "np.maximum",
 edit("7.2", "drops both minus signs", "-stiffness * phi - damping * v_n", "stiffness * phi + damping * v_n")
 edit("7.2", "limits the spring, not the sum",
      "np.maximum(0.0, -stiffness * phi - damping * v_n)", "np.maximum(0.0, -stiffness * phi) - damping * v_n")
+edit("7.2", "omits the damper for a body that leaves",
+     "np.maximum(0.0, -stiffness * phi - damping * v_n)",
+     "np.maximum(0.0, -stiffness * phi) + np.maximum(0.0, -damping * v_n)")
+edit("7.2", "omits the damper for a body that approaches", "damping * v_n", "damping * np.maximum(0.0, v_n)")
 
 
 # 7.3 ------------------------------------------------------------------------------------------------------------
@@ -107,6 +111,8 @@ edit("7.3", "multiplies ω by the arm itself, not by its perpendicular",
      "a.omega * np.array([-r_a[1], r_a[0]])", "a.omega * r_a")
 edit("7.3", "exchanges the components of the arm without a sign",
      "np.array([-r_a[1], r_a[0]])", "np.array([r_a[1], r_a[0]])")
+edit("7.3", "uses the arm of a for both bodies", "np.array([-r_b[1], r_b[0]])", "np.array([-r_a[1], r_a[0]])")
+edit("7.3", "uses the arm of b for both bodies", "np.array([-r_a[1], r_a[0]])", "np.array([-r_b[1], r_b[0]])")
 
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
@@ -143,6 +149,8 @@ edit("7.4", "returns the impulse for separating bodies only", "u_n >= 0.0", "u_n
 edit("7.4", "uses e in place of 1 + e", "(1.0 + e)", "e")
 edit("7.4", "forgets the effective inverse mass", " / k_n", "")
 edit("7.4", "returns the velocity after the impact", "-(1.0 + e) * u_n / k_n", "-e * u_n")
+edit("7.4", "takes the size of the impulse, and so pushes bodies that separate",
+     "0.0 if u_n >= 0.0 else -(1.0 + e) * u_n / k_n", "abs((1.0 + e) * u_n / k_n)")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
@@ -198,6 +206,10 @@ edit("7.5", "exchanges the inertias of the two bodies",
      "lever_a**2 * a.inv_inertia + lever_b**2 * b.inv_inertia",
      "lever_a**2 * b.inv_inertia + lever_b**2 * a.inv_inertia")
 edit("7.5", "subtracts the rotation of b", "+ lever_b**2 * b.inv_inertia", "- lever_b**2 * b.inv_inertia")
+edit("7.5", "subtracts the mass and the rotation of b",
+     "b.inv_mass + lever_a**2 * a.inv_inertia + lever_b**2 * b.inv_inertia",
+     "lever_a**2 * a.inv_inertia - (b.inv_mass + lever_b**2 * b.inv_inertia)")
+edit("7.5", "subtracts the mass of b", "a.inv_mass + b.inv_mass", "a.inv_mass - b.inv_mass")
 edit("7.5", "uses the length of the arm in place of r × n",
      "cross_2d(r_a, n), cross_2d(r_b, n)", "np.hypot(r_a[0], r_a[1]), np.hypot(r_b[0], r_b[1])")
 edit("7.7", "omits the rotation of both bodies", "+ n @ turn_a + n @ turn_b", "")
@@ -231,6 +243,8 @@ edit("7.6", "does not move a body that cannot rotate", "body.inv_mass * J", "(bo
 edit("7.6", "subtracts the impulse", "body.v + body.inv_mass * J", "body.v - body.inv_mass * J")
 edit("7.6", "forgets the mass", "body.inv_mass * J", "J")
 edit("7.6", "uses r · J in place of r × J", "cross_2d(r, J)", "(r @ J)")
+edit("7.6", "uses the lengths of r and J in place of r × J", "cross_2d(r, J)", "np.sqrt((r @ r) * (J @ J))")
+edit("7.6", "drops the sign of r × J", "cross_2d(r, J)", "abs(cross_2d(r, J))")
 edit("7.6", "forgets the inertia", "body.inv_inertia * cross_2d", "cross_2d")
 edit("7.6", "uses the inverse mass for the rotation", "body.inv_inertia * cross_2d", "body.inv_mass * cross_2d")
 edit("7.6", "uses the inverse inertia for the velocity", "body.inv_mass * J", "body.inv_inertia * J")
@@ -310,8 +324,8 @@ def cone(check=True, parts=True, enough=lambda u_sep: u_sep, goal=lambda u_sep: 
         length = np.linalg.norm(J_t)
         if sticks(length, J @ n, mu):
             return J
-        if clamp == "cut":                                               # the stick's normal impulse, friction cut down
-            return (J @ n) * n + mu * max(0.0, J @ n) / length * J_t
+        if clamp != "rim":                                               # the stick's normal impulse, friction cut down
+            return (J @ n) * n + mu * (J @ n if clamp == "cut, or turned round" else max(0.0, J @ n)) / length * J_t
         slip = tangential(u, n)
         t = J_t / length if side == "stick" else -slip / max(np.linalg.norm(slip), 1e-300)
         d = n + rim(mu) * t if mu < 1e9 else t
@@ -327,6 +341,7 @@ wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
 wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
 wrong("7.10", "directs friction against the slip before the impact")(cone(side="slip"))
 wrong("7.10", "keeps the normal impulse of sticking")(cone(clamp="cut"))
+wrong("7.10", "keeps the normal impulse of sticking")(cone(clamp="cut, or turned round"))
 wrong("7.10", "pulls where sticking would need a pull")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
 wrong("7.10", "compares all of the impulse with the cone")(
     cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
@@ -394,6 +409,8 @@ edit("7.11", "forgets K in the second term", "J @ times(K, J)", "J @ J")
 edit("7.11", "subtracts the second term", "J @ u + 0.5", "J @ u - 0.5")
 edit("7.11", "halves the first term, too", "J @ u +", "0.5 * (J @ u) +")
 edit("7.11", "uses K⁻¹ in place of K", "times(K, J)", "np.linalg.solve(K, J)")
+edit("7.11", "takes the change of ½ u², without the masses", "J @ u + 0.5 * (J @ times(K, J))",
+     "0.5 * ((u + times(K, J)) @ (u + times(K, J)) - u @ u)")
 
 
 # 7.12 -----------------------------------------------------------------------------------------------------------
@@ -602,6 +619,8 @@ def position_projection_step(acceleration, t, x, v, dt, p):
 
 edit("7.15", "exchanges the signs of the test: corrects outside", "phi < 0.0", "phi > 0.0")
 edit("7.15", "moves the ball back by half of the depth", "x = x - phi", "x = x - 0.5 * phi")
+edit("7.15", "reflects the position with the restitution, too", "x = x - phi", "x = x - (1.0 + p.e) * phi")
+edit("7.15", "mirrors the position at the plane", "x = x - phi", "x = x - 2.0 * phi")
 edit("7.15", "subtracts the acceleration", "v = v + dt", "v = v - dt")
 edit("7.15", "reverses the normal", "kinematic_response(v, p.n, p.e)", "kinematic_response(v, -p.n, p.e)")
 edit("7.15", "forgets dt in the position", "x = x + dt * v", "x = x + v")
@@ -687,6 +706,8 @@ def backtracking_step(acceleration, t, x, v, dt, p):
         if impacts == worked.MAX_IMPACTS:
             raise Diverged("impacts in a step of dt [s]", dt, "take a smaller one")
 edit("7.16", "adds the time of flight to what is left", "left -= tau", "left += 0.0 * tau")
+edit("7.16", "takes only the last flight off the step", "left -= tau", "left = dt - tau")
+edit("7.16", "takes only the last flight off the step", "left -= tau", "left = dt - tau if tau < left else 0.0")
 edit("7.16", "flies for the whole rest at once", "free_flight(x, v, a, tau)", "free_flight(x, v, a, left)")
 edit("7.16", "looks for the impact within dt, not within the time that is left", "a @ p.n, left)", "a @ p.n, dt)")
 edit("7.16", "does not reflect the ball", "v = kinematic_response(v, p.n, p.e)", "pass")

@@ -1838,7 +1838,13 @@ edit("11.17", "forgets that an arm with a long link has a hole in its reach",
 edit("11.17", "forgets the rim of the reach", "np.maximum(away - reach, hole - away)", "hole - away")
 edit("11.17", "returns a negative distance within reach",
      "np.maximum(0.0, np.maximum(away - reach, hole - away))", "np.maximum(away - reach, hole - away)")
-edit("11.17", "takes the first link off the hole once more", "2.0 * np.max(lengths)", "np.max(lengths)")
+edit("11.17", "takes the size of l₁ − (l₂ + … + lₙ) for the hole, as for two links",
+     "2.0 * np.max(lengths) - reach", "abs(2.0 * lengths[0] - reach)")
+edit("11.17", "takes the first link for the longest", "np.max(lengths) - reach", "lengths[0] - reach")
+edit("11.17", "takes the size of what the longest link leaves over, also where the other links are longer",
+     "2.0 * np.max(lengths) - reach", "abs(2.0 * np.max(lengths) - reach)")
+edit("11.17", "takes the difference of the longest and the shortest link for the hole",
+     "2.0 * np.max(lengths) - reach", "np.max(lengths) - np.min(lengths)")
 edit("11.17", "returns the distance from the base", "np.maximum(0.0, np.maximum(away - reach, hole - away))", "away")
 edit("11.17", "takes the longest link as the reach", "reach, away = np.sum(lengths)", "reach, away = np.max(lengths)")
 

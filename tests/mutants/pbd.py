@@ -50,6 +50,10 @@ edit("8.1", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
 edit("8.1", "forgets the rest length", "length - rest", "length")
 GRADIENT_OVER_REST_LENGTH = edit("8.1", "divides the gradient by the rest length", "r / length", "r / rest")
 edit("8.1", "takes the size of the extension", "length - rest", "abs(length - rest)")
+edit("8.1", "uses half of the squares of the lengths, and their gradient", "return length - rest, r / length",
+     "return 0.5 * (length * length - rest * rest), r")
+edit("8.1", "uses the squares of the lengths, and their gradient", "return length - rest, r / length",
+     "return length * length - rest * rest, 2.0 * r")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
@@ -234,6 +238,8 @@ edit("8.5", "takes the velocity with the wrong sign", "(new - x) / dt", "(x - ne
 edit("8.5", "replaces the positions by their change", "new = new + change", "new = change")
 edit("8.5", "subtracts the change", "new = new + change", "new = new - change")
 edit("8.5", "takes the change of velocity from the prediction", "(new - x) / dt", "(new - goal) / dt")
+edit("8.5", "adds the correction over dt to the old velocity, without the acceleration", "(new - x) / dt",
+     "v + (new - goal) / dt")
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
@@ -325,11 +331,13 @@ def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / d
 right("8.7", "with a copy")(dynamics())
 edit("8.7", "starts from the old positions and forgets the prediction",
      "new = predict(acceleration, t, x, v, dt, network)", "new = x")
-wrong("8.7", "makes one sweep only")(dynamics(sweeps=lambda n: 1))
+wrong("8.7", "keeps the result of one sweep only")(dynamics(sweeps=lambda n: 1))
 wrong("8.7", "makes one sweep too many")(dynamics(sweeps=lambda n: n + 1))
 wrong("8.7", "makes no sweep")(dynamics(sweeps=lambda n: 0))
 wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
+wrong("8.7", "adds the correction over dt to the old velocity, without the acceleration")(
+    dynamics(speed=lambda new, x, goal, v, dt: v + (new - goal) / dt))
 wrong("8.7", "omits the acceleration in the prediction")(dynamics(begin="x"))
 edit("8.7", "sets the velocity of immovable points to zero",
      "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
@@ -616,6 +624,8 @@ wrong("8.13", "uses α dt² in place of α/dt²")(soft_sweep(power=-2))
 wrong("8.13", "uses α/dt in place of α/dt²")(soft_sweep(power=1))
 wrong("8.13", "uses half of the inverse masses")(soft_sweep(weight=0.5))
 edit("8.13", "never pushes, as a thread", "length - network.rest[s]", "max(0.0, length - network.rest[s])")
+edit("8.13", "skips links that are too short, as a thread", "change = compliant",
+     "if length <= network.rest[s]: continue\n        change = compliant")
 edit("8.13", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.13", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
 edit("8.13", "never pushes where α = 0", "length - network.rest[s]",
@@ -768,7 +778,7 @@ def rate(order=False, scale=2.0, by_w=True, per_step=True, sign=1.0, back=True):
 right("8.17", "with a conjugate by signs")(rate())
 wrong("8.17", "returns the rate in body coordinates")(rate(order=True))
 wrong("8.17", "omits the factor 2")(rate(scale=1.0))
-wrong("8.17", "fails where q and −q describe the same rotation")(rate(by_w=False))
+wrong("8.17", "does not divide by the scalar part, not even by its sign")(rate(by_w=False))
 wrong("8.17", "does not divide by dt")(rate(per_step=False))
 wrong("8.17", "returns the rate of the reversed rotation")(rate(sign=-1.0))
 wrong("8.17", "multiplies the two quaternions without conjugating one")(rate(back=False))
@@ -787,7 +797,10 @@ def turning_rate(q_old, q_new, dt):
     return 2.0 * np.tan(np.arctan2(s, turn[0])) / dt * turn[1:] / s if s > 0.0 else np.zeros(3)
 
 
-WITHOUT_SCALAR_PART = edit("8.17", "does not divide by the scalar part", "2.0 / (turn[0] * dt)", "2.0 / dt")
+edit("8.17", "takes only the sign of the scalar part, and does not divide by its size", "2.0 / (turn[0] * dt)",
+     "2.0 / (np.copysign(1.0, turn[0]) * dt)")
+WITHOUT_SCALAR_PART = edit("8.17", "does not divide by the scalar part, not even by its sign",
+                           "2.0 / (turn[0] * dt)", "2.0 / dt")
 edit("8.17", "multiplies by dt", "2.0 / (turn[0] * dt)", "2.0 * dt / turn[0]")
 edit("8.17", "takes half in place of twice", "2.0 / (turn[0]", "0.5 / (turn[0]")
 edit("8.17", "takes the difference of the quaternions",
@@ -796,24 +809,30 @@ edit("8.17", "takes the difference of the quaternions",
 
 # 8.18 -----------------------------------------------------------------------------------------------------------
 @variants
-def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=False):
+def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=False, slope=lambda own, face: own):
     def volume_gradient(x, faces):
         corners = x[faces[:, list(order)]]
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
         gradient = np.zeros_like(x)
         for k, (p, r) in enumerate(((b, c), (c, a), (a, b))):
             if k == 0 or not only_first:
-                np.add.at(gradient, faces[:, order[k]], np.cross(p, r) / slope_share)
+                np.add.at(gradient, faces[:, order[k]], slope(np.cross(p, r), np.cross(b - a, c - a)) / slope_share)
         return sign * np.sum(a * np.cross(b, c)) / share, sign * gradient
     return volume_gradient
 
 
 right("8.18", "all faces at once")(enclosed())
 right("8.18", "from another corner")(enclosed(order=(1, 2, 0)))
+right("8.18", "a third of the area vector of each face")(enclosed(slope=lambda own, face: face))
 wrong("8.18", "returns volume and gradient with the opposite sign")(enclosed(order=(0, 2, 1)))
 wrong("8.18", "divides the volume by 3 in place of 6")(enclosed(share=3.0))
 wrong("8.18", "divides the gradient by 3 in place of 6")(enclosed(slope_share=3.0))
 wrong("8.18", "computes the gradient of the first corner of each face only")(enclosed(only_first=True))
+wrong("8.18", "gives each corner the whole area vector of its faces, not a third of it")(
+    enclosed(slope=lambda own, face: 3.0 * face))
+wrong("8.18", "gives each corner half of the area vector of its faces, not a third of it")(
+    enclosed(slope=lambda own, face: 1.5 * face))
+edit("8.18", "counts every tetrahedron positive", "V += dot(a, across)", "V += abs(dot(a, across))")
 edit("8.18", "drops the sign of the volume", "return V, gradient", "return abs(V), gradient")
 edit("8.18", "drops the sign of volume and gradient", "return V, gradient", "return abs(V), np.sign(V) * gradient")
 edit("8.18", "keeps only the last face of each corner",
@@ -844,6 +863,10 @@ edit("8.19", "takes the speed in place of the angular velocity", "v / length", "
 edit("8.19", "counts a step as a second", "2.0 * omega * omega * dt * t", "2.0 * omega * omega * dt * dt * t")
 edit("8.19", "says that the speed falls exponentially",
      "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.exp(-omega * omega * dt * t)")
+edit("8.19", "says that the speed falls exponentially",
+     "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.exp(-0.5 * omega * omega * dt * t)")
+edit("8.19", "multiplies the speed in every step by the cosine of the first angle",
+     "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.cos(omega * dt) ** (t / dt)")
 edit("8.19", "says that the speed grows", "1.0 + 2.0", "1.0 - 2.0")
 
 

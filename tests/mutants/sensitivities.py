@@ -53,6 +53,9 @@ edit("12.2", "takes the truncation error as h² f‴/3", "3.0 * round_off", "1.5
 edit("12.2", "takes no root", "** (1.0 / 3.0)", "")
 edit("12.2", "needs a positive f", "np.abs(value)", "max(value, 0.0)")
 edit("12.2", "needs a positive third derivative", "/ np.abs(third)", "/ max(third, 1e-30)")
+for root in ("np.cbrt(3.0 * round_off * value / third)", "(3.0 * round_off * value / third) ** (1.0 / 3.0)"):
+    edit("12.2", "takes f and f‴ with their signs",
+         "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)", root)
 edit("12.2", "returns 0 where the third derivative is 0", "return np.inf", "return 0.0")
 edit("12.2", "returns 1 where the third derivative is 0", "return np.inf", "return 1.0")
 edit("12.2", "always uses the round-off of floats", "3.0 * round_off", "3.0 * 2.2e-16")
@@ -99,6 +102,10 @@ edit("12.4", "leaves out the derivative with respect to v", " + a_v @ dv", "")
 edit("12.4", "leaves out the derivative with respect to x", "a_x @ dx + ", "")
 edit("12.4", "takes the derivatives at the new state", "v_new = v + dt * acceleration(t, x, v, p)",
      "v_new = v + dt * acceleration(t, x, v, p); a_x, a_v, a_s = derivatives(t, x + dt * v_new, v_new, p)")
+edit("12.4", "takes the derivatives at the new velocity", "v_new = v + dt * acceleration(t, x, v, p)",
+     "v_new = v + dt * acceleration(t, x, v, p); a_x, a_v, a_s = derivatives(t, x, v_new, p)")
+edit("12.4", "takes the derivatives at the new position", "v_new = v + dt * acceleration(t, x, v, p)",
+     "v_new = v + dt * acceleration(t, x, v, p); a_x, a_v, a_s = derivatives(t, x + dt * v_new, v, p)")
 edit("12.4", "takes the derivatives at the time t + dt", "derivatives(t, x, v, p)", "derivatives(t + dt, x, v, p)")
 edit("12.4", "transposes a_x", "a_x @ dx", "a_x.T @ dx")
 edit("12.4", "transposes a_v", "a_v @ dv", "a_v.T @ dv")
@@ -241,6 +248,7 @@ edit("12.8", "forgets the part along the plane: R_v = −e 1", "np.eye(v.size) -
 edit("12.8", "takes e in place of 1 + e in R_v", "(1.0 + e) * np.outer(n, n)", "e * np.outer(n, n)")
 edit("12.8", "takes 1 − e in place of 1 + e in R_v", "(1.0 + e) * np.outer(n, n)", "(1.0 - e) * np.outer(n, n)")
 edit("12.8", "mirrors without restitution in R_v", "(1.0 + e) * np.outer(n, n)", "2.0 * np.outer(n, n)")
+edit("12.8", "takes the number n · n in place of the matrix n nᵀ", "np.outer(n, n)", "(n @ n)")
 edit("12.8", "forgets that e may be an input", "-(v @ n) * np.outer(n, e_s)", "0.0 * np.outer(n, e_s)")
 edit("12.8", "takes R_s with the wrong sign", "-(v @ n) * np.outer(n, e_s)", "(v @ n) * np.outer(n, e_s)")
 edit("12.8", "moves the whole velocity with e, not only its normal part", "-(v @ n) * np.outer(n, e_s)",
@@ -294,8 +302,11 @@ edit("12.9", "forgets h at the gradient", "h * (gradient @ direction)", "(gradie
 edit("12.9", "goes along the gradient", "f(s + h * direction, p)", "f(s + h * gradient, p)")
 edit("12.9", "does not take the size of the remainder", "np.abs(", "(")
 edit("12.9", "divides the remainder by h", "remainder = np.abs(", "remainder = 1.0 / h * np.abs(")
-edit("12.9", "takes the logarithm of the step for every second one only", "(np.log(steps[1:]) - np.log(steps[:-1]))",
-     "np.log(2.0)")
+edit("12.9", "takes every step for half of the one before", "(np.log(steps[1:]) - np.log(steps[:-1]))",
+     "-np.log(2.0)")
+edit("12.9", "takes every step for a tenth of the one before", "(np.log(steps[1:]) - np.log(steps[:-1]))",
+     "-np.log(10.0)")
+edit("12.9", "takes every step for twice the one before", "(np.log(steps[1:]) - np.log(steps[:-1]))", "np.log(2.0)")
 edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.log(steps[:-1]))", "np.log(steps[1:])")
 
 
@@ -303,20 +314,20 @@ edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.lo
 @variants
 def aiming(step=np.linalg.solve, sign=-1.0, halves=True, smaller=lambda new, old: new < old, size=np.linalg.norm,
            gives_up=True, check=worked.checked_search, first=True, enough=lambda miss, tolerance: miss <= tolerance,
-           before=False):
+           before=False, unsure=lambda miss: False):
     """Newton's method that throws again until a halved step is better."""
     def aim(miss, s, tolerance, most, p):
         s, tolerance, most = check(s, tolerance, most)
         r, J = miss(s, p)
         misses = [size(r)]
         for _ in range(most):
-            if enough(misses[-1], tolerance) and not before:
+            if (enough(misses[-1], tolerance) or unsure(misses[-1])) and not before:
                 break
             change, s_old, J_old = step(J, r), s, J
             for _ in range(41 if halves else 1):
                 s = s_old + sign * change
                 r, J = miss(s, p)
-                if not halves or smaller(size(r), misses[-1]):
+                if not halves or smaller(size(r), misses[-1]) or unsure(size(r)):
                     break
                 change = 0.5 * change
             else:
@@ -325,7 +336,7 @@ def aiming(step=np.linalg.solve, sign=-1.0, halves=True, smaller=lambda new, old
             if enough(misses[-1], tolerance) and before:
                 break
             J = J_old if J is None else J
-        if not misses[-1] <= tolerance and gives_up:
+        if not misses[-1] <= tolerance and gives_up and not unsure(misses[-1]):
             raise Diverged("miss of the last throw", misses[-1], "begin elsewhere")
         return s, np.array(misses if first else misses[1:])
     return aim
@@ -348,11 +359,14 @@ wrongs("12.10", aiming, {
     "takes a step before it looks": {"before": True},
     "halves the step where a throw misses by as much as before or more, but accepts NaN":
         {"smaller": lambda new, old: not new >= old},
+    "takes a NaN for a smaller miss, and for a hit": {"unsure": np.isnan},
     "checks nothing": {"check": lambda s, tolerance, most: (s, tolerance, max(most, 0))},
     "stops within ten times the tolerance": {"enough": lambda miss, tolerance: miss <= 10.0 * tolerance},
 })
 edit("12.10", "keeps the Jacobian of the first throw", "step = solve(J, r)",
      "step = solve(miss(s, p)[1] if i == 0 else first, r); first = miss(s, p)[1] if i == 0 else first")
+edit("12.10", "takes the halved step from where the long step ended", "step = 0.5 * step",
+     "s, step = s - step, 0.5 * step")
 
 
 # 12.11 ----------------------------------------------------------------------------------------------------------
@@ -371,7 +385,7 @@ edit("12.11", "multiplies by the rate", " / rate", " * rate")
 edit("12.11", "divides by the square root of the rate", " / rate", " / np.sqrt(rate)")
 edit("12.11", "forgets the rate", " / rate", "")
 edit("12.11", "lets the error grow in proportion to the time", "np.arccosh(allowed / error)", "(allowed / error)")
-edit("12.11", "exchanges both errors", "np.arccosh(allowed / error)", "-np.log(error / allowed)")
+edit("12.11", "exchanges both errors", "allowed / error)", "error / allowed)")
 edit("12.11", "takes the constant acceleration at the start", "np.arccosh(allowed / error)",
      "np.sqrt(2.0 * (allowed / error - 1.0))")
 edit("12.11", "returns a negative time where the error is too large", "return 0.0",

@@ -635,6 +635,8 @@ for number, name, dimension, moved, apply, sweep in (
            f"{first}; PileState = lambda x_, *rest: type(state)(x + dt * before, *rest)"),
           ("rotates with the angular velocities before contact", loads,
            f"{first}; PileState = lambda x_, q_, *rest: type(state)(x_, {spin('omega', 'spun')}, *rest)"),
+          ("moves and rotates with the velocities before contact", loads,
+           f"{loads}; {beside}; PileState = lambda x_, q_, *rest: type(state)(y, r, *rest)"),
           ("moves and rotates with the means of old and new velocities", f"x + dt * v, {moved}",
            f"x + 0.5 * dt * (v + state.v), {spin('omega', '(0.5 * omega + 0.5 * state.omega)')}"),
           ("forgets dt beside v", "x + dt * v", "x + v"),
@@ -1550,6 +1552,9 @@ edit("10.17", "lets a part of a step count",
      "np.ceil((gap - margin) / (speed * dt))", "(gap - margin) / (speed * dt)")
 edit("10.17", "takes one step, wherever the body begins",
      "np.maximum(0.0, np.ceil((gap - margin) / (speed * dt)))", "1.0 + 0.0 * margin")
+edit("10.17", "takes the worst case, one whole step less the margin, whatever the gap is", "steps * speed * dt - gap",
+     "speed * dt - margin")
+edit("10.17", "takes one whole step for the depth, whatever the gap is", "steps * speed * dt - gap", "speed * dt")
 
 
 # 10.18 --------------------------------------------------------------------------------------------------------------
