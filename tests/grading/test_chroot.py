@@ -104,6 +104,7 @@ sys.exit(sandbox.broken("chroot") or 0)
 """
 
 
+@pytest.mark.long
 def test_it_works_where_the_kernel_knows_few_users():
     """As in a container of Docker with its own users, or of Podman without root."""
     done = subprocess.run([sys.executable, "-c", IN_A_CONTAINER], cwd=modules.ROOT, capture_output=True, text=True)

@@ -83,6 +83,7 @@ def test_a_run_that_is_ended_takes_its_children_and_its_files_along(number, run,
     assert number == signal.SIGKILL or "the same command goes on from there" in " ".join(said.split())
 
 
+@pytest.mark.long
 def test_a_grading_process_that_is_killed_is_replaced(run, tmp_path):
     victim = next(child for child in called("spawn_main", run) if child.children())
     victim.kill()

@@ -35,6 +35,7 @@ def files(repository):
     return shown
 
 
+@pytest.mark.long
 def test_its_points_go_to_right_answers_only(repository, files, tmp_path):
     sandbox.for_tests(pytest.skip, pytest.fail)
     worked = files["solutions/gliding.py"]

@@ -42,10 +42,11 @@ def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(le
         for load in (draw(1.0, 20.0), 1e-6):
             axes = frame(draw, d)
             n, pull = axes[0], along_surface(draw, axes, draw(1.0, 20.0))
-            close("normal force [N]", lesson.normal_force(pull - load * n, n), load, ROUND_OFF,
-                  given=f"load {load} N, n = {n}")
+            # The lift first: without the minus sign a formula returns the lift here, and 0 for a load.
             close("normal force when F lifts [N]", lesson.normal_force(pull + load * n, n), 0.0, 0.0,
                   given=f"lift {load} N, n = {n}")
+            close("normal force [N]", lesson.normal_force(pull - load * n, n), load, ROUND_OFF,
+                  given=f"load {load} N, n = {n}")
 
 
 @exercise("3.2", points=0.25,

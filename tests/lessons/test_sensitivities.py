@@ -607,6 +607,10 @@ def test_a_step_that_goes_too_far_is_halved(lesson, draw):
         given = f"arctan((s − {middle})/{width}) from {start}"
         close("root of an arctangent", s, [middle], ROUND_OFF, given=given)
         truth("every miss is smaller than the one before", bool(np.all(np.diff(misses) < 0.0)), True, given=given)
+        most = len(misses) - 1
+        s, _ = lesson.aim(bend, np.array([start]), 1e-12, most, np.array([middle, width]))
+        close("root of an arctangent with just enough iterations: a halving is none", s, [middle], ROUND_OFF,
+              given=f"{given}, at most {most} iterations")
     root, far = draw(1.0, 3.0), draw(5.0, 50.0)
     s, _ = lesson.aim(logarithm, np.array([far * root]), 1e-12, 40, np.array([root]))
     close("root of a logarithm, where throws beyond zero never arrive", s, [root], ROUND_OFF,

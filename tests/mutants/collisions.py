@@ -418,7 +418,7 @@ edit("6.9", "adds the move to the width: the upper corner from the lower one",
 
 # 6.10 -----------------------------------------------------------------------------------------------------------
 @variants
-def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: low):
+def brute(strict=False, first=lambda i: i + 1, turned=False):
     def all_pairs(low, high):
         worked.check_boxes(low, high)
         n, found = len(low), []
@@ -435,7 +435,10 @@ def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: lo
 right("6.10", "with NumPy's comparison")(brute())
 wrong("6.10", "omits boxes that share a face")(brute(strict=True))
 wrong("6.10", "pairs each box with itself")(brute(first=lambda i: i))
-wrong("6.10", "returns each pair twice")(brute(first=lambda i: 0))
+wrong("6.10", "pairs each box with all, and so with itself")(brute(first=lambda i: 0))
+edit("6.10", "returns each pair in both orders", "found.append((i, j))", "found += [(i, j), (j, i)]")
+edit("6.10", "returns each pair in both orders", "for j in range(i + 1, len(low)):",
+     "for j in [j for j in range(len(low)) if j != i]:")
 wrong("6.10", "returns the larger number first")(brute(turned=True))
 edit("6.10", "tests neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
 edit("6.10", "accepts invalid boxes", "check_boxes(low, high)", "pass")

@@ -72,6 +72,8 @@ edit("3.2", "forgets the minus sign while it holds", "return -F_t", "return F_t"
 edit("3.2", "forgets μ", "cone_radius(mu_s, normal_force(F, n))", "normal_force(F, n)")
 edit("3.2", "compares the squared force with the limit", "np.sqrt(F_t @ F_t)", "F_t @ F_t")
 edit("3.2", "compares the squared force with the limit", "size <= limit", "size * size <= limit")
+edit("3.2", "compares the size of F, not that of its tangential part, with the limit", "size <= limit",
+     "np.sqrt(F @ F) <= limit")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -101,6 +103,8 @@ edit("3.3", "reverses the normal", "normal_force(F, n)", "normal_force(F, -n)")
 edit("3.3", "uses the normal velocity as the load", "normal_force(F, n)", "normal_force(v, n)")
 edit("3.3", "limits the friction to the force along the surface, as at rest", "cone_radius(mu_k, normal_force(F, n))",
      "min(cone_radius(mu_k, normal_force(F, n)), np.sqrt(tangential(F, n) @ tangential(F, n)))")
+edit("3.3", "divides by the speed of the whole motion, not by that along the surface", "-limit / speed",
+     "-limit / np.sqrt(v @ v)")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -139,6 +143,7 @@ edit("3.4", "reverses the difference: friction minus gravity",
      "np.sin(theta) - cone_radius(mu_k, np.cos(theta))", "cone_radius(mu_k, np.cos(theta)) - np.sin(theta)")
 edit("3.4", "compares the angle itself with μ",
      "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))", "theta <= cone_radius(mu_s, 1.0)")
+edit("3.4", "takes the static coefficient for a block that slides", "cone_radius(mu_k", "cone_radius(mu_s")
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
@@ -242,6 +247,8 @@ wrong("3.7", "uses the static coefficient in motion")(block_step(moving="mu_s"))
 wrong("3.7", "does not test whether static friction holds the block")(block_step(rest=False))
 wrong("3.7", "takes the acceleration at t + dt")(block_step(late=1.0))
 wrong("3.7", "moves with the old velocity")(block_step(old=True))
+edit("3.7", "moves with the velocity before friction", "v = v + friction_impulse(",
+     "x = x - dt * friction_impulse(v, 1.0, dt * a_n, p.mu_k); v = v + friction_impulse(")
 wrong("3.7", "applies the full friction for the whole step, which can reverse the block")(block_step(speed=0.0))
 wrong("3.7", "omits dt in the impulse of friction")(block_step(once=False))
 wrong("3.7", "directs friction against the old velocity")(block_step(against="old"))

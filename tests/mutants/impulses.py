@@ -248,6 +248,9 @@ edit("7.6", "drops the sign of r × J", "cross_2d(r, J)", "abs(cross_2d(r, J))")
 edit("7.6", "forgets the inertia", "body.inv_inertia * cross_2d", "cross_2d")
 edit("7.6", "uses the inverse mass for the rotation", "body.inv_inertia * cross_2d", "body.inv_mass * cross_2d")
 edit("7.6", "uses the inverse inertia for the velocity", "body.inv_mass * J", "body.inv_inertia * J")
+edit("7.6", "divides by the inverse mass and by the inverse inertia", "return BodyState2D(",
+     "v = body.v + (J / body.inv_mass if body.inv_mass else 0.0 * J); "
+     "omega = body.omega + (cross_2d(r, J) / body.inv_inertia if body.inv_inertia else 0.0); return BodyState2D(")
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
@@ -462,6 +465,8 @@ edit("7.12", "subtracts the velocity", "phi / dt + u_n", "phi / dt - u_n")
 edit("7.12", "omits the velocity", "phi / dt + u_n", "phi / dt")
 edit("7.12", "adds the gap itself, without dt", "phi / dt + u_n", "phi + u_n")
 edit("7.12", "takes the smaller of the two in place of the larger", "np.maximum(0.0, -", "np.minimum(0.0, -")
+edit("7.12", "stops the approach at once wherever the gap would close", "np.maximum(0.0, -(phi / dt + u_n) / k_n)",
+     "-u_n / k_n if phi + dt * u_n < 0.0 else 0.0")
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------

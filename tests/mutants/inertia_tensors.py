@@ -82,6 +82,7 @@ edit("4.3", "keeps the last point only", "L += m", "L = m")
 edit("4.3", "divides by the mass", "L += m[n] * c", "L += 1.0 / m[n] * c")
 edit("4.3", "takes the dot product in every component", "cross(x[n] - about, v[n])", "(x[n] - about) * v[n]")
 edit("4.3", "uses the velocities relative to their mean", "v[n])", "v[n] - np.sum(v, axis=0) / m.size)")
+edit("4.3", "subtracts the place of the reference point from the velocities, too", "v[n])", "v[n] - about)")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -419,6 +420,7 @@ edit("4.13", "returns the entries of the diagonal as moments", "return moments, 
 edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
 edit("4.13", "tests the determinant the other way", "< 0.0", "> 0.0")
 edit("4.13", "returns the moments without their signs", "return moments, R", "return np.abs(moments), R")
+edit("4.13", "turns the last row round, not the last column", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
@@ -524,6 +526,7 @@ edit("4.15", "forgets the corner a in the sum", "s = a[i] + b[i]", "s = b[i]")
 WITHOUT_CORNER_PRODUCTS = edit("4.15", "forgets s sᵀ in the second integrals", "+ s * (a[j] + b[j] + c[j]))", ")")
 edit("4.15", "takes b × a in place of b × c", "b[1] * c[2] - b[2] * c[1]", "b[1] * a[2] - b[2] * a[1]")
 edit("4.15", "fills the lower half of the second integrals only", "second[j, i] = second[i, j]", "pass")
+edit("4.15", "takes the mean of the corners in place of their sum for ∫x dV", "w / 24.0 * s", "w / 72.0 * s")
 
 
 # 4.16 -----------------------------------------------------------------------------------------------------------

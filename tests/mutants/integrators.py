@@ -33,6 +33,8 @@ edit("1.1", "returns the velocity first",
      "x + dt * v, v + dt * acceleration(t, x, v, p)", "v + dt * acceleration(t, x, v, p), x + dt * v")
 edit("1.1", "moves the position with the mean of the old and the new velocity",
      "x + dt * v,", "x + dt * (v + 0.5 * dt * acceleration(t, x, v, p)),")
+edit("1.1", "takes the acceleration at the new position and at time t + dt",
+     "acceleration(t, x, v, p)", "acceleration(t + dt, x + dt * v, v, p)")
 
 
 # 1.2 ------------------------------------------------------------------------------------------------------------
@@ -118,6 +120,8 @@ edit("1.3", "takes the second acceleration at the old velocity", "x + 0.5 * dt *
 edit("1.3", "takes the fourth acceleration at the third velocity", "dt * v3, v4, p", "dt * v3, v3, p")
 edit("1.3", "moves the position with the mean of the old and the new velocity", "v + 2.0 * v2 + 2.0 * v3 + v4",
      "3.0 * v + 3.0 * (v + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4))")
+edit("1.3", "takes all four accelerations at time t", "a1 = acceleration(t, x, v, p)",
+     "whenever, acceleration = acceleration, lambda _, *rest: whenever(t, *rest); a1 = acceleration(t, x, v, p)")
 
 
 # 1.4 ------------------------------------------------------------------------------------------------------------
@@ -249,6 +253,8 @@ edit("1.7", "forgets dt in the residual", "w - v - dt * acceleration", "w - v - 
 edit("1.7", "takes the acceleration at the old velocity", "x + dt * w, w, p)", "x + dt * w, v, p)")
 edit("1.7", "takes the acceleration at the position that the old velocity reaches",
      "x + dt * w, w, p)", "x + dt * v, w, p)")
+edit("1.7", "moves the position twice: evaluates the acceleration at x + 2 dt w",
+     "x + dt * w, w, p)", "x + 2.0 * dt * w, w, p)")
 
 
 # 1.8 ------------------------------------------------------------------------------------------------------------

@@ -851,6 +851,8 @@ wrongs("11.9", transposed, {
     "scales the old angles, too": {"done": lambda theta, change, arm: (1.0 - arm.gain) * theta + change},
 })
 edit("11.9", "limits each change to 0.2 rad", "arm.gain * (e @ J)", "np.clip(arm.gain * (e @ J), -0.2, 0.2)")
+edit("11.9", "always makes a step of one length: divides by the size of eᵀJ", "arm.gain * (e @ J)",
+     "arm.gain * (e @ J) / max(np.sqrt((e @ J) @ (e @ J)), 1e-300)")
 edit("11.9", "makes the step of the middle of the step", "return theta + arm.gain * (e @ J)",
      "e, J = task(theta + 0.5 * arm.gain * (e @ J), target, arm); return theta + arm.gain * (e @ J)")
 edit("11.9", "changes its input", "return theta + arm", "theta[:] = theta + arm.gain * (e @ J)\n    return theta; arm")
@@ -1742,6 +1744,8 @@ edit("11.3", "returns the angle of the short axis, to the other side", TURN, "0.
 edit("11.3", "takes the size of a − c in the angle", TURN, "0.5 * np.arctan2(2.0 * b, abs(a - c))")
 edit("11.3", "returns the root of a + c for the longer axis", "longer = np.sqrt(0.5 * (a + c) + np.sqrt(",
      "longer = np.sqrt((a + c) + 0.0 * np.sqrt(")
+edit("11.3", "takes the arctangent of the quotient, which knows no quadrant", TURN,
+     "0.5 * (np.arctan(2.0 * b / (a - c)) if a != c else 0.5 * np.pi)")
 edit("11.3", "normalises the columns of J", "a, b, c, squared",
      "J = J / np.maximum(np.linalg.norm(J, axis=0), 1e-300); a, b, c, squared")
 edit("11.4", "computes r² − a², which loses digits near the inner edge", "(r - least) * (r + least)",

@@ -314,7 +314,7 @@ edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.lo
 @variants
 def aiming(step=np.linalg.solve, sign=-1.0, halves=True, smaller=lambda new, old: new < old, size=np.linalg.norm,
            gives_up=True, check=worked.checked_search, first=True, enough=lambda miss, tolerance: miss <= tolerance,
-           before=False, unsure=lambda miss: False):
+           before=False, unsure=lambda miss: False, counts=False):
     """Newton's method that throws again until a halved step is better."""
     def aim(miss, s, tolerance, most, p):
         s, tolerance, most = check(s, tolerance, most)
@@ -330,10 +330,11 @@ def aiming(step=np.linalg.solve, sign=-1.0, halves=True, smaller=lambda new, old
                 if not halves or smaller(size(r), misses[-1]) or unsure(size(r)):
                     break
                 change = 0.5 * change
+                most -= counts
             else:
                 raise Diverged("miss of the last throw", misses[-1], "begin elsewhere")
             misses.append(size(r))
-            if enough(misses[-1], tolerance) and before:
+            if (enough(misses[-1], tolerance) and before) or len(misses) > most:
                 break
             J = J_old if J is None else J
         if not misses[-1] <= tolerance and gives_up and not unsure(misses[-1]):
@@ -360,6 +361,7 @@ wrongs("12.10", aiming, {
     "halves the step where a throw misses by as much as before or more, but accepts NaN":
         {"smaller": lambda new, old: not new >= old},
     "takes a NaN for a smaller miss, and for a hit": {"unsure": np.isnan},
+    "counts each halving as an iteration": {"counts": True},
     "checks nothing": {"check": lambda s, tolerance, most: (s, tolerance, max(most, 0))},
     "stops within ten times the tolerance": {"enough": lambda miss, tolerance: miss <= 10.0 * tolerance},
 })

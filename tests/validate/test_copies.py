@@ -76,6 +76,7 @@ def test_a_check_runs_where_its_notebook_was_told_to_look_and_says_which_folder_
     assert "Exercise 1.1: passed" in said and f"tested     {other / 'lessons'}" in said
 
 
+@pytest.mark.long
 def test_the_command_tests_the_lessons_of_the_copy_in_which_it_runs(other, tmp_path):
     script = os.path.join(os.path.dirname(sys.executable), "pytest")
     command = [script, "--of=lessons", "--exercise=1.1", "-p", "no:cacheprovider"]
@@ -122,6 +123,7 @@ print(*shown[1:], sep="\\n")
     assert "Exercise 1.2: passed" in said
 
 
+@pytest.mark.long
 def test_the_grading_tests_are_collected_where_there_are_no_processes():
     code = NO_PROCESSES + """
 import pytest

@@ -55,7 +55,8 @@ def test_a_measurement_that_failed_at_the_earlier_commit_is_named_and_one_that_f
         regression.compared(failing, lambda lesson: (0.4, 0.2), "springs")
 
 
-@pytest.mark.parametrize("name", regression.WORK)
+@pytest.mark.parametrize("name", [
+    pytest.param(name, marks=[pytest.mark.long] if name == "contact" else []) for name in regression.WORK])
 def test_what_is_timed_is_there(name):
     """One that a scene does not have would end the comparison."""
     assert callable(regression.WORK[name]())

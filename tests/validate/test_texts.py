@@ -54,6 +54,7 @@ def test_contributing_counts_the_seeded_faults_to_the_nearest_ten():
     assert f"inserts about {round(count, -1)} wrong lines" in TEXTS["CONTRIBUTING.md"]
 
 
+@pytest.mark.long
 def test_readme_counts_the_scenes_that_the_laws_of_contact_judge(scenes):
     judged = {name for name, scene in scenes.items() if any(r.laws for r in scene.runners)}
     ours = {name for name in judged if any(r.laws and not r.is_engine for r in scenes[name].runners)}
