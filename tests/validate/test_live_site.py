@@ -85,7 +85,7 @@ def test_another_pyodide_is_refused_with_the_name_of_its_file(tmp_path):
 def small_wheel(name):
     """The bytes of a wheel with a file of each package that is left out, and one that is kept."""
     unused = {"scipy": "scipy/stats/x.py", "matplotlib": "matplotlib/testing/x.py",
-              "pillow": "PIL/_webp.x.so", "pygments": "pygments/lexers/x.py", "ipython": "IPython/testing/x.py",
+              "pillow": "PIL/_webp.x.so", "pygments": "pygments/lexers/x.py", "ipython": "IPython/sphinxext/x.py",
               "python-dateutil": "dateutil/zoneinfo/x.py"}
     packed, paths = io.BytesIO(), [*unused.values(), "kept/x.py", "kept/x.pyx"]
     with zipfile.ZipFile(packed, "w") as archive:

@@ -26,7 +26,7 @@ VERSION = WANTED["info"]["version"]
 UNUSED = {                   # {package: files of its wheel that no lesson loads}; half of what a first visit would load
     "scipy": r"scipy/(misc|stats|interpolate|signal|io|cluster|ndimage|odr|fftpack|datasets|optimize/cython_optimize)/"
              r"|scipy/special/cython_special\.|.*/_test\w*\.cpython",
-    "ipython": r"IPython/(testing|sphinxext|terminal/pt_inputhooks)/",
+    "ipython": r"IPython/(testing/plugin|sphinxext)/",
     "matplotlib": r"matplotlib/mpl-data/(fonts/(afm|pdfcorefonts)|sample_data|images)/|mpl_toolkits/axisartist/"
                   r"|matplotlib/(testing|tests|sphinxext)/"
                   r"|.*/(DejaVu(Serif|SansMono-|Sans-BoldOblique)|STIXGeneral(Bol|Italic))"
