@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import pytest
 
@@ -29,6 +30,23 @@ def test_ratios_are_in_steps_of_the_engine():
     """A machine of half the speed doubles both times."""
     now, then = (lambda lesson: (0.4, 0.2)), (lambda lesson: (0.1, 0.1))
     assert regression.ratios(now, then, "springs") == [2.0] * regression.ROUNDS
+
+
+@pytest.mark.parametrize(("slow", "verdict"), [({0}, False), ({0, 1}, False), ({0, 1, 2}, True)])
+def test_a_slow_process_decides_nothing_and_a_slow_method_does(slow, verdict, monkeypatch):
+    """Processes of one method that differ by a fifth, and those of the other lessons, which begin only once."""
+    begun = []
+
+    @contextmanager
+    def server(folder):
+        begun.append(folder)
+        late = folder == ROOT and begun.count(ROOT) - 1 in slow
+        yield lambda lesson: (0.6 if late and lesson == "springs" else 0.5, 0.1)
+    monkeypatch.setattr(regression, "server", server)
+    found = regression.all_compared("then")
+    assert list(found) == list(regression.WORK)
+    assert {lesson for lesson, (_, slower) in found.items() if slower} == ({"springs"} if verdict else set())
+    assert begun.count(ROOT) == min(len(slow) + 1, 1 + regression.AGAIN)
 
 
 def test_an_unknown_commit_gets_one_sentence():
