@@ -2,14 +2,17 @@
 
 import importlib
 import re
+from datetime import datetime
 
 import pytest
 
 from validate.book import course, weeks
+from validate.grading import example
 from validate.measure.selection import Plan
 from validate.reference.stored import kept
 from validate.subject import modules
 from validate.subject.modules import ROOT
+from validate.worlds.described import DESCRIBED
 
 NUMBERS = ("no one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
            "seventeen eighteen nineteen twenty").split()
@@ -29,6 +32,21 @@ def test_readme_counts_the_lessons_and_has_a_row_for_each():
     assert f"in Python: {NUMBERS[len(names)]} lessons" in README
     assert re.findall(r"^\| (\d+) \| `(\w+)` \|", README, re.M) == [
         (str(number), name) for number, name in enumerate(names, 1)]
+
+
+def test_the_class_of_the_walk_through_was_handed_in_in_time(tmp_path):
+    """Whenever it is made: late days would take the points of the student who has everything right."""
+    dates = set(re.findall(r"--due (\S+)", "".join(TEXTS.values())))
+    due = min(datetime.fromisoformat(date).timestamp() for date in dates)
+    made = [path for path in example.make(tmp_path / "class").rglob("*") if path.suffix in (".py", ".zip")]
+    assert len(made) >= 5 and all(path.stat().st_mtime < due for path in made)
+
+
+def test_texts_name_the_engines_scenes_and_the_sample_of_faults():
+    assert f"in {len(DESCRIBED)} scenes that are Models" in README
+    assert f"{NUMBERS[len(DESCRIBED)]} of these scenes" in TEXTS["docs/engine.md"]
+    sample = re.search(r"tests\.faults --sample (\d+)", (ROOT / ".ci" / "run").read_text())[1]
+    assert f"`--sample {sample}` is part of `.ci/run`" in TEXTS["CONTRIBUTING.md"]
 
 
 def test_the_slides_that_need_care_are_counted():

@@ -4,7 +4,9 @@ ada has everything right (a zip).  bob forgets dt in Euler's method.  cem has no
 not load.  eve's first file ends the program that imports it.  fay is on the list and hands nothing in.
 """
 
+import os
 import zipfile
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -62,6 +64,9 @@ def make(folder):
             for lesson, text in lessons.items():
                 (folder / student / "lessons" / f"{lesson}.py").write_text(text)
     (folder / "list.csv").write_text(PEOPLE)
+    handed_in = datetime(*DATE).timestamp()
+    for path in [*folder.rglob("*"), folder]:
+        os.utime(path, (handed_in, handed_in))           # before the deadline in docs/grading.md, whenever it is tried
     return folder
 
 
