@@ -56,7 +56,7 @@ def test_nine_of_ten_wrong_answers_are_recognised_and_no_right_one(name, each):
     right = [k for k, mutant in enumerate(kept) if mutant.right][::min(each, 12)]
     stored = Counter((number, one["idea"]) for number, exercise in table.items() for one in exercise["wrong"])
     told = {k: (kept[k].exercise, kept[k].story) for k in every}
-    missed = Counter(told.values()) - stored                # of answers with one story, round-off may decide about some
+    missed = Counter(told.values()) - stored                # of answers with one story, some depend on round-off
     assert stored.total() >= RECOGNISED * len(every), missed
     wrong = [k for k in every if told[k] not in missed][::each]
     found, rounded = named(name, [*wrong, *right] if each == 1 else wrong, right)

@@ -251,7 +251,7 @@ def slope(draw, lesson, mu_s_over, mu_k_over, d=3):
 
 
 def anchor(p):
-    """The place of a Block where tethered_acceleration has no spring force: neither above nor below the origin."""
+    """The place (d,) [m] of a Block where tethered_acceleration has no spring force: above the origin and beside it."""
     return p.n + p.drive
 
 

@@ -780,8 +780,9 @@ def solve_lcp(A, b):
 wrong("9.8", "does not call check_independent")(murty(check=lambda A, b: None))
 wrong("9.8", "never lets a contact go that pushes once")(murty(sides="on"))
 wrong("9.8", "ends with all λ at 0, whatever b is")(murty(sides="off"))
-wrong("9.8", "starts with all contacts pushing, and lets none come back")(murty(sides="drops one"))
-wrong("9.8", "starts with all contacts pushing, lets all go at once that pull, and none come back")(
+wrong("9.8", "starts with all contacts pushing, drops one that pulls at a time, and takes none back")(
+    murty(sides="drops one"))
+wrong("9.8", "starts with all contacts pushing, drops all that pull at once, and takes none back")(
     murty(sides="drops all"))
 wrong("9.8", "changes the most wrong contact first, which may go round in circles")(murty(most=True))
 wrong("9.8", "returns the last guess in place of giving up")(murty(gives_up=False))

@@ -444,7 +444,7 @@ wrong("3.12", "divides by a distance of zero")(hollow(safe=False))
 edit("3.12", "treats the bowl as a ball", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
 edit("3.12", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 edit("3.12", "returns the distance from the centre as the gap", "p.radius - distance, -r", "distance, -r")
-edit("3.12", "divides r by the radius of the wall, not by its own length, for the normal",
+edit("3.12", "divides r by the radius of the wall, not by the length of r, to get the normal",
      "-r / distance if", "-r / p.radius if")
 edit("3.12", "adds the centre", "x - p.centre", "x + p.centre")
 edit("3.12", "takes the part along the axis in place of the rest",
@@ -640,8 +640,8 @@ edit("3.19", "pushes the block along", "return -np.array", "return np.array")
 edit("3.19", "is not limited along the blade: it turns a slow block round",
      "np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))",
      "0.5 * mu * j_n")
-edit("3.19", "never quite stops the block: the drag of a fluid", FIRST, "return -0.1 * m * v_t")
-edit("3.19", "never quite stops the block: the drag of a fluid", FIRST, "return -mu * j_n * v_t")
+edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST, "return -0.1 * m * v_t")
+edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST, "return -mu * j_n * v_t")
 edit("3.19", "turns the block round without slowing it", FIRST, "return -2.0 * m * v_t")
 edit("3.19", "brakes along the blade only", "np.sign(v_t[1]) * across", "0.0")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",

@@ -420,7 +420,7 @@ edit("4.13", "returns the entries of the diagonal as moments", "return moments, 
 edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
 edit("4.13", "tests the determinant the other way", "< 0.0", "> 0.0")
 edit("4.13", "returns the moments without their signs", "return moments, R", "return np.abs(moments), R")
-edit("4.13", "turns the last row round, not the last column", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
+edit("4.13", "reverses the last row, not the last column", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
@@ -653,7 +653,7 @@ edit("4.18", "gives all the energy to the rotation", "(1.0 + I", "(0.0 + I")
 edit("4.18", "takes the drop for the horizontal way: cos in place of sin", "np.sin", "np.cos")
 edit("4.18", "lets the body fall straight down", "np.sin(slope)", "1.0")
 edit("4.18", "forgets the 2 in s = ½ a t²", "2.0 * way", "way")
-edit("4.18", "divides the way by the speed at the end, not by the mean speed",
+edit("4.18", "divides the distance by the final speed, not by the mean speed",
      "np.sqrt(2.0 * way / a)", "way / np.sqrt(2.0 * a * way)")
 edit("4.18", "returns the square of the time", "np.sqrt(2.0 * way / a)", "2.0 * way / a")
 edit("4.18", "divides the moment by m R in place of m R²", "m * radius * radius", "m * radius")

@@ -1845,7 +1845,7 @@ edit("11.17", "returns a negative distance within reach",
 edit("11.17", "takes the size of l₁ − (l₂ + … + lₙ) for the hole, as for two links",
      "2.0 * np.max(lengths) - reach", "abs(2.0 * lengths[0] - reach)")
 edit("11.17", "takes the first link for the longest", "np.max(lengths) - reach", "lengths[0] - reach")
-edit("11.17", "takes the size of what the longest link leaves over, also where the other links are longer",
+edit("11.17", "has a hole also where the other links together are longer than the longest one",
      "2.0 * np.max(lengths) - reach", "abs(2.0 * np.max(lengths) - reach)")
 edit("11.17", "takes the difference of the longest and the shortest link for the hole",
      "2.0 * np.max(lengths) - reach", "np.max(lengths) - np.min(lengths)")

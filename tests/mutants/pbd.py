@@ -624,7 +624,7 @@ wrong("8.13", "uses α dt² in place of α/dt²")(soft_sweep(power=-2))
 wrong("8.13", "uses α/dt in place of α/dt²")(soft_sweep(power=1))
 wrong("8.13", "uses half of the inverse masses")(soft_sweep(weight=0.5))
 edit("8.13", "never pushes, as a thread", "length - network.rest[s]", "max(0.0, length - network.rest[s])")
-edit("8.13", "skips links that are too short, as a thread", "change = compliant",
+edit("8.13", "skips links that are too short, as if they were threads", "change = compliant",
      "if length <= network.rest[s]: continue\n        change = compliant")
 edit("8.13", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.13", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")

@@ -534,7 +534,8 @@ edit("2.12", "solves with a dense matrix, and never gives up", "y = np.zeros(rig
      "    return np.linalg.solve(M, right.ravel()).reshape(right.shape)")
 edit("2.12", "uses the ratio of the lengths, not of their squares",
      "squared / before * p", "np.sqrt(squared / before) * p")
-edit("2.12", "turns the ratio of the squares round", "squared / before", "before / squared")
+edit("2.12", "divides the old square by the new one, not the new one by the old",
+     "squared / before", "before / squared")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------

@@ -34,7 +34,7 @@ def test_ratios_are_in_steps_of_the_engine():
 
 @pytest.mark.parametrize(("slow", "verdict"), [({0}, False), ({0, 1}, False), ({0, 1, 2}, True)])
 def test_a_slow_process_decides_nothing_and_a_slow_method_does(slow, verdict, monkeypatch):
-    """Processes of one method that differ by a fifth, and those of the other lessons, which begin only once."""
+    """In the slow ones of our processes the springs take 1.2 times as long; the other lessons are measured once."""
     begun = []
 
     @contextmanager

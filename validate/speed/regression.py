@@ -2,8 +2,8 @@
 
 One compiled method of each lesson runs in turn at both commits, each in a process of its own with the packages of this
 environment.  Times are CPU times of one thread, in units of an engine's step that runs beside them, so machine and load
-cancel.  A method counts as slower only if the whole interval of its ratio lies above SLOWER, and again so in each of
-AGAIN new pairs of processes: where its code comes to lie in memory belongs to a process and changes times by a fifth.
+cancel.  A method counts as slower only if the whole interval of its ratio lies above SLOWER in 1 + AGAIN pairs of
+processes.  The place of compiled code in memory differs between processes, and can change its time by a fifth.
 """
 
 import json

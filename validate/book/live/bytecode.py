@@ -1,7 +1,7 @@
-"""Bytecode in place of sources: a browser that need not compile them has the first check ready much earlier.
+"""Bytecode in place of sources: a browser that need not compile them is ready some seconds earlier.
 
 Runs as a program of its own, `python bytecode.py PREFIX [--documented] < SOURCES.zip > COMPILED.zip`, in a Python whose
-bytecode is that of Pyodide.  *Left out:* docstrings, unless --documented; they are a third of the size.
+bytecode is that of Pyodide.  *Left out:* docstrings, unless --documented; a first visit loads them in vain.
 """
 
 import ast

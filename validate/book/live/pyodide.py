@@ -36,8 +36,8 @@ UNUSED = {                   # {package: files of its wheel that no lesson loads
     "python-dateutil": r"dateutil/zoneinfo/",
     "pygments": r"pygments/lexers/(?!__init__|_mapping|python|diff|special|shell|console)",
 }
-FOR_COMPILERS = re.compile(r".*\.(pyx|pxd|pxi|pyi|h|a)$|.*/meson\.build$")     # of no use where none is
-DOCUMENTED = "numpy", "ipython"       # a student asks for the text of `np.cross?`; others' docstrings would be 1.5 MB
+FOR_COMPILERS = re.compile(r".*\.(pyx|pxd|pxi|pyi|h|a)$|.*/meson\.build$")     # a browser has none
+DOCUMENTED = "numpy", "ipython"       # students ask for `np.cross?`; the docstrings of the others are 1.4 MB
 ABSENT = "jedi", "ssl"                # the kernel asks for them, and does without: they are empty packages here
 INSTALLED = "comm",                   # the kernel asks for it; pure Python, taken from this environment
 OWN = "workbook_live"

@@ -6,6 +6,7 @@ drive, has only what students see and change: reading it costs a request per fil
 
 import base64
 import io
+import logging
 import os
 import sys
 import time
@@ -44,6 +45,7 @@ async def start():
         watch(get_ipython())
     os.environ["WORKBOOK_LESSONS"] = str(LESSONS)
     os.environ["WORKBOOK_PAGES"] = urljoin(place_of_pyodide(), PAGES)
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)      # a new font cache is no warning
     import validate.notebook  # noqa: F401  here, so that the first picture does not take all the time
     ready = READY.format(seconds=time.monotonic() - began, report=urljoin(place_of_pyodide(), REPORT))
     display(HTML(f"<p>{ready}</p>{left_over()}"))
