@@ -44,5 +44,6 @@ def readme(address):
     return f"Without an installation: {' or '.join(links)}." if links else WAITING
 
 
-WAITING = ("Binder (`binder/`) and Colab (`binder/colab.ipynb`) are prepared; their buttons appear in the book when "
-           "`CITATION.cff` gives the public address of the repository (`repository-code`), which it does not yet.")
+WAITING = ("Binder (`binder/`) and Colab (`binder/colab.ipynb`) are prepared. Their buttons appear in the book when it "
+           "is built with the public address of the repository on GitHub: from `repository-code` in `CITATION.cff`, "
+           "or from the origin of the clone.")

@@ -15,7 +15,7 @@ SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"),
          Verdict.BREAKS_AS_KNOWN: ("≈", "green"), Verdict.KEEPS_LAWS: ("§", "green"),
          Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow"),
          Verdict.UNFINISHED: ("○", "yellow")}            # a reference counts nowhere
-LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   § keeps the laws of contact   ✗ departs\n"
+LEGEND = ("✓ agrees   ≈ departs as predicted   § keeps the laws of contact   ✗ departs otherwise\n"
           "○ undecided, unfinished, not attempted\n"
           f"order: the highest of ours.   faster: the engine's time to an error of {percent(HEADLINE)},\n"
           "over our time to the same error; the smallest of the engines' ratios.")
@@ -83,8 +83,8 @@ def by_lesson(report):
     """
     run, level = report["run"], percent(HEADLINE)
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
-             "✓ agrees with the truth · ≈ as predicted, by a law of its own · § keeps the laws of contact · "
-             "✗ departs · ○ undecided.", "",
+             "✓ agrees with the truth · ≈ departs as predicted, by a law of its own or where it must break · "
+             "§ keeps the laws of contact · ✗ departs otherwise · ○ undecided, unfinished or not attempted.", "",
              f"| lesson | scenes | our methods | engines | stability | engine's time over ours, to {level} error | "
              "losses, ties, undecided |",
              "|---|---|---|---|---|---|---|"]
@@ -123,9 +123,9 @@ def said_of_all(report):
     if not counts:
         return
     yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
-           "is what the intervals of both times allow. Medians of all races, with losses, ties and undecided ones:")
-    yield "; ".join(f"at {count['name']} {races.summary_ratio(count)}, {count['slower']}, {count['tie']}, "
-                    f"{count['undecided']} of {count['races']}" for count in counts) + "."
+           "is what the intervals of both times allow. Medians of all races:")
+    yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; of {count['races']} races {count['slower']} "
+                    f"lost, {count['tie']} tied, {count['undecided']} undecided" for count in counts) + "."
     made = races.median_factors(every)
     if made["order"] is not None:
         yield (f"At {percent(HEADLINE)} a ratio is the product of the method's order (median "

@@ -15,7 +15,7 @@ from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
 
-OF_PYMUNK = "its truth is a run of pymunk"
+NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
 
 
 class Described(NamedTuple):
@@ -44,8 +44,8 @@ DESCRIBED = {                # name of the scene: Described
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
-    "dominoes": of(dominoes.SCENE, shown=OF_PYMUNK),
-    "machine": of(machine.SCENE, shown=OF_PYMUNK),
+    "dominoes": of(dominoes.SCENE, shown=NO_FORMULA),
+    "machine": of(machine.SCENE, shown=NO_FORMULA),
     "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": of(rod_cradle.SCENE),
     "asymmetric_top": of(asymmetric_top.SCENE),
