@@ -645,9 +645,9 @@ def test_a_live_scene_runs_in_the_page_and_follows_a_save(student):
     student.shows("live-arm")
 
 
-PULLED = {                   # {notebook: (cells that its scene needs, what makes the scene, its last point)}
-    "02_springs": (("DOWN = ", "def square_net("), "live(hung_net", 35),
-    "08_pbd": (("def rope(",), "live(hung_rope", 20),
+PULLED = {                   # {notebook: ({cell that its scene needs: what that shows}, its scene, its last point)}
+    "02_springs": ({"DOWN = ": "image/png", "def square_net(": "image/png"}, "live(hung_net", 35),
+    "08_pbd": ({"def rope(": "length after your predict"}, "live(hung_rope", 20),
 }
 
 
@@ -661,8 +661,8 @@ def test_a_net_and_a_rope_are_pulled_by_the_pointer_in_the_page(student, stem, c
     for lesson in ("integrators", stem[3:]):
         student.has_written(lesson)
     student.runs("from validate.notebook import", "<canvas")
-    for part in before:
-        student.runs(part, "image/png")
+    for part, shown in before.items():
+        student.runs(part, shown)
     place = student.starts(made)
     student.page.evaluate("k => jupyterapp.shell.currentWidget.content.scrollToItem(k)", place)
     student.waits("data.t > 0.5")
