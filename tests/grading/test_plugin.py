@@ -1,15 +1,18 @@
 """What pytest itself says about the tests of the workbook."""
 
+import io
 import re
 import subprocess
 import sys
 import types
 
+import numpy as np
 import pytest
 
-from validate.grading import plugin, points
+from validate.grading import plugin, points, wire
 from validate.notebook.pytest_process import quiet
 from validate.subject import modules
+from validate.subject.generate import exercises
 
 LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them, too$", re.MULTILINE)
 
@@ -113,6 +116,62 @@ def test_what_calls_a_loop_without_end_has_less_time_from_its_first_test_on(shor
     found = limits_of(["1.7", "1.8"], implicit_euler_step=endless, implicit_midpoint_step=endless)
     assert sorted(found["1.7"]) == ["0.25 s"] * 4 + ["1 s"]
     assert set(found["1.8"]) == {"0.25 s"}
+
+
+# ---------------------------------------------------------------------------------------------- arrays that are kept
+
+class OneArray:
+    """An answer that returns the same arrays at each call: `lost` says whether a call wrote over a recent result."""
+
+    def __init__(self, function):
+        self.function, self.kept, self.calls, self.lost = function, {}, 0, False
+
+    def __call__(self, *arguments):
+        self.calls += 1
+        return self.stored(self.function(*arguments), ())
+
+    def stored(self, value, place):
+        if isinstance(value, tuple) and type(value) is tuple:
+            return tuple(self.stored(one, (*place, number)) for number, one in enumerate(value))
+        if not isinstance(value, np.ndarray):
+            return value
+        array, call = self.kept.get((place, value.shape, value.dtype), (np.array(value), self.calls))
+        self.lost |= self.calls - call <= wire.KEPT and array.tobytes() != value.tobytes()
+        array[...] = value
+        self.kept[place, value.shape, value.dtype] = array, self.calls
+        return array
+
+
+@pytest.mark.parametrize("taught", [pytest.param(name, marks=[] if name == "kinematics" else pytest.mark.long)
+                                    for name in modules.lesson_names()])
+def test_an_answer_that_writes_over_its_last_result_loses_points(taught):
+    module = modules.bind(taught)
+    names = exercises((modules.SOLUTIONS / f"{taught}.py").read_text(encoding="utf-8"))
+    answers = {number: OneArray(getattr(module, name)) for number, name in names.items()}
+    subjects = {number: (types.SimpleNamespace(**{**vars(module), names[number]: answer}),
+                         lambda exercise, test, number=number: exercise == number)
+                for number, answer in answers.items()}
+    scores = {number: points.score(outcomes)[number] for number, outcomes in
+              points.grade_each(taught, subjects).items()}
+    assert sum(answer.lost for answer in answers.values()) >= 3
+    for number, (earned, possible) in scores.items():
+        assert (earned < possible) == answers[number].lost, number
+
+
+def test_the_other_end_of_the_wire_sees_it_as_well():
+    said, kept = [], np.zeros(2)
+
+    def total(x):
+        kept[:] += x
+        return kept
+
+    peer = wire.Peer(lambda frame: said.append(wire.unpack(*wire.read(io.BytesIO(frame)))), None,
+                     {"total": total, "double": lambda x: 2.0 * x}.get, None, None,
+                     lambda error: ([type(error).__name__], str(error), ""), None)
+    for name in ("double", "total", "double", "total"):
+        peer.serve(name, (np.ones(2),))
+    assert [kind for kind, *_ in said] == ["value", "value", "value", "error"]
+    assert "what it has returned before" in said[-1][2]
 
 
 # ---------------------------------------------------------------------------------------------- what no answer can know

@@ -160,9 +160,12 @@ def test_a_save_of_the_lesson_is_followed_and_an_error_is_one_sentence(page, ser
 
 
 def test_a_cell_that_runs_twice_has_one_scene_and_a_page_that_is_loaded_again_has_it_too(page):
+    page.evaluate("document.querySelector('.live-scene').dataset.first = ''")
     run_cell(page)
+    page.wait_for_selector(".live-scene:not([data-first]) canvas", timeout=LONGEST)      # not what the first run showed
     assert page.locator(".live-scene").count() == 1
-    page.keyboard.press("Control+s")
+    with page.expect_response(lambda answer: answer.request.method == "PUT" and answer.ok, timeout=LONGEST):
+        page.keyboard.press("Control+s")
     page.reload(timeout=LONGEST)
     page.wait_for_selector(".live-scene canvas", timeout=LONGEST)
     until(page, "+data.frame > 0")

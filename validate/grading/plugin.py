@@ -146,6 +146,7 @@ def box_of(subject):
     return None if isinstance(subject, types.ModuleType) else getattr(subject, "box", None)
 
 
+RETURNED = pytest.StashKey[dict]()   # {subject: {name of its function: its last results}}
 TOO_LONG = pytest.StashKey[set]()                                    # {(subject, exercise)} of tests that were stopped
 
 
@@ -231,10 +232,10 @@ def lesson(request):
         subject, _ = request.config.given[request.param]
         if box := box_of(subject):
             box.begin(limit_of(request.node, BOX_LIMIT))
-        return Pure(subject, trace_for(request))
+        return Pure(subject, trace_for(request), returned_to(request))
     name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
     if request.param == "plain":
-        return Pure(modules.bind(name, of), trace_for(request))
+        return Pure(modules.bind(name, of), trace_for(request), returned_to(request))
     if not modules.can_compile():
         pytest.skip("numba has no wheel for this machine: the compiled twins are not tested")
     if request.node.get_closest_marker("counts_calls"):
@@ -251,6 +252,11 @@ def trace_for(request):
     trace = traces.begin(request.param, request.path.stem.removeprefix("test_"), mark.args[0], test)
     request.node.stash[TRACE] = trace
     return trace
+
+
+def returned_to(request):
+    """Return the last results of each function of the subject of a test, as earlier tests left them."""
+    return request.config.stash.setdefault(RETURNED, {}).setdefault(request.param, wire.results())
 
 
 class Draw:
@@ -289,10 +295,11 @@ def draw(request):
 
 
 class Pure:
-    """A lesson whose functions must not change their arguments: a call that changes an array fails the test."""
+    """A lesson whose functions must not change arrays: neither their arguments nor what they have returned before."""
 
-    def __init__(self, subject, trace=None):
+    def __init__(self, subject, trace=None, returned=None):
         self.subject, self.trace = subject, trace
+        self.returned = wire.results() if returned is None else returned          # of calls in earlier tests, too
 
     def __getattr__(self, name):
         if isinstance(self.subject, types.ModuleType) and name not in vars(self.subject):
@@ -305,15 +312,16 @@ class Pure:
         value = self.trace.watching(value) if watched else value
 
         def call(*arguments):
-            before = [a.copy() for a in wire.arrays_in(arguments)]
+            given, earlier = wire.Contents(arguments), wire.Contents(list(self.returned[name]))
             result = value(*(getattr(a, "unwatched", a) for a in arguments))
-            after = wire.arrays_in(arguments)
-            if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after, strict=True)):
-                if watched:
+            if given.changed() or earlier.changed():
+                if watched and given.changed():
                     self.trace.changed_input()
-                quantity, expected = "the input arrays", "unchanged: return new arrays"
+                what = "the input arrays" if given.changed() else "the results of earlier calls"
                 culprit = f"{name}, or a function that it calls," if self.trace and not watched else name
-                raise NotYet(quantity, expected, f"{culprit} has changed one in place", "", "changed in place")
+                raise NotYet(what, "unchanged: return new arrays", f"{culprit} has changed one in place", "",
+                             "changed in place")
+            self.returned[name].append(result)
             return result
 
         call.unwatched = value

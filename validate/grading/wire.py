@@ -12,6 +12,7 @@ import json
 import math
 import numbers
 import struct
+from collections import defaultdict, deque
 
 import numpy as np
 
@@ -156,6 +157,30 @@ def arrays_in(value):
             yield from arrays_in(part)
 
 
+KEPT = 3                     # results of earlier calls that a call of the same function may not change [-]
+
+
+def results():
+    """Return an empty {name of a function: its last results}."""
+    return defaultdict(lambda: deque(maxlen=KEPT))
+
+
+class Contents:
+    """What all arrays of a value hold, to see later whether it has changed."""
+
+    def __init__(self, value):
+        self.arrays = list(arrays_in(value))
+        self.held = [self.of(array) for array in self.arrays]
+
+    @staticmethod
+    def of(array):
+        return array.shape, array.dtype, array.tobytes()
+
+    def changed(self):
+        """Return [(number, array)] of the arrays that hold something else now."""
+        return [(n, array) for n, (array, held) in enumerate(zip(self.arrays, self.held)) if self.of(array) != held]
+
+
 class Peer:
     """One side of the conversation.
 
@@ -172,6 +197,7 @@ class Peer:
         self.describe, self.error = describe, error                    # exception → (names, message, where), and back
         self.define = define                                           # takes (name, code, names, values) of a function
         self.fatal = fatal                                             # exceptions that end the conversation
+        self.returned = results()                                      # of our functions
         self.may_change = lambda name: True  # whether that function of the other side's may change arrays
 
     def call(self, name, arguments):
@@ -209,18 +235,20 @@ class Peer:
 
     def serve(self, name, arguments):
         """Call one of our functions for the other side, and answer."""
-        before = [array.copy() for array in arrays_in(arguments)]
         try:
-            result = self.resolve(name)(*arguments)
-            pairs = zip(before, arrays_in(arguments), strict=True)
-            changed = [(n, now) for n, (old, now) in enumerate(pairs) if not same(old, now)]
-            answer = "value", result, changed
+            function = self.resolve(name)                              # first: it knows which names there are
+            given, earlier = Contents(arguments), Contents(list(self.returned[name]))
+            result = function(*arguments)
+            if earlier.changed():
+                raise ValueError("it changes what it has returned before: return a new array")
+            answer = "value", result, given.changed()
         except self.fatal:
             raise
         except BaseException as e:                                     # SystemExit of a student's code, too
             answer = "error", *self.describe(e)
         try:
             frame = pack(answer, self.name_of)
+            self.returned[name].extend(answer[1:2] if answer[0] == "value" else ())
         except Exception as e:  # WireError, RecursionError, an int of too many digits …
             frame = pack(("error", ["TypeError"], f"the result is not plain data: {str(e)[:200]}", ""))
         self.send(frame)
@@ -233,7 +261,3 @@ def answer(content):
             for pair in content[1]):
         raise WireError("an unexpected message")
     return content
-
-
-def same(a, b):
-    return a.shape == b.shape and a.tobytes() == b.tobytes()
