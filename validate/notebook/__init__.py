@@ -615,4 +615,4 @@ def show_precision(result):
 
 def show_findings(result):
     """Show what the numbers say."""
-    display(Markdown("\n".join(f"- {sentence}" for sentence in words.findings(result))))
+    display(Markdown("\n".join(f"- {sentence}" for sentence in [*words.findings(result), *words.recorded(result)])))

@@ -412,6 +412,13 @@ def findings(result):
     return [*leading(result), *notes]
 
 
+def recorded(result):
+    """Return a sentence for each engine whose runs are recorded ones, with what ran when they were made."""
+    sources = {c["product"]: c["source"] for one in result["cases"].values() for c in one["engines"]}
+    return [f"{product}'s runs are {source.replace(', ', ' ones, of ', 1)}." for product, source in sources.items()
+            if source.startswith("recorded, ")]
+
+
 def leading(result):
     """The findings without what was left out: departures first, then orders, times and what an omission saves."""
     return [*_departures(result), *_ours(result), *_engines_of(result), *races.sentences(result), *_ablations(result),
