@@ -270,6 +270,13 @@ class Draw:
         """Return a float, or an array of them, between low and high."""
         return self.rng.uniform(low, high, shape)
 
+    def sparse(self, low, high, shape=None):
+        """Return a float, or an array of them, between low and high; each is exactly 0 with a chance of a half.
+
+        A short cut for what is at rest, or points along an axis, shows only there.
+        """
+        return self(low, high, shape) * self.rng.integers(0, 2, shape) + 0.0         # without −0
+
     def whole(self, low, high):
         """Return an integer from low to high, both included."""
         return int(self.rng.integers(low, high + 1))
