@@ -12,7 +12,7 @@ from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, rolling_down, slide_then_roll
-from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
+from ..scenes.simulator import backspin_ball, dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
 
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
@@ -42,6 +42,7 @@ DESCRIBED = {                # name of the scene: Described
     "stick_slip": of(stick_slip.SCENE),
     "slide_then_roll": of(slide_then_roll.SCENE),
     "rolling_down": of(rolling_down.SCENE),
+    "backspin_ball": of(backspin_ball.SCENE),
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
