@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..products import PYBULLET
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
-from ..scenes.impulses import bounces, cradle, oblique_discs
+from ..scenes.impulses import bounces, cradle, oblique_discs, spinning_bounce
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, rolling_down, slide_then_roll
 from ..scenes.simulator import backspin_ball, dominoes, machine, moving_wedge, rod_chain, rod_cradle
@@ -46,6 +46,7 @@ DESCRIBED = {                # name of the scene: Described
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
     "bounces": of(bounces.SCENE),
+    "spinning_bounce": of(spinning_bounce.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": of(dominoes.SCENE, shown=NO_FORMULA),
     "machine": of(machine.SCENE, shown=NO_FORMULA),
