@@ -68,6 +68,7 @@ class Settings(NamedTuple):
     breaking: float = BREAKING       # contactBreakingThreshold, over the size of a body [-]; more at a high first speed
     residual: float = 0.0    # solverResidualThreshold: the solver ends where nothing changes by more [m/s]
     pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
+    impacts: bool | None = None      # contacts push no overlap out; None: where a pair has restitution
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
 
@@ -79,7 +80,7 @@ class Parts(NamedTuple):
     space: Embedding
     settings: Settings
     handles: list            # (body, link) of each body of the Model
-    impacts: bool            # whether any pair has restitution, which takes long to find
+    impacts: bool            # whether they are set up for impacts, which takes long to find
 
 
 def refuses(model):
@@ -98,7 +99,7 @@ def build(model, dt, **settings):
         model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
     world = Bullet(dt)
     parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies),
-                  bounces(model))
+                  bounces(model) if settings.impacts is None else settings.impacts)
     configure(parts, dt)
     x = pressed_in(model, settings.overlap) if touches(model) and not parts.impacts else parts.start.x
     linked = [] if settings.maximal else add_linked(parts, x)
