@@ -12,7 +12,16 @@ from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import bounces, cradle, oblique_discs, spinning_bounce
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.rotation import asymmetric_top, heavy_top, rolling_down, slide_then_roll
-from ..scenes.simulator import backspin_ball, dominoes, machine, moving_wedge, rocking_block, rod_chain, rod_cradle
+from ..scenes.simulator import (
+    backspin_ball,
+    dominoes,
+    machine,
+    moving_wedge,
+    rocking_block,
+    rod_chain,
+    rod_cradle,
+    turntable,
+)
 from ..scenes.springs import spring_net
 
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
@@ -53,6 +62,7 @@ DESCRIBED = {                # name of the scene: Described
     "rocking_block": of(rocking_block.SCENE),
     "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": of(rod_cradle.SCENE),
+    "turntable": of(turntable.SCENE),
     "asymmetric_top": of(asymmetric_top.SCENE),
     "heavy_top": of(heavy_top.SCENE),
 }
