@@ -156,15 +156,6 @@ class Rigid(Bullet):
     def omega(self, body):
         return self.pb.getBaseVelocity(body)[1]
 
-    def ball(self, radius):
-        return self.pb.createCollisionShape(self.pb.GEOM_SPHERE, radius=radius)
-
-    def floor(self):
-        """Make a plane z = 0 of friction 1: pybullet multiplies the two coefficients."""
-        plane = self.pb.createCollisionShape(self.pb.GEOM_PLANE)
-        body = self.pb.createMultiBody(0, plane)
-        self.pb.changeDynamics(body, -1, lateralFriction=1.0, rollingFriction=0, spinningFriction=0, restitution=0)
-
     def close(self):
         """Restore the engine's own settings for the next world."""
         self.pb.setPhysicsEngineParameter(contactSlop=1e-5)
