@@ -27,7 +27,7 @@ def test_moments_count_in_the_first_step_of_a_world_that_begins(begins, expected
     """Without `begin` the first step has the moments 2/5 m r² of the sphere."""
     bullet = Rigid(0.01, (0.0, 0.0, -9.81))
     body = bullet.body(1.0, (1.0, 2.0, 4.0), (0.0, 0.0, 1.0), (0.0,) * 3, True, v=(1.0, 2.0, 3.0),
-                       shape=bullet.ball(1.0))
+                       shape=bullet.pb.createCollisionShape(bullet.pb.GEOM_SPHERE, radius=1.0))
     if begins:
         bullet.begin()
     assert bullet.position(body) == (0.0, 0.0, 1.0) and bullet.velocity(body) == (1.0, 2.0, 3.0)

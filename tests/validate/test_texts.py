@@ -44,7 +44,7 @@ def test_the_class_of_the_walk_through_was_handed_in_in_time(tmp_path):
 
 def test_texts_name_the_engines_scenes_and_the_sample_of_faults():
     assert f"in {len(DESCRIBED)} scenes that are Models" in README
-    assert f"{NUMBERS[len(DESCRIBED)]} of these scenes" in TEXTS["docs/engine.md"]
+    assert f"{len(DESCRIBED)} of these scenes" in TEXTS["docs/engine.md"]
     sample = re.search(r"tests\.faults --sample (\d+)", (ROOT / ".ci" / "run").read_text())[1]
     assert f"`--sample {sample}` is part of `.ci/run`" in TEXTS["CONTRIBUTING.md"]
 

@@ -156,70 +156,9 @@ class Rigid(Bullet):
     def omega(self, body):
         return self.pb.getBaseVelocity(body)[1]
 
-    def ball(self, radius):
-        return self.pb.createCollisionShape(self.pb.GEOM_SPHERE, radius=radius)
-
-    def floor(self):
-        """Make a plane z = 0 of friction 1: pybullet multiplies the two coefficients."""
-        plane = self.pb.createCollisionShape(self.pb.GEOM_PLANE)
-        body = self.pb.createMultiBody(0, plane)
-        self.pb.changeDynamics(body, -1, lateralFriction=1.0, rollingFriction=0, spinningFriction=0, restitution=0)
-
     def close(self):
         """Restore the engine's own settings for the next world."""
         self.pb.setPhysicsEngineParameter(contactSlop=1e-5)
-        super().close()
-
-
-class Impacts(Bullet):
-    """pybullet with the settings for an impact: exact restitution, and no push-out."""
-
-    def __init__(self, dt, gravity=(0.0, 0.0, 0.0)):
-        super().__init__(dt, gravity)
-        self.pb.setPhysicsEngineParameter(
-            numSolverIterations=IMPACT_ITERATIONS, contactERP=0, contactSlop=0, restitutionVelocityThreshold=0
-        )
-
-    def body(self, m, I, shape, x, v, omega, e, mu, R=UPRIGHT):
-        """Make a body of maximal coordinates, fixed if m = 0.  pybullet multiplies e and μ of the two bodies."""
-        pb = self.pb
-        q = np.roll(quaternion(R), -1).tolist()  # w is last
-        body = pb.createMultiBody(
-            m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=1
-        )
-        pb.changeDynamics(
-            body,
-            -1,
-            restitution=e,
-            lateralFriction=mu,
-            linearDamping=0,
-            angularDamping=0,
-            rollingFriction=0,
-            spinningFriction=0,
-            contactProcessingThreshold=0,
-        )
-        if m:
-            self.give_moments(body, m, I, True)
-        pb.resetBaseVelocity(body, list(map(float, v)), list(map(float, omega)))
-        return body
-
-    def ball(self, m, I, radius, x, v, omega, e, mu):
-        shape = self.pb.createCollisionShape(self.pb.GEOM_SPHERE, radius=radius)
-        return self.body(m, (I, I, I), shape, x, v, omega, e, mu)
-
-    def plane(self):
-        """Make the plane z = 0, with restitution and friction 1."""
-        zero, plane = (0.0,) * 3, self.pb.createCollisionShape(self.pb.GEOM_PLANE)
-        self.body(0.0, (), plane, zero, zero, zero, 1.0, 1.0)
-
-    def omega(self, body):
-        return self.pb.getBaseVelocity(body)[1]
-
-    def close(self):
-        """Restore the engine's own settings for the next world."""
-        self.pb.setPhysicsEngineParameter(
-            contactERP=CONTACT_ERP, contactSlop=1e-5, restitutionVelocityThreshold=0.2
-        )
         super().close()
 
 

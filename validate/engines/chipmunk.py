@@ -24,17 +24,6 @@ def empty_world():
     return pymunk_world(pymunk_space(), 1e-3, lambda: None)
 
 
-def pymunk_ball(space, m, I, radius, x, v, omega, e, mu):
-    """Make a circle; pymunk multiplies e and μ of the two bodies."""
-    import pymunk
-    body = pymunk.Body(m, I)
-    body.position, body.velocity, body.angular_velocity = tuple(map(float, x)), tuple(map(float, v)), float(omega)
-    shape = pymunk.Circle(body, radius)
-    shape.elasticity, shape.friction = e, mu
-    space.add(body, shape)
-    return body
-
-
 def pymunk_floor(space):
     """Make the floor y = 0, the upper side of a beam 10 m thick, which no body passes in one step."""
     import pymunk

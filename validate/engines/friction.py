@@ -4,11 +4,13 @@ The engines hold a resting block by impulses, as our sliding_step does, and diff
 pybullet moves with the new velocity, pymunk with the old one.
 """
 
+import numpy as np
+
 from solutions.support.model import Body, make_model
-from solutions.support.shapes import Box, HalfSpace
-from validate.engines.bullet import Bullet
+from solutions.support.shapes import Ball, Box, HalfSpace
+from validate.engines.switches import worlds_made
 from validate.reference.friction import HALF
-from validate.scene import EngineRun
+from validate.scene import PYBULLET, EngineRun
 
 # half its height [m]: friction acts that far below the centre and shifts the load forward by μ LOW.  With a cube and
 # μ = 0.8 nearly all load is on the front edge, and pybullet's friction is up to 0.7 % too large
@@ -38,22 +40,18 @@ def bullet_in_hollow(gravity, mu, x, v, fastest, wall, dt):
     Before each step its floor is therefore placed as the tangent plane of the wall under the ball.  Normal force
     and friction there are the engine's, and the error of the plane is of second order in v dt.
     """
-    bullet, radius = Bullet(dt, gravity), 0.1
-    pb = bullet.pb
-    pb.setPhysicsEngineParameter(numSolverIterations=SWEEPS, enableConeFriction=1, contactSlop=0,
-                                 contactBreakingThreshold=max(0.02, 1.2 * fastest * dt / radius))
-    ground = pb.createMultiBody(0.0, pb.createCollisionShape(pb.GEOM_PLANE), useMaximalCoordinates=0)
-    ball = pb.createMultiBody(MASS, pb.createCollisionShape(pb.GEOM_SPHERE, radius=radius),
-                              basePosition=list(map(float, x)), useMaximalCoordinates=0)
-    pb.changeDynamics(ground, -1, lateralFriction=1.0)
-    pb.changeDynamics(ball, -1, mass=MASS, localInertiaDiagonal=[1e9] * 3, lateralFriction=mu, linearDamping=0,
-                      angularDamping=0, rollingFriction=0, spinningFriction=0, maxJointVelocity=1e9)
-    pb.resetBaseVelocity(ball, list(map(float, v)))
+    radius = 0.1
+    ball = Body(x, MASS, Ball(radius), mu, v=v, inertia=(np.inf,) * 3)
+    with worlds_made() as made:
+        world = PYBULLET.world.build(make_model([ball, floor(gravity)], gravity), dt, maximal=False, iterations=SWEEPS,
+                                     overlap=0.0, slop=0.0, breaking=max(0.02, 1.2 * fastest * dt / radius))
+    pb = made[0].pb
+    one, ground = map(pb.getBodyUniqueId, range(2))
 
     def step():
-        point, n = wall(bullet.position(ball))
+        point, n = wall(made[0].position(one))
         below = [float(c - radius * k) for c, k in zip(point, n)]
         # the shortest turn from z to n, as a quaternion (x, y, z, w)
         pb.resetBasePositionAndOrientation(ground, below, [-float(n[1]), float(n[0]), 0.0, 1.0 + float(n[2])])
-        bullet.step()
-    return EngineRun(step, lambda: bullet.position(ball), bullet.close)
+        world.step()
+    return EngineRun(step, lambda: world.state().x[0], world.close)

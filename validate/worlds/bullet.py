@@ -65,9 +65,10 @@ class Settings(NamedTuple):
     erp: float = 1.0         # share of a joint's error that it takes back per step [-]
     warm: float = WARM       # share of the last impulses with which the solver begins [-]
     ground: bool | None = None       # maximal coordinates of fixed bodies; None: as those that move
-    breaking: float = BREAKING       # contactBreakingThreshold, over the size of a body [-]; more at a high first speed
+    breaking: float | None = None    # contactBreakingThreshold, over the size of a body [-]; None: more at a high speed
     residual: float = 0.0    # solverResidualThreshold: the solver ends where nothing changes by more [m/s]
     pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
+    impacts: bool | None = None      # contacts push no overlap out; None: where a pair has restitution
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
 
@@ -79,7 +80,7 @@ class Parts(NamedTuple):
     space: Embedding
     settings: Settings
     handles: list            # (body, link) of each body of the Model
-    impacts: bool            # whether any pair has restitution, which takes long to find
+    impacts: bool            # whether they are set up for impacts, which takes long to find
 
 
 def refuses(model):
@@ -98,7 +99,7 @@ def build(model, dt, **settings):
         model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
     world = Bullet(dt)
     parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies),
-                  bounces(model))
+                  bounces(model) if settings.impacts is None else settings.impacts)
     configure(parts, dt)
     x = pressed_in(model, settings.overlap) if touches(model) and not parts.impacts else parts.start.x
     linked = [] if settings.maximal else add_linked(parts, x)
@@ -124,8 +125,8 @@ def build(model, dt, **settings):
 def configure(parts, dt):
     """Set the solver for impacts or for resting contacts."""
     model, settings, impacts = parts.model, parts.settings, parts.impacts
-    breaking = settings.breaking
-    if np.isfinite(smallest(model)) and not impacts:
+    breaking = settings.breaking or BREAKING
+    if settings.breaking is None and np.isfinite(smallest(model)) and not impacts:
         breaking = max(breaking, 1.2 * fastest(model) * dt / smallest(model))
     parts.pb.setPhysicsEngineParameter(
         solverResidualThreshold=settings.residual,
@@ -371,7 +372,9 @@ def step_of(parts, advance, dt):
     """Return the step: the engine's own where no load and no spring acts."""
     model, clock = parts.model, [0]
     links = any(link >= 0 for _, link in parts.handles)
-    forces = forces_of(model, springs=True) if model.d == 2 and not links else None
+    forces = None if links else forces_of(model, springs=True)
+    if model.d == 3 and forces and any(of != "t" for _, of, *_ in forces.values()):
+        forces = None
     if not (model.loads or model.springs):
         return advance
     pull = None if links else net_of(model)
@@ -388,10 +391,12 @@ def step_of(parts, advance, dt):
 
 
 def acting(parts, k, F, of):
-    """Return the function of t that applies a force of floats to body k of a Model in the plane in the next step."""
+    """Return the function of t that applies a force of floats to body k in the next step."""
     pb, (body, link) = parts.pb, parts.handles[k]
     place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
                                   pb.WORLD_FRAME)
+    if not parts.space.flat:                                 # a force of the time
+        return lambda t: apply(body, link, F(t), place(body)[0], frame)
 
     def of_time(t):
         along, up = F(t)

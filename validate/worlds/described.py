@@ -9,10 +9,19 @@ from typing import NamedTuple
 from ..products import PYBULLET
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
-from ..scenes.impulses import cradle, oblique_discs
+from ..scenes.impulses import bounces, cradle, oblique_discs, spinning_bounce
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
-from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
-from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
+from ..scenes.rotation import asymmetric_top, heavy_top, rolling_down, slide_then_roll
+from ..scenes.simulator import (
+    backspin_ball,
+    dominoes,
+    machine,
+    moving_wedge,
+    rocking_block,
+    rod_chain,
+    rod_cradle,
+    turntable,
+)
 from ..scenes.springs import spring_net
 
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
@@ -41,13 +50,19 @@ DESCRIBED = {                # name of the scene: Described
     "incline": of(incline.SCENE),
     "stick_slip": of(stick_slip.SCENE),
     "slide_then_roll": of(slide_then_roll.SCENE),
+    "rolling_down": of(rolling_down.SCENE),
+    "backspin_ball": of(backspin_ball.SCENE),
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
+    "bounces": of(bounces.SCENE),
+    "spinning_bounce": of(spinning_bounce.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": of(dominoes.SCENE, shown=NO_FORMULA),
     "machine": of(machine.SCENE, shown=NO_FORMULA),
+    "rocking_block": of(rocking_block.SCENE),
     "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": of(rod_cradle.SCENE),
+    "turntable": of(turntable.SCENE),
     "asymmetric_top": of(asymmetric_top.SCENE),
     "heavy_top": of(heavy_top.SCENE),
 }

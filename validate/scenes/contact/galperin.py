@@ -10,11 +10,13 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_not_negative, check_positive
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Ball
 from validate.check import states
-from validate.engines.bullet import IMPACT_SETTINGS, Impacts
-from validate.engines.chipmunk import pymunk_ball, pymunk_space
+from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS
+from validate.engines.switches import worlds_made
 from validate.methods import ONE_BY_ONE, REFLECTION
-from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
+from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
 from validate.scenes._common import ANSWER, one_reading
 from validate.scenes.drawing import outlines
 
@@ -128,28 +130,29 @@ def count(advance, velocities, p):
 PLACES = (0.0, 2.0 * R + ROOM, 4.0 * R + 2.0 * ROOM)                     # of wall, light and heavy [m]
 
 
-def pymunk_make(p, dt):
-    import pymunk
-    space = pymunk_space()
-    space.iterations = 50
-    wall = pymunk.Circle(space.static_body, R)
-    wall.elasticity = 1.0
-    space.add(wall)
-    light, large = (pymunk_ball(space, m, 1.0, R, (x, 0.0), (v, 0.0), 0.0, 1.0, 0.0)
-                    for m, x, v in ((LIGHT, PLACES[1], 0.0), (heavy(p), PLACES[2], -p.V)))
-    step, velocities = engine_step(p), lambda: (light.velocity.x, large.velocity.x)
-    return one_reading(lambda: count(lambda: space.step(step), velocities, p))
+def model(p):
+    """Make the wall and both blocks as balls on a line."""
+    return make_model([Body((x, 0.0), m, Ball(R), e=1.0, v=(v, 0.0)) for x, m, v in zip(
+        PLACES, (np.inf, LIGHT, heavy(p)), (0.0, 0.0, -p.V))], (0.0, 0.0))
 
 
-def pybullet_make(p, dt):
-    bullet = Impacts(engine_step(p))
-    still = (0.0,) * 3
-    bullet.ball(0.0, 1.0, R, (PLACES[0], 0.0, 0.0), still, still, 1.0, 0.0)
-    light = bullet.ball(LIGHT, 1.0, R, (PLACES[1], 0.0, 0.0), still, still, 1.0, 0.0)
-    large = bullet.ball(heavy(p), 1.0, R, (PLACES[2], 0.0, 0.0), (-p.V, 0.0, 0.0), still, 1.0, 0.0)
-    bullet.begin()
-    velocities = lambda: (bullet.velocity(light)[0], bullet.velocity(large)[0])
-    return EngineRun(lambda: None, lambda: count(bullet.step, velocities, p), bullet.close)
+def counted(product, velocities):
+    """Return make(p, dt) of an engine's runner; velocities(its own world) → () → (v, V): a State takes much longer."""
+    def make(p, dt):
+        with worlds_made() as made:
+            world = product.world.build(model(p), engine_step(p), iterations=IMPACT_ITERATIONS)
+        return one_reading(lambda: count(world.step, velocities(*made), p), world.close)
+    return make
+
+
+def in_pymunk(space):
+    _, light, large = space.bodies
+    return lambda: (light.velocity.x, large.velocity.x)
+
+
+def in_pybullet(bullet):
+    _, light, large = map(bullet.pb.getBodyUniqueId, range(3))
+    return lambda: (bullet.velocity(light)[0], bullet.velocity(large)[0])
 
 
 OURS = {"order": EXACT, "limit": limit, "predicted": "exact: only round-off is left, and the limit bounds it"}
@@ -158,8 +161,8 @@ ENGINES = {"order": EXACT, "limit": limit, "supports": countable,
 RUNNERS = (
     ours(ONE_BY_ONE, **OURS),
     ours(REFLECTION, **OURS),
-    engine(PYMUNK, "", pymunk_make, "circles on a line, 50 iterations, collision_slop 1e-5", **ENGINES),
-    engine(PYBULLET, "", pybullet_make, f"spheres on a line; {IMPACT_SETTINGS}", **ENGINES),
+    engine(PYMUNK, "", counted(PYMUNK, in_pymunk), "circles on a line, 50 iterations, collision_slop 1e-5", **ENGINES),
+    engine(PYBULLET, "", counted(PYBULLET, in_pybullet), f"spheres on a line; {IMPACT_SETTINGS}", **ENGINES),
 )
 
 

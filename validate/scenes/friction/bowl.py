@@ -204,8 +204,7 @@ def pybullet_make(p, dt):
         along = np.array([0.0, x[1] if p.trough else 0.0, 0.0])
         return along - p.radius * n, n
 
-    world = bullet_in_hollow((0.0, 0.0, -p.g), p.mu, x, v, fastest(p), wall, dt)
-    return world._replace(read=lambda: np.array(world.read()))
+    return bullet_in_hollow((0.0, 0.0, -p.g), p.mu, x, v, fastest(p), wall, dt)
 
 
 RUNNERS = (

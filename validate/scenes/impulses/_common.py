@@ -4,6 +4,8 @@ from functools import partial
 
 import numpy as np
 
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import HalfSpace
 from validate.engines.bullet import IMPACT_SETTINGS
 from validate.reference.impulses import APART, BULLET_RULE, CHIPMUNK_RULE, COPIES, ONLY_ROUND_OFF, PROJECTING_RULE
 from validate.scene import EXACT, PYBULLET, PYMUNK, engine, ours
@@ -36,6 +38,19 @@ def copies_of(state, bodies):
     """Return (x, v), each (COPIES, bodies, 2), of a State with copies that stand APART in y."""
     x = state.x - np.outer(np.repeat(np.arange(COPIES), bodies), (0.0, APART))
     return x.reshape(COPIES, bodies, 2), state.v.reshape(COPIES, bodies, 2)
+
+
+def over_floor(balls, g):
+    """Make balls over the floor y = 0, each APART from the one before, further along it."""
+    floor = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
+    return make_model([floor, *(ball._replace(x=(ball.x[0] + APART * k, ball.x[1])) for k, ball in enumerate(balls))],
+                      (0.0, -g))
+
+
+def above_floor(state, radius):
+    """Return (x, v (n, 2), ω (n,)) of such balls, where x is their lowest points without their distances."""
+    apart = APART * np.arange(len(state.x) - 1)
+    return state.x[1:] - np.stack((apart, np.full(len(apart), radius)), axis=1), state.v[1:], state.omega[1:]
 
 
 def in_space(start):

@@ -1,5 +1,6 @@
 """A ball dropped from one metre rebounds with 0.8 of its speed: each apex is 0.64 times the one before."""
 
+from functools import partial
 from itertools import pairwise
 from typing import Annotated, NamedTuple
 
@@ -7,14 +8,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.impulses import BouncingBall, check_restitution
+from solutions.support.model import Body
+from solutions.support.shapes import Ball
 from validate.check import Whose, states
-from validate.engines.bullet import Impacts
-from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
+from validate.engines.bullet import IMPACT_ITERATIONS
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
 from validate.reference.impulses import APART, COPIES, LATE, all_dropped, delays, pushed, rounded_steps, soft_bounce
-from validate.scene import EXACT, Departure, EngineRun, Prediction, Scene, by_order, ours
-from validate.scenes._common import ONE_LINK, check_positives, measured
-from validate.scenes.impulses._common import impact_runners, in_space
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, ours
+from validate.scenes._common import ONE_LINK, built, check_positives, measured
+from validate.scenes.impulses._common import above_floor, impact_runners, in_space, over_floor
 
 T = 1.9                      # [s]: in the third flight, clear of impacts
 STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
@@ -176,39 +178,26 @@ def keeps_bouncing(p):
     return p.e >= 0.8
 
 
-def pymunk_make(p, dt):
-    space = pymunk_space((0.0, -p.g))
-    pymunk_floor(space)
-    balls = [
-        pymunk_ball(space, 1.0, 1.0, RADIUS, (APART * k, y + RADIUS), (p.slip, v), 0.0, p.e, 0.0)
-        for k, (y, v) in enumerate(zip(*fallen(p)))
-    ]
-    seen_of = lambda k, b: (b.position.x - APART * k, b.position.y - RADIUS, *b.velocity)
-    return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(balls)]))
+def model(p):
+    return over_floor([Body((0.0, y + RADIUS), 1.0, Ball(RADIUS), e=p.e, v=(p.slip, v))
+                       for y, v in zip(*fallen(p))], p.g)
 
 
-def pybullet_make(p, dt):
-    bullet = Impacts(dt, (0.0, 0.0, -p.g))
-    bullet.plane()
-    balls = [
-        bullet.ball(1.0, 1.0, RADIUS, (0.0, APART * k, y + RADIUS), (p.slip, 0.0, v), (0.0,) * 3, p.e, 0.0)
-        for k, (y, v) in enumerate(zip(*fallen(p)))
-    ]
-
-    def read():
-        x, v = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity))
-        return np.stack((x[:, 0], x[:, 2] - RADIUS, v[:, 0], v[:, 2]), axis=1).ravel()
-    return EngineRun(bullet.begin().step, read, bullet.close)
+def read(state, p):
+    return observe(above_floor(state, RADIUS), p)
 
 
+FAR = {"far": APART * COPIES}
+world = partial(built, model=model, read=read)
 RUNNERS = (
     ours(PENALTY, limit=soft_limit, predicted=pushed_back, supports=keeps_bouncing, most_in_quick=2500,
          departure=Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
                              soft, Whose.LAW)),
     *impact_runners(
         (PROJECTING, BACKTRACKING), limits, late_impacts,
-        (pymunk_make, "circles on a thick segment; collision_slop 1e-5"), (pybullet_make, "spheres on a GEOM_PLANE"),
-        pymunk_errs={"far": APART * COPIES}, most_steps=2500),
+        (world(PYMUNK, iterations=10), "circles on a thick segment; collision_slop 1e-5"),
+        (world(PYBULLET, iterations=IMPACT_ITERATIONS), "spheres on a GEOM_PLANE"),
+        pymunk_errs=FAR, bullet_errs=FAR, most_steps=2500),
 )
 
 
@@ -240,7 +229,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.impulses.falling_acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=ONE_LINK,
     film_seconds=4.5,  # [s]: until it is at rest

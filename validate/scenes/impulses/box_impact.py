@@ -5,14 +5,14 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.impulses import BodyState3D, check_restitution
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Box, HalfSpace
 from validate.check import Whose, states
-from validate.engines.bullet import Impacts
-from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
 from validate.reference.impulses import ONLY_ROUND_OFF, all_at_once, each_in_turn
-from validate.reference.orientation import leaning
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
-from validate.scenes._common import ANSWER, check_positives
+from validate.reference.orientation import leaning, quaternion
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Scene, engine, ours
+from validate.scenes._common import ANSWER, built, check_positives
 
 T = 1.0
 HALF = np.array([0.1, 0.2, 0.3])       # half sizes [m]
@@ -118,38 +118,25 @@ def overlap_left(p, dt):
     return 1e-10
 
 
-def pymunk_make(p, dt):
-    import pymunk
-    space = pymunk_space()
-    space.iterations = 2000
-    floor = pymunk.Segment(space.static_body, (-10.0, -1.0), (10.0, -1.0), 1.0)
-    floor.elasticity, floor.friction = 1.0, 1.0
-    body = pymunk.Body(p.m, moments(p)[2])
-    y, _, r, _ = landing(p)
-    body.position, body.angle, body.velocity = (0.0, float(-r[0, 1]) - OVERLAP), TILT[p.lands][0], (0.0, -p.fall)
-    box = pymunk.Poly.create_box(body, tuple(map(float, 2.0 * HALF[:2])))
-    box.elasticity, box.friction = p.e, ROUGH * p.rough
-    space.add(floor, body, box)
-    return EngineRun(
-        lambda: space.step(BRIEF),
-        lambda: np.array([*body.velocity, 0.0, 0.0, 0.0, body.angular_velocity]) - y,
-        lambda: None,
-    )
+def model(p):
+    """Make the box on the floor, in the plane or in space."""
+    y, n, r, _ = landing(p)
+    d = 2 if p.flat else 3
+    q = TILT[p.lands][0] if p.flat else quaternion(turned(p))
+    box = Body((-(r[0] @ n + OVERLAP) * n)[:d], p.m, Box(HALF[:d]), ROUGH * p.rough, p.e, q, y[:d])
+    return make_model([box, Body(np.zeros(d), shape=HalfSpace(n[:d]), mu=1.0, e=1.0)], np.zeros(d))
 
 
-def pybullet_make(p, dt):
-    """Make an EngineRun of one step, which is the impact: contacts are computed before anything moves."""
-    bullet = Impacts(BRIEF)
-    pb = bullet.pb
-    bullet.pb.setPhysicsEngineParameter(numSolverIterations=2000)
-    y, _, r, _ = landing(p)
-    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    bullet.body(0.0, (), slab, (0.0, 0.0, -1.0), (0.0,) * 3, (0.0,) * 3, 1.0, 1.0)
-    shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=HALF.tolist())
-    centre = (0.0, 0.0, -r[0, 2] - OVERLAP)
-    body = bullet.body(p.m, moments(p), shape, centre, y[:3], y[3:], p.e, ROUGH * p.rough, R=turned(p))
-    read = lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y
-    return EngineRun(bullet.begin().step, read, bullet.close)
+def read(state, p):
+    """Return the change of velocity and angular velocity."""
+    v, omega = state.v[0], state.omega[0]
+    return np.concatenate((v, (0.0, 0.0, 0.0, omega)) if p.flat else (v, omega)) - landing(p)[0]
+
+
+def world(product, **settings):
+    """Return make(p, dt) of an engine's runner.  Its one step is the impact, in which nothing moves."""
+    make = built(product, model, read, iterations=2000, **settings)
+    return lambda p, dt: make(p, BRIEF)
 
 
 def flat(p):
@@ -171,9 +158,9 @@ RUNNERS = (
     ours(IN_TURN, limit=sweeps_left, predicted=ONLY_ROUND_OFF, order=EXACT, supports=several_points,
          departure=Departure("each point sees the body as the previous one left it, so that the order of the points "
                              "counts", in_turn, Whose.LAW)),
-    engine(PYMUNK, "", pymunk_make, "a Poly on a thick Segment, 2,000 iterations",
+    engine(PYMUNK, "", world(PYMUNK, overlap=0.0), "a Poly on a thick Segment, 2,000 iterations",
            order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=flat),
-    engine(PYBULLET, "", pybullet_make, "a box on a box; maximal coordinates; contactERP, contactSlop, "
+    engine(PYBULLET, "", world(PYBULLET, impacts=True), "a box on a box; maximal coordinates; contactERP, contactSlop, "
            "contactProcessingThreshold 0, 2,000 iterations",
            order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=in_space),
 )
@@ -232,7 +219,7 @@ SCENE = Scene(
     cases=CASES, **ANSWER,
     runners=RUNNERS,
     start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=read,
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
     points=points, links=links,

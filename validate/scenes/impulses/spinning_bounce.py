@@ -1,5 +1,6 @@
 """A spinning ball hits the floor: friction removes as much slip as the cone permits; without slip the ball rolls."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -7,14 +8,15 @@ import numpy as np
 from solutions.friction import check_friction
 from solutions.given.impulses import SpinningBall
 from solutions.impulses import check_restitution
+from solutions.support.model import Body
+from solutions.support.shapes import Ball
 from validate.check import states
-from validate.engines.bullet import IMPACT_ITERATIONS, Impacts
-from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
+from validate.engines.bullet import IMPACT_ITERATIONS
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
 from validate.reference.impulses import APART, COPIES, all_dropped, delays, rounded_steps
-from validate.scene import EXACT, EngineRun, Prediction, Scene, by_order
-from validate.scenes._common import check_positives
-from validate.scenes.impulses._common import impact_runners
+from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order
+from validate.scenes._common import built, check_positives
+from validate.scenes.impulses._common import above_floor, impact_runners, over_floor
 
 T = 1.0                      # [s]: it hits the floor after half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 10000)
@@ -127,41 +129,28 @@ def late_impact(p, dt, rule, far=5.0):
                       unsure / size + rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
 
 
-def pymunk_make(p, dt):
-    space = pymunk_space()
-    space.iterations = IMPACT_ITERATIONS
-    pymunk_floor(space)
-    inertia, v, omega = p.shape * p.m * p.R**2, (p.v, -p.fall), p.rim / p.R
-    balls = [pymunk_ball(space, p.m, inertia, p.R, (APART * k + p.v * before, p.h - p.fall * before + p.R), v, omega,
-                         p.e, p.mu)
-             for k, before in enumerate(delays(WINDOW))]
-    seen_of = lambda k, b: (b.position.x - APART * k, b.position.y - p.R, *b.velocity, p.R * b.angular_velocity)
-    return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(balls)]))
+def model(p):
+    ball = Body((0.0, 0.0), p.m, Ball(p.R), p.mu, p.e, v=(p.v, -p.fall), omega=p.rim / p.R,
+                inertia=p.shape * p.m * p.R**2)
+    return over_floor([ball._replace(x=(p.v * before, p.h - p.fall * before + p.R)) for before in delays(WINDOW)], 0.0)
 
 
-def pybullet_make(p, dt):
-    bullet = Impacts(dt)
-    bullet.plane()
-    inertia, v, omega = p.shape * p.m * p.R**2, (p.v, 0.0, -p.fall), (0.0, -p.rim / p.R, 0.0)
-    balls = [bullet.ball(p.m, inertia, p.R, (p.v * before, APART * k, p.h - p.fall * before + p.R), v, omega,
-                         p.e, p.mu)
-             for k, before in enumerate(delays(WINDOW))]
-
-    def read():
-        x, v, omega = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity, bullet.omega))
-        return np.stack((x[:, 0], x[:, 2] - p.R, v[:, 0], v[:, 2], -p.R * omega[:, 1]), axis=1).ravel()
-    return EngineRun(bullet.begin().step, read, bullet.close)
+def read(state, p):
+    x, v, omega = above_floor(state, p.R)
+    return np.column_stack((x, v, p.R * omega)).ravel()
 
 
 def is_sphere(p):
     return p.shape == 0.4
 
 
+FAR = {"far": APART * COPIES}
+world = partial(built, model=model, read=read, iterations=IMPACT_ITERATIONS)
 RUNNERS = impact_runners(
     (PROJECTING_SPIN, BACKTRACKING_SPIN), limits, late_impact,
-    (pymunk_make, f"circles on a thick segment; {IMPACT_ITERATIONS} iterations"),
-    (pybullet_make, "spheres on a GEOM_PLANE"),
-    pymunk_errs={"far": APART * COPIES}, supports=is_sphere, most_steps=2000)
+    (world(PYMUNK), f"circles on a thick segment; {IMPACT_ITERATIONS} iterations"),
+    (world(PYBULLET), "spheres on a GEOM_PLANE"),
+    pymunk_errs=FAR, bullet_errs=FAR, supports=is_sphere, most_steps=2000)
 
 
 def sanity_checks():
@@ -189,7 +178,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.impulses.falling_acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("one ball", "one angular velocity", "one impulse in a cone"),

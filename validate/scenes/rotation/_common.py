@@ -8,6 +8,7 @@ import numpy as np
 from solutions.given.rotation import check_moments
 from solutions.rotation import RigidBody, RollingBall
 from solutions.support.model import Body, make_model, rotation_of
+from solutions.support.shapes import Ball, HalfSpace
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import EXPLICIT, IMPLICIT, free_limits
 from validate.reference.turns import EXPLICIT_TERM, IMPLICIT_TERM, MUNTHE_KAAS
@@ -116,6 +117,13 @@ def rolled(p, t, rim=0.0):
     return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v, rim + brake * sliding / p.shape])
 
 
-def rolling_circle(body, R):
-    """Return the read function of pymunk's EngineRun of a rolling circle: the same three quantities."""
-    return lambda: np.array([body.position.x, body.velocity.x, -R * body.angular_velocity])
+def rolling_model(ball, v=0.0, rim=0.0):
+    """Make a RollingBall with these first speeds [m/s] on a floor of friction 1, in the plane of x and z."""
+    R = ball.radius
+    body = Body((0.0, R), ball.m, Ball(R), ball.mu, v=(v, 0.0), omega=-rim / R, inertia=ball.I_body[1])
+    return make_model([body, Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)], ball.gravity[::2])
+
+
+def read_rolling(radius):
+    """Return read(State, p) of that Model: the same three quantities."""
+    return lambda state, p: np.array([state.x[0, 0], state.v[0, 0], -radius(p) * state.omega[0]])

@@ -8,14 +8,13 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.rotation import RollingBall
 from validate.check import states
-from validate.engines.rotation import rolling_ball
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.scene import PYBULLET, ROUND_OFF, Prediction, Scene, engine, in_substeps, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives, measured
+from validate.scenes._common import built, check_positives, measured
 from validate.scenes.drawing import pose
-from validate.scenes.rotation._common import observe_rolling
+from validate.scenes.rotation._common import observe_rolling, read_rolling, rolling_model
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -87,16 +86,18 @@ def new_velocity(p, dt, share=1.0):
 mean_velocity = partial(new_velocity, share=0.0)
 
 
-def pybullet_make(p, dt, maximal=False):
-    return rolling_ball(ball(p), np.zeros(3), np.zeros(3), maximal, dt)
+def model(p):
+    return rolling_model(ball(p))
 
 
-MAXIMAL = engine(PYBULLET, "", partial(pybullet_make, maximal=True), "the same with useMaximalCoordinates=1",
+read = read_rolling(lambda p: p.radius)
+world = partial(built, PYBULLET, model, read, overlap=0.0, slop=0.0)
+MAXIMAL = engine(PYBULLET, "", world(ground=False), "the same with useMaximalCoordinates=1",
                  order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
     ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
-    engine(PYBULLET, "reduced coordinates", pybullet_make,
+    engine(PYBULLET, "reduced coordinates", world(maximal=False),
            "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, "
            "no damping",
            order=1, limit=limits, predicted=new_velocity),
@@ -157,7 +158,7 @@ SCENE = Scene(
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.rotation.supported_weight,
     start=start, run=run, observe=observe_rolling(lambda p: p.radius),
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,

@@ -5,8 +5,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.support.model import Body, make_model
-from solutions.support.shapes import Ball, HalfSpace
 from validate.check import states
 from validate.methods import AVERAGE_ROLLING, ROLLING
 from validate.reference.orientation import about
@@ -88,16 +86,10 @@ old_velocity, mean_velocity = partial(new_velocity, share=0.0), partial(new_velo
 
 
 def model(p):
-    """Make the ball on a floor with friction 1, in the plane."""
-    body = Body((0.0, p.R), p.m, Ball(p.R), p.mu, v=(p.v0, 0.0), inertia=p.shape * p.m * p.R**2)
-    return make_model([body, Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)], (0.0, -p.g))
+    return balls.rolling_model(ball(p), p.v0)
 
 
-def read(state, p):
-    """Return distance, speed and rim speed."""
-    return np.array([state.x[0, 0], state.v[0, 0], -p.R * state.omega[0]])
-
-
+read = balls.read_rolling(lambda p: p.R)
 world = partial(built, model=model, read=read)
 in_pybullet = partial(world, PYBULLET, overlap=0.0, slop=0.0)
 MAXIMAL = engine(PYBULLET, "", in_pybullet(ground=False), "the same with useMaximalCoordinates=1",

@@ -14,9 +14,10 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.given.sensitivities import Course
 from solutions.impulses import BouncingBall, check_restitution
+from solutions.support.model import Body
+from solutions.support.shapes import Ball
 from validate.check import Whose, states
-from validate.engines.bullet import IMPACT_SETTINGS, Impacts
-from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
+from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS
 from validate.methods import BACKTRACKING, PROJECTING, SALTATION
 from validate.reference.impulses import APART as ASIDE
 from validate.reference.impulses import BULLET_RULE, CHIPMUNK_RULE, LATE, PROJECTING_RULE
@@ -35,14 +36,14 @@ from validate.scene import (
     PYMUNK,
     ROUND_OFF,
     Departure,
-    EngineRun,
     Prediction,
     Scene,
     by_order,
     engine,
     ours,
 )
-from validate.scenes._common import ONE_LINK, check_positives, measured
+from validate.scenes._common import ONE_LINK, built, check_positives, measured
+from validate.scenes.impulses._common import above_floor, over_floor
 
 T = 1.9                      # [s]: clear of impacts in all cases
 STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
@@ -186,31 +187,13 @@ def late_differences(p, dt, rule, kept, far=1.0):
 
 # ---------------------------------------------------------------------------------------------- engines
 
-def pymunk_make(p, dt):
-    space = pymunk_space((0.0, -p.g))
-    pymunk_floor(space)
-    bodies = [pymunk_ball(space, 1.0, 1.0, RADIUS, (ASIDE * k, h + RADIUS), (p.slip, 0.0), 0.0, e, 0.0)
-              for k, (h, e) in enumerate(balls(p))]
-    offset = np.array([0.0, RADIUS])
-
-    def read():
-        x = np.array([(b.position.x - ASIDE * k, b.position.y) for k, b in enumerate(bodies)]) - offset
-        v = np.array([tuple(b.velocity) for b in bodies])
-        return observe((x, v, differences(x), differences(v)), p)
-    return pymunk_world(space, dt, read)
+def model(p):
+    return over_floor([Body((0.0, h + RADIUS), 1.0, Ball(RADIUS), e=e, v=(p.slip, 0.0)) for h, e in balls(p)], p.g)
 
 
-def pybullet_make(p, dt):
-    bullet = Impacts(dt, (0.0, 0.0, -p.g))
-    bullet.plane()
-    bodies = [bullet.ball(1.0, 1.0, RADIUS, (0.0, ASIDE * k, h + RADIUS), (p.slip, 0.0, 0.0), (0.0,) * 3, e, 0.0)
-              for k, (h, e) in enumerate(balls(p))]
-
-    def read():
-        x, v = (np.array([get(b) for b in bodies])[:, [0, 2]] for get in (bullet.position, bullet.velocity))
-        x = x - np.array([0.0, RADIUS])
-        return observe((x, v, differences(x), differences(v)), p)
-    return EngineRun(bullet.begin().step, read, bullet.close)
+def read(state, p):
+    x, v, _ = above_floor(state, RADIUS)
+    return observe((x, v, differences(x), differences(v)), p)
 
 
 def not_elastic(p):
@@ -237,13 +220,15 @@ def late(kept, rule, **about):
             "predicted": partial(late_differences, rule=rule, kept=kept, **about)}
 
 
+world = partial(built, model=model, read=read)
 RUNNERS = (
     ours(SALTATION, order=EXACT, limit=exact_limit, predicted="exact: only round-off is left, and the limit bounds it"),
     ours(BACKTRACKING, order=EXACT, limit=difference_limit, predicted=closed_difference, supports=not_elastic),
     ours(PROJECTING, departure=departure(SET_DOWN, 0.0), **late(0.0, PROJECTING_RULE)),
-    engine(PYMUNK, "", pymunk_make, "five circles on a thick segment; collision_slop 1e-5",
+    engine(PYMUNK, "", world(PYMUNK, iterations=10), "five circles on a thick segment; collision_slop 1e-5",
            departure=departure(LEFT_BELOW, 1.0), most_steps=2500, **late(1.0, CHIPMUNK_RULE, far=4.0 * ASIDE)),
-    engine(PYBULLET, "", pybullet_make, f"five spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
+    engine(PYBULLET, "", world(PYBULLET, iterations=IMPACT_ITERATIONS),
+           f"five spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
            departure=departure(LEFT_BELOW, 1.0), most_steps=2500, **late(1.0, BULLET_RULE)),
 )
 
@@ -277,7 +262,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.impulses.falling_acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=read,
     quantity_names=lambda p: ["distance along the floor [m]", "height y [m]", "speed v [m/s]", "∂y/∂h [-]",
                               "∂y/∂e [m]", "∂v/∂h [1/s]", "∂v/∂e [m/s]"],
     sanity_checks=sanity_checks,

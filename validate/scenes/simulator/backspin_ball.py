@@ -11,21 +11,19 @@ import numpy as np
 
 from solutions.checks import check_positive
 from validate.check import states
-from validate.engines.chipmunk import pymunk_world
-from validate.engines.rotation import rolling_ball
-from validate.engines.simulator import OVERLAP, pymunk_body, pymunk_floor_space
 from validate.methods import AVERAGE_ROLLING, EXACT_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
 from validate.scenes import drawing
-from validate.scenes._common import check_positives
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import circle, outlines, pose
 from validate.scenes.rotation import _common as balls
 from validate.scenes.rotation._common import ball_on_floor as ball
 
 T = 3.0                      # [s]
 STEPS = (30, 60, 150, 300, 600, 1500, 3000)
+OVERLAP = 1e-6               # of pymunk's circle and the floor at the start [m]: without one it detects no contact
 
 
 class Params(NamedTuple):
@@ -108,29 +106,21 @@ def cut_error(p, dt):
     return Prediction(np.zeros(3), rounded(p, dt))
 
 
-def pymunk_make(p, dt):
-    """Make a circle with that moment that overlaps the floor by a micrometre, because pymunk needs an overlap."""
-    import pymunk
-    space = pymunk_floor_space(p.g, p.mu)
-    body = pymunk_body(space, p.m, p.shape * p.m * p.R**2, (0.0, p.R - OVERLAP), 0.0,
-                       lambda body: pymunk.Circle(body, p.R))
-    body.velocity, body.angular_velocity = (p.v0, 0.0), -p.rim0 / p.R
-    return pymunk_world(space, dt, balls.rolling_circle(body, p.R))
+def model(p):
+    return balls.rolling_model(ball(p), p.v0, p.rim0)
 
 
-def pybullet_make(p, dt):
-    _, _, v, omega = start(p)
-    return rolling_ball(ball(p), v, omega, True, dt)
-
-
+read = balls.read_rolling(lambda p: p.R)
+world = partial(built, model=model, read=read)
 RUNNERS = (
     ours(ROLLING, limit=late_limit, predicted=partial(error, share=1.0)),
     ours(AVERAGE_ROLLING, order="2 on average", limit=mean_limit, predicted=partial(error, share=0.5)),
     ours(EXACT_ROLLING, order=EXACT, limit=cut_limit, predicted=cut_error),
-    engine(PYMUNK, "", pymunk_make, "100 iterations; the circle starts 1e-6 m inside the floor",
+    engine(PYMUNK, "", world(PYMUNK, overlap=OVERLAP), "100 iterations; the circle starts 1e-6 m inside the floor",
            order=1, limit=partial(late_limit, overlap=OVERLAP), predicted=partial(error, share=0.0, overlap=OVERLAP)),
-    engine(PYBULLET, "", pybullet_make, "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual threshold, "
-           "no slop, no damping", order=1, limit=late_limit, predicted=partial(error, share=1.0, overlap=OVERLAP)),
+    engine(PYBULLET, "", world(PYBULLET, overlap=0.0, slop=0.0),
+           "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
+           order=1, limit=late_limit, predicted=partial(error, share=1.0, overlap=OVERLAP)),
 )
 
 
@@ -196,7 +186,7 @@ SCENE = Scene(
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.rotation.supported_weight,
     start=start, run=run, observe=balls.observe_rolling(lambda p: p.R),
-    truth=truth, truth_uncertainty=1e-15,
+    truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     slow_cases=("goes on", "disc"),
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -11,25 +11,21 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.simulator import (
-    RockingBlock,
-    make_bodies_2d,
-)
+from solutions.simulator import RockingBlock, make_bodies_2d
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Box, HalfSpace
 from validate.check import states
-from validate.engines.bullet import Rigid
-from validate.engines.chipmunk import pymunk_world
-from validate.engines.simulator import ITERATIONS, OVERLAP, pybullet_box, pybullet_slab, pymunk_body, pymunk_floor_space
 from validate.methods import LOOP_2D, ROCKING
-from validate.reference.orientation import about
 from validate.reference.simulator import rocking
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, EngineRun, Scene, engine, ours
-from validate.scenes._common import check_positives
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Scene, engine, ours
+from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import outlines
 
 T = 0.6                      # [s]; the first impact is at about 0.35 s
 STEPS = (24, 48, 120, 240, 480, 1200, 2400)
 SWEEPS = 40                  # [-]
 MARGIN = 0.02                # [m]
+OVERLAP = 1e-6               # of the engines' bodies at the start [m], so that they detect a contact
 MU = 5.0                     # nothing slides [-]
 BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on the phase of the impact
 
@@ -111,29 +107,17 @@ def cut_limit(p, dt):
     return cut + 1e-11 + T / dt * ROUND_OFF
 
 
-def pymunk_make(p, dt):
-    import pymunk
-    space = pymunk_floor_space(p.g, MU)
-    body = pymunk_body(space, 1.0, inertia(p), place(p) - np.array([0.0, OVERLAP]), p.share * alpha(p),
-                       lambda body: pymunk.Poly.create_box(body, (2.0 * p.b, 2.0 * p.h)))
-    return pymunk_world(space, dt, lambda: np.array([body.angle, body.angular_velocity]))
+def model(p):
+    block = Body(place(p), 1.0, Box((p.b, p.h)), MU, q=p.share * alpha(p))
+    return make_model([block, Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)], (0.0, -p.g))
 
 
-def pybullet_make(p, dt):
-    """Make a box as wide as it is deep; x is to the right and z up, so a lean to the left is about −y."""
-    bullet, x = Rigid(dt, (0.0, 0.0, -p.g), iterations=ITERATIONS), place(p)
-    pybullet_slab(bullet)
-    half = np.array([p.b, p.b, p.h])
-    moments = np.array([p.b**2 + p.h**2, p.b**2 + p.h**2, 2.0 * p.b**2]) / 3.0
-    y = np.array([0.0, 1.0, 0.0])
-    body = pybullet_box(bullet, 1.0, moments, half, (x[0], 0.0, x[1] - OVERLAP), about(y, -p.share * alpha(p)), MU)
-
-    def read():
-        R = bullet.R(body)
-        return np.array([-np.arctan2(R[0, 2], R[2, 2]), -bullet.omega(body)[1]])
-    return EngineRun(bullet.begin().step, read, bullet.close)
+def read(state, p):
+    """Return angle [rad] and rate [rad/s]."""
+    return np.array([state.q[0], state.omega[0]])
 
 
+world = partial(built, model=model, read=read, overlap=OVERLAP)
 # Tried at 24, 120, 480 and 2,400 steps; the errors with these settings are 148, 14, 3.1 and 0.64 % in pymunk, and 23,
 # 15, 2.9 and 0.66 % in pybullet.  No setting mends what makes them: the corner is found up to a step late.
 # pymunk at 480 and 2,400 steps: 3.1 and 0.64 % with 10 or 1,000 iterations, slop 0, or a persistence of contacts of 1
@@ -146,12 +130,13 @@ BY_CHANCE = "the delay of the impact depends on its phase in the step"
 RUNNERS = (
     ours(LOOP_2D, order=BY_PHASE, limit=late_limit, predicted=BY_CHANCE, in_quick=False),
     ours(ROCKING, limit=cut_limit, predicted="the leading term of its error is not derived, only its bound"),
-    engine(PYMUNK, "", pymunk_make, "100 iterations, collision_slop 1e-5; the block starts 1e-6 m inside the floor; "
+    engine(PYMUNK, "", world(PYMUNK), "100 iterations, collision_slop 1e-5; the block starts 1e-6 m inside the floor; "
            "thirteen other settings find the corner as late",
            order=BY_PHASE, limit=partial(late_limit, overlap=1e-4), predicted=BY_CHANCE),
-    engine(PYBULLET, "", pybullet_make, "a box in space on a fixed box; maximal coordinates, 100 iterations, no "
-           "residual threshold, no slop; thirteen other settings find the corner as late, but for substeps, which are "
-           "smaller steps", order=BY_PHASE, limit=partial(late_limit, overlap=1e-3), predicted=BY_CHANCE),
+    engine(PYBULLET, "", world(PYBULLET, slop=0.0),
+           "a box in space on a fixed box; maximal coordinates, 100 iterations, no residual threshold, no slop; "
+           "thirteen other settings find the corner as late, but for substeps, which are smaller steps",
+           order=BY_PHASE, limit=partial(late_limit, overlap=1e-3), predicted=BY_CHANCE),
 )
 
 
@@ -190,7 +175,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-11,
+    truth=truth, truth_uncertainty=1e-11, model=model, read=read,
     slow_cases=("a quarter of it",),
     sanity_checks=sanity_checks,
     points=points, links=links,
