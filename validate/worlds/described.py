@@ -11,7 +11,7 @@ from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import cradle, oblique_discs
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
-from ..scenes.pbd import pendulum
+from ..scenes.pbd import pendulum, rope
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
 from ..scenes.springs import spring_net
@@ -45,6 +45,7 @@ DESCRIBED = {                # name of the scene: Described
     "cradle": of(cradle.SCENE),
     "oblique_discs": of(oblique_discs.SCENE),
     "pendulum": of(pendulum.SCENE),
+    "rope": of(rope.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": of(dominoes.SCENE, shown=NO_FORMULA),
     "machine": of(machine.SCENE, shown=NO_FORMULA),
