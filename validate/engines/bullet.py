@@ -48,13 +48,6 @@ class Bullet:
         # threshold is global to the process and survives reconnecting, so every scene sets it
         self.pb.setPhysicsEngineParameter(solverResidualThreshold=0, contactBreakingThreshold=0.02)
 
-    def point_mass(self, m, x, v):
-        """Make a free body in maximal coordinates, without damping or clamp."""
-        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=1)
-        self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
-        self.pb.resetBaseVelocity(body, list(map(float, v)))
-        return body
-
     def give_moments(self, body, m, I, maximal, **more):
         """Set mass [kg] and moments (3,) [kg m²] in one call, or the first is lost; `more` are further properties.
 

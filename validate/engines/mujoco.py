@@ -42,22 +42,11 @@ def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
     return model, mujoco.MjData(model)
 
 
-def running(model, data, read, load=None):
-    """Make the EngineRun of a world.
-
-    load(data) adds forces to data.qfrc_passive in every stage of a step: a force that is set once per step would make
-    Runge–Kutta a method of order 1.  MuJoCo has one callback for all worlds, so it is there during the step only.
-    """
-    step, take = module().mj_step, module().set_mjcb_passive
+def running(model, data, read):
+    """Make the EngineRun of a world."""
+    step = module().mj_step
     made(model)
-
-    def loaded():
-        take(lambda model, data: load(data))
-        try:
-            step(model, data)
-        finally:
-            take(None)
-    return EngineRun(loaded if load else lambda: step(model, data), read, lambda: None)
+    return EngineRun(lambda: step(model, data), read, lambda: None)
 
 
 def empty_world():
@@ -79,19 +68,15 @@ def sliding(m, d, inside="", **joint):
     return f"{slides}{inertial(m, np.ones(3))}{inside}"
 
 
-def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), force=None, **joint):
+def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
     """Make the EngineRun of points at x (n, d) with velocities v; read(x (n, d)).
 
-    force(x, v) → (n, d) [N], of flat lists of floats, is called in every stage of a step.
     joint: stiffness [N/m] of a spring to the origin and damping [N s/m], along each axis.
     """
     d = len(x[0])
     model, data = world(dt, "".join(f"<body>{sliding(m, d, **joint)}</body>" for m in masses), gravity)
     data.qpos[:], data.qvel[:] = np.ravel(x), np.ravel(v)
-
-    def load(data):
-        data.qfrc_passive += force(data.qpos.tolist(), data.qvel.tolist())
-    return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()), load if force else None)
+    return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()))
 
 
 def net(net, dt, observe):

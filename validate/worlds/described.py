@@ -14,7 +14,7 @@ from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.pbd import pendulum, rope
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
-from ..scenes.springs import spring_net
+from ..scenes.springs import spring_net, two_stars
 
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
 
@@ -39,6 +39,7 @@ DESCRIBED = {                # name of the scene: Described
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
     "spring_net": of(spring_net.SCENE),
+    "two_stars": of(two_stars.SCENE),
     "incline": of(incline.SCENE),
     "stick_slip": of(stick_slip.SCENE),
     "slide_then_roll": of(slide_then_roll.SCENE),
