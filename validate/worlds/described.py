@@ -14,7 +14,7 @@ from ..scenes.integrators import kepler, linear_drag, oscillator, throw
 from ..scenes.pbd import pendulum, rope
 from ..scenes.rotation import asymmetric_top, heavy_top, slide_then_roll
 from ..scenes.simulator import dominoes, machine, moving_wedge, rod_chain, rod_cradle
-from ..scenes.springs import spring_net, two_stars
+from ..scenes.springs import hanging_springs, spring_net, two_stars
 
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
 
@@ -38,6 +38,7 @@ DESCRIBED = {                # name of the scene: Described
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
+    "hanging_springs": of(hanging_springs.SCENE),
     "spring_net": of(spring_net.SCENE),
     "two_stars": of(two_stars.SCENE),
     "incline": of(incline.SCENE),
