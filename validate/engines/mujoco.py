@@ -6,7 +6,6 @@ A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
 """
 
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from . import quiet_import
 from .switches import Switch, made
 
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
-LEAST = 1e-14                            # moment of what has none [kg m²]: MuJoCo permits no less than 1e-15
 SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 
@@ -61,11 +59,11 @@ def inertial(m, moments, place=(0.0, 0.0, 0.0)):
 
 # ---------------------------------------------------------------------------------------------- points
 
-def sliding(m, d, inside="", **joint):
+def sliding(m, d, **joint):
     """Return the XML of a body of m [kg] that slides along the first d axes; joint: attributes of its joints."""
     attributes = "".join(f' {name}="{text(value)}"' for name, value in joint.items())
     slides = "".join(f'<joint type="slide" axis="{text(axis)}"{attributes}/>' for axis in np.eye(3)[:d])
-    return f"{slides}{inertial(m, np.ones(3))}{inside}"
+    return f"{slides}{inertial(m, np.ones(3))}"
 
 
 def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
@@ -77,47 +75,6 @@ def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
     model, data = world(dt, "".join(f"<body>{sliding(m, d, **joint)}</body>" for m in masses), gravity)
     data.qpos[:], data.qvel[:] = np.ravel(x), np.ravel(v)
     return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()))
-
-
-def net(net, dt, observe):
-    """Make the EngineRun of a ReferenceNetwork of validate/reference; observe(x (n, d)) reads it.
-
-    Springs with dampers are tendons, viscosity is a damping of the joints, and wind is a part of gravity.
-    """
-    wide, d, free = net.padded(), net.x.shape[1], net.free()
-    site = lambda n, place: f'<site name="{n}" pos="{text(place)}"/>'
-    bodies = "".join(f'<body pos="{text(x)}">{sliding(net.m, d, site(n, np.zeros(3)), damping=net.k_v)}</body>'
-                     if free[n] else site(n, x) for n, x in enumerate(wide.x))
-    tendons = "".join(f'<spatial springlength="{text(rest)}" stiffness="{text(net.k)}" damping="{text(net.k_d)}">'
-                      f'<site site="{i}"/><site site="{j}"/></spatial>'
-                      for (i, j), rest in zip(net.pairs, net.rest) if free[i] or free[j])
-    model, data = world(dt, bodies, wide.gravity + wide.wind / net.m, more=f"<tendon>{tendons}</tendon>")
-    data.qvel[:] = net.v[free].ravel()
-
-    def read():
-        x = net.x.copy()
-        x[free] += data.qpos.reshape(-1, d)
-        return observe(x)
-    return running(model, data, read)
-
-
-# ---------------------------------------------------------------------------------------------- bodies on hinges
-
-def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4", joint=""):
-    """Make the EngineRun of rods between neighbouring ends (n + 1, 2), the first end in its place.
-
-    m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
-    read(angles (n,) of the rods from x).  joint: attributes of the hinges in XML.
-    """
-    body, angles = "", np.unwrap([np.arctan2(*(end - begin)[::-1]) for begin, end in pairwise(ends)])
-    lengths = [np.linalg.norm(end - begin) for begin, end in pairwise(ends)]
-    for k in reversed(range(len(lengths))):
-        place = (lengths[k - 1] if k else 0.0, 0.0, 0.0)
-        body = (f'<body pos="{text(place)}"><joint type="hinge" axis="0 -1 0" {joint}/>'
-                f'{inertial(m, np.full(3, max(inertia, LEAST)), (centre * lengths[k], 0.0, 0.0))}{body}</body>')
-    model, data = world(dt, body, (0.0, 0.0, -g), integrator)
-    data.qpos[:] = np.diff(angles, prepend=0.0)
-    return running(model, data, lambda: read(np.cumsum(data.qpos)))
 
 
 # ---------------------------------------------------------------------------------------------- contacts
