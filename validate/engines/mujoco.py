@@ -30,13 +30,13 @@ def text(values):
     return " ".join(repr(float(value)) for value in np.ravel(values))
 
 
-def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
-    """Return (model, data) of bodies in XML; `more` are further parts of the model."""
+def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4"):
+    """Return (model, data) of bodies in XML."""
     mujoco = module()
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="{text(dt)}" gravity="{text(gravity)}" integrator="{integrator}" cone="elliptic" '
         'tolerance="0" iterations="100"><flag autoreset="disable"/></option>'
-        f"{more}<worldbody>{bodies}</worldbody></mujoco>")
+        f"<worldbody>{bodies}</worldbody></mujoco>")
     return model, mujoco.MjData(model)
 
 
@@ -78,33 +78,6 @@ def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
 
 
 # ---------------------------------------------------------------------------------------------- contacts
-
-def contacts(mu):
-    """Return the XML of the default of all shapes: friction, and a critically damped contact."""
-    return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
-            f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
-
-
-def tower(cubes, dt):
-    """Build a Tower of cubes; return a function that runs it and returns (force under each cube [N], its depth [m])."""
-    half, bodies = np.full(3, 0.5 * cubes.size), ""
-    for m, y in zip(cubes.masses, cubes.heights()):
-        bodies += (f'<body pos="0 0 {text(y)}"><freejoint/><geom type="box" size="{text(half)}" mass="{text(m)}"/>'
-                   "</body>")
-    model, data = world(dt, f'<geom type="plane" size="0 0 1"/>{bodies}', (0.0, 0.0, -cubes.g), "Euler",
-                        contacts(cubes.mu))
-
-    def wait():
-        mujoco, found, forces = module(), np.zeros(6), np.zeros(len(cubes.masses))
-        for _ in range(round(cubes.waiting / dt)):
-            mujoco.mj_step(model, data)
-        mujoco.mj_forward(model, data)                   # the contacts of the last places
-        for n, contact in enumerate(data.contact):
-            mujoco.mj_contactForce(model, data, n, found)
-            forces[max(model.geom_bodyid[contact.geom]) - 1] += found[0]          # body 0 is the floor
-        return forces, data.qpos.reshape(-1, 7)[:, 2] - cubes.heights()
-    return wait
-
 
 def sag(load, m, below):
     """Return the depth [m] of each of the four contacts under a cube that carry F/4: F (1 − d) τ² (1/m + 1/m')/4.
