@@ -100,11 +100,14 @@ class Force(NamedTuple):
     """
     a: int                   # number of a body
     F: object                # a function → (d,) [N], of what `of` names, in this order
-    of: str                  # "t": the time [s]; "x": the place of the body [m]; "v": its velocity [m/s]; "xv": both
+    of: str                  # "t": the time [s]; "x": the place of the body [m]; "v": its velocity [m/s]; "xv": both;
+                             # "r": the vector from there to body b [m]
+    b: int | None = None     # number of a body, for "r"
 
     def __call__(self, t, x, q, v, omega):
         """Return (F (n, d) [N], tau [N m]) of all bodies."""
-        now, F = {"t": t, "x": x[self.a], "v": v[self.a]}, np.zeros(x.shape)
+        now = {"r": x[self.b] - x[self.a]} if self.of == "r" else {"t": t, "x": x[self.a], "v": v[self.a]}
+        F = np.zeros(x.shape)
         F[self.a] = self.F(*(now[name] for name in self.of))
         return F, np.zeros(omega.shape)
 

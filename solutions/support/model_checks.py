@@ -174,12 +174,16 @@ def check_spring(k, spring, free, d):
 
 
 def check_force(force, free):
-    """Raise BadInput unless a Force is a function of "t", "x", "v" or "xv" on a body that can move."""
-    number = isinstance(force.a, int | np.integer) and not isinstance(force.a, bool)
-    if not (number and 0 <= force.a < len(free) and free[force.a]):
+    """Raise BadInput unless a Force is a function of "t", "x", "v", "xv", or "r" to another body, on one that can move.
+    """
+    there = [isinstance(k, int | np.integer) and not isinstance(k, bool) and 0 <= k < len(free)
+             for k in (force.a, force.b)]
+    if not (there[0] and free[force.a]):
         raise BadInput("the body of a Force", force.a, "name a body that can move by its number")
-    if force.of not in ("t", "x", "v", "xv"):
-        raise BadInput("what a Force depends on", repr(force.of), 'choose from: "t", "x", "v", "xv"')
+    if force.of not in ("t", "x", "v", "xv", "r"):
+        raise BadInput("what a Force depends on", repr(force.of), 'choose from: "t", "x", "v", "xv", "r"')
+    if force.of == "r" and (not there[1] or force.b == force.a):
+        raise BadInput("the other body of a Force", force.b, "name another body by its number")
     if not callable(force.F):
         raise BadInput("F of a Force", type(force.F).__name__, f"give a function of {', '.join(force.of)}")
 

@@ -14,8 +14,10 @@ SAME = 1e-3                  # of an error: bodies that touch begin a micrometre
 OTHER_MODEL = {("incline", MUJOCO)}      # the scene's block is a ball there
 JUDGED = [(name, product) for name, one in DESCRIBED.items() if not one.shown for product in BUILDERS
           if product.installed() and not product.world.refuses(one.model(one.scene.parameters))]
+HINGED = {("pendulum", MUJOCO), ("rope", MUJOCO)}    # hinges in the scenes; the rods of their Models are soft
 CHOSEN = [(name, runner) for name, one in DESCRIBED.items() if not one.shown for runner in one.scene.engine_runners
-           if not runner.who.variant and (name, runner.who.product) in JUDGED]
+          if not runner.who.variant and (name, runner.who.product) in JUDGED
+          and (name, runner.who.product) not in HINGED]
 
 
 def errors(name, product, most=MOST):
@@ -50,8 +52,8 @@ def test_mujoco_is_of_order_four_where_nothing_touches(name):
 def test_each_engine_runs_most_scenes():
     counts = {product.name: sum(not product.world.refuses(one.model(one.scene.parameters))
                                 for one in DESCRIBED.values()) for product in BUILDERS if product.installed()}
-    assert counts.items() <= {"pymunk": 20, "pybullet": 21, "mujoco": 16, "pyb2d3": 20,
-                               "rapier3d": 23}.items()
+    assert counts.items() <= {"pymunk": 24, "pybullet": 23, "mujoco": 20, "pyb2d3": 24,
+                               "rapier3d": 27}.items()
 
 
 # ---------------------------------------------------------------------------------------------- our loop

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from solutions.support.model import Body, Drag, Force, make_model
 from validate import measure
 from validate.check import Verdict
-from validate.engines import mujoco
-from validate.engines.mujoco import IMPEDANCE
+from validate.engines.mujoco import IMPEDANCE, module
 from validate.measure.accuracy import engine_curve, run_engine_to_end
 from validate.measure.selection import select
 from validate.products import MUJOCO, PRODUCTS
@@ -76,25 +76,27 @@ def test_its_error_is_predicted_where_a_thousand_steps_do_not_show_the_order_yet
     assert all(row["error"] > 100.0 * row["band"] for row in predicted[:1])
 
 
+def world_of(loads):
+    """A point that moves with 1 m/s under these loads."""
+    return MUJOCO.world.build(make_model([Body((0.0, 0.0), 1.0, v=(1.0, 0.0))], (0.0, 0.0), loads=loads), 0.01)
+
+
 @needs_mujoco
 def test_a_load_acts_in_every_stage_and_in_its_own_world_only():
     """A force that is set once per step would make Runge–Kutta a method of order 1."""
-    spring = lambda x, v: [-100.0 * x[0] - v[0]]
-    make = lambda **law: mujoco.points([1.0], [[1.0]], [[0.0]], 0.01, np.ravel, **law)
-    loaded, built_in, free = make(force=spring), make(stiffness=100.0, damping=1.0), make()
+    loaded, built_in, free = (world_of(loads) for loads in ([Force(0, lambda v: (-v[0], -v[1]), "v")], [Drag(1.0)], []))
     for _ in range(100):
         for world in (loaded, built_in, free):
             world.step()
-    assert loaded.read() == pytest.approx(built_in.read(), abs=1e-13)
-    assert free.read() == 1.0 != loaded.read()
+    v = [world.state().v[0, 0] for world in (loaded, built_in, free)]
+    assert v[0] == pytest.approx(v[1], abs=1e-13) and v[2] == 1.0 != v[0]
 
 
 @needs_mujoco
 def test_a_load_that_fails_does_not_stay():
-    broken = mujoco.points([1.0], [[1.0]], [[0.0]], 0.01, np.ravel, force=lambda x, v: x[1])
     with pytest.raises(IndexError):
-        broken.step()
-    assert mujoco.module().get_mjcb_passive() is None
+        world_of([Force(0, lambda x: x[2], "x")]).step()
+    assert module().get_mjcb_passive() is None
 
 
 @needs_mujoco

@@ -5,12 +5,13 @@ import pytest
 
 from validate import measure
 from validate.check import is_right
-from validate.engines.contact import pymunk_tower
 from validate.measure import film, record
 from validate.measure.selection import can_do
+from validate.products import PYMUNK
 from validate.reference.contact import Towers, sway_of_tower, unrest_in_pymunk
 from validate.reference.stored import numbers
 from validate.scenes.contact import mass_ratio, piles, stack
+from validate.scenes.contact._common import DT, OVERLAP, frictions, in_tower
 from validate.subject import modules
 
 TEXT, SIMULATOR = ((modules.SOLUTIONS / f"{name}.py").read_text(encoding="utf-8") for name in ("contact", "simulator"))
@@ -86,9 +87,8 @@ def test_a_pile_is_filmed_inside_the_edges_of_its_container(case):
 def test_the_reference_of_pymunks_towers_errs_as_the_engine_does(steps):
     """While the tower falls into its joints, when errors are largest: to a hundredth of them."""
     p = stack.Params(n=5, m=2.0)
-    here = stack.tower(p)._replace(waiting=steps * stack.DT)
-    forces, _ = pymunk_tower(here, 10, 0.1)()
-    truth = stack.truth(p, 1.0)
-    how = Towers(stack.DT, 10, 0.1, stack.OVERLAP, here.joint_frictions(), here.waiting)
+    wait = in_tower(PYMUNK, stack.model, stack.answer, steps * DT, iterations=10, slop=0.1, overlap=OVERLAP)
+    forces, truth = wait(p, 1.0).read(), stack.truth(p, 1.0)
+    how = Towers(DT, 10, 0.1, OVERLAP, frictions(stack.model(p)), steps * DT)
     found = np.linalg.norm(forces - truth) / np.linalg.norm(truth)
     assert unrest_in_pymunk((p.m,) * p.n, p.size, p.g, how) == pytest.approx(found, rel=0.01)

@@ -107,6 +107,7 @@ FORCES = {                   # on two kilograms that start at 1 m with 1 m/s, an
     "x": (lambda x: -8.0 * x[0], lambda t: np.cos(2.0 * t) + 0.5 * np.sin(2.0 * t)),
     "v": (lambda v: -2.0 * v[0], lambda t: 2.0 - np.exp(-t)),
     "xv": (lambda x, v: -2.0 * x[0] - 4.0 * v[0], lambda t: (1.0 + 2.0 * t) * np.exp(-t)),
+    "r": (lambda r: 8.0 * (r[0] + 3.0), lambda t: np.cos(2.0 * t) + 0.5 * np.sin(2.0 * t)),
 }
 
 
@@ -119,9 +120,9 @@ def test_a_force_of_floats_moves_its_body_as_the_closed_form_says(product, setti
     T, steps, zero = 1.0, 200, (0.0,) * (d - 1)
     still = np.zeros(d)
     for inertia in (None, 1.0 if d == 2 else (1.0, 2.0, 2.5)):
-        bodies = [Body((0.0, *zero)), Body((5.0, *zero), 1.0, inertia=inertia),
+        bodies = [Body((-3.0, *zero)), Body((5.0, *zero), 1.0, inertia=inertia),
                   Body((1.0, *zero), 2.0, v=(1.0, *zero), inertia=inertia)]
-        load = Force(2, lambda *now: (float(F(*now)), *zero), of)
+        load = Force(2, lambda *now: (float(F(*now)), *zero), of, 0 if of == "r" else None)
         state, _ = run(product, make_model(bodies, still, loads=[load]), T, steps, **settings)
         allowed = by_order(2.0, T, T / steps)[order_of(product)] + 10.0 * spacings(product, steps)
         assert np.max(np.abs(state.x[2] - (truth(T), *zero))) <= 2.0 * allowed
@@ -144,7 +145,8 @@ def test_the_drag_of_a_pymunk_space_is_refused_for_bodies_of_two_masses():
 
 @pytest.mark.parametrize(("force", "word"), [
     (Force(0, abs, "x"), "can move"), (Force(2, abs, "x"), "can move"), (Force(True, abs, "x"), "can move"),
-    (Force(1, abs, "q"), "depends on"), (Force(1, 3.0, "x"), "F of a Force")])
+    (Force(1, abs, "q"), "depends on"), (Force(1, 3.0, "x"), "F of a Force"),
+    (Force(1, abs, "r"), "other body"), (Force(1, abs, "r", 1), "other body"), (Force(1, abs, "r", 2), "other body")])
 def test_a_force_that_cannot_be_is_refused(force, word):
     with pytest.raises(BadInput, match=word):
         make_model([Body((0.0, 0.0)), Body((1.0, 0.0), 1.0)], (0.0, 0.0), loads=[force])

@@ -1,7 +1,6 @@
 """pybullet, the 3D engine, with the settings that every scene needs."""
 
 from functools import cache, partial
-from itertools import pairwise
 
 import numpy as np
 
@@ -48,13 +47,6 @@ class Bullet:
         # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking
         # threshold is global to the process and survives reconnecting, so every scene sets it
         self.pb.setPhysicsEngineParameter(solverResidualThreshold=0, contactBreakingThreshold=0.02)
-
-    def point_mass(self, m, x, v):
-        """Make a free body in maximal coordinates, without damping or clamp."""
-        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=1)
-        self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
-        self.pb.resetBaseVelocity(body, list(map(float, v)))
-        return body
 
     def give_moments(self, body, m, I, maximal, **more):
         """Set mass [kg] and moments (3,) [kg m²] in one call, or the first is lost; `more` are further properties.
@@ -191,35 +183,7 @@ def hidden_damping(acceleration, start):
                      "the factor 1 + |v| is not", own_law, Whose.DEFAULT)
 
 
-# ---------------------------------------------------------------------------------------------- bodies on hinges
-
 HINGES = "createMultiBody: links on hinges in reduced coordinates, no damping, no clamp of velocity, motors off"
-
-
-def chain(ends, m, inertia, centre, g, dt, read):
-    """Make the EngineRun of rods between neighbouring ends (n + 1, 2) in the plane of x and z, the first in its place.
-
-    m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
-    read(angles (n,) of the rods from x).  The angles of the hinges are Bullet's coordinates: no joint can open.
-    """
-    bullet, lengths = Bullet(dt, (0.0, 0.0, -g)), [float(np.linalg.norm(b - a)) for a, b in pairwise(ends)]
-    pb, links, still, zero = bullet.pb, range(len(lengths)), [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
-    body = pb.createMultiBody(
-        0.0, -1, -1, zero, still, linkMasses=[m for _ in links], linkCollisionShapeIndices=[-1 for _ in links],
-        linkVisualShapeIndices=[-1 for _ in links], linkPositions=[zero, *([l, 0.0, 0.0] for l in lengths[:-1])],
-        linkOrientations=[still for _ in links], linkInertialFramePositions=[[centre * l, 0.0, 0.0] for l in lengths],
-        linkInertialFrameOrientations=[still for _ in links], linkParentIndices=list(links),
-        linkJointTypes=[pb.JOINT_REVOLUTE for _ in links], linkJointAxis=[[0.0, -1.0, 0.0] for _ in links])
-    angles = np.unwrap([np.arctan2(*(b - a)[::-1]) for a, b in pairwise(ends)])
-    for k, angle in enumerate(np.diff(angles, prepend=0.0)):
-        # moments that are given in one call with a damping are lost
-        pb.changeDynamics(body, k, mass=m, localInertiaDiagonal=[float(inertia)] * 3)
-        pb.changeDynamics(body, k, jointDamping=0, linearDamping=0, angularDamping=0, maxJointVelocity=1e9)
-        pb.setJointMotorControl2(body, k, pb.VELOCITY_CONTROL, force=0)
-        pb.resetJointState(body, k, float(angle))
-    pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
-    here = lambda: np.cumsum([state[0] for state in pb.getJointStates(body, list(links))])
-    return EngineRun(bullet.step, lambda: read(here()), bullet.close)
 
 
 def substepped(make, substeps):

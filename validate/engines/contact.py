@@ -1,6 +1,5 @@
 """Piles of bodies between walls for the lesson and for both engines: the same bodies, places, friction and steps."""
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -8,8 +7,7 @@ import numpy as np
 from solutions.support.scenes import make_pile, make_pile_2d
 
 from . import quiet_import, watched
-from .bullet import WARM, Client, Rigid
-from .chipmunk import pymunk_floor, pymunk_space
+from .bullet import Client
 from .switches import made
 
 G, DT, MU = 9.81, 1.0 / 240.0, 0.5
@@ -246,89 +244,3 @@ class BulletPile:
 
     def close(self):
         self.p.disconnect(physicsClientId=self.c)
-
-
-# ---------------------------------------------------------------------------------------------- towers
-
-class Tower(NamedTuple):
-    """Cubes on top of each other on a floor, for both engines."""
-    masses: list             # from the lowest to the highest [kg]
-    inertias: list           # [kg m²]
-    size: float              # edge of a cube [m]
-    g: float                 # [m/s²]
-    mu: float                # friction of the pairs [-]
-    overlap: float           # of neighbours at the start, for pymunk [m]
-    waiting: float           # until the forces are read [s]
-
-    def heights(self):
-        """Return the centres of the cubes [m] without overlap."""
-        return self.size * (np.arange(len(self.masses)) + 0.5)
-
-    def frictions(self):
-        """Return a coefficient per cube; an engine multiplies those of a pair, and the floor has 1."""
-        return [np.sqrt(self.mu) if k else self.mu for k in range(len(self.masses))]
-
-    def joint_frictions(self):
-        """Return the coefficients of the joints, from the floor upwards."""
-        mus = [1.0, *self.frictions()]
-        return tuple(a * b for a, b in pairwise(mus))
-
-
-def pymunk_tower(tower, iterations, slop):
-    """Build a tower; return a function that runs it and returns (force under each cube [N], penetration [m])."""
-    import pymunk
-    space = pymunk_space((0.0, -tower.g))
-    space.iterations, space.collision_slop = iterations, slop
-    pymunk_floor(space)
-    bodies = []
-    for k, (m, inertia, y, mu) in enumerate(zip(tower.masses, tower.inertias, tower.heights(), tower.frictions())):
-        body = pymunk.Body(m, inertia)
-        body.position = (0.0, y - tower.overlap * (k + 1))
-        box = pymunk.Poly.create_box(body, (tower.size, tower.size))
-        box.friction = mu
-        space.add(body, box)
-        bodies.append(body)
-
-    def wait():
-        for _ in range(round(tower.waiting / DT)):
-            space.step(DT)
-        forces = np.zeros(len(bodies))
-
-        def add(arbiter):
-            low = min(bodies.index(shape.body) if shape.body in bodies else -1 for shape in arbiter.shapes)
-            forces[low + 1] += abs(arbiter.total_impulse.y) / DT
-        for body in bodies:
-            body.each_arbiter(add)
-        forces[1:] *= 0.5                                                # two bodies count each joint but the lowest
-        return forces, np.array([body.position.y for body in bodies]) - tower.heights()
-    return wait
-
-
-def bullet_tower(tower, iterations, residual, warm=WARM, maximal=False):
-    """Build a tower in pybullet; return the same function, and one that closes the client.
-
-    warm: the share of the last impulses with which its solver begins.  maximal: the ground has maximal coordinates,
-    as the cubes have.  Otherwise the solver begins at the ground's contacts from zero.  A force is the vertical
-    component of all contacts of a joint, because contacts tilt as corners sink, and friction carries the rest.
-    """
-    bullet = Rigid(DT, (0.0, 0.0, -tower.g), iterations)
-    pb = bullet.pb
-    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5, warmStartingFactor=warm)
-    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal))
-    pb.changeDynamics(ground, -1, lateralFriction=1.0, restitution=0)
-    shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * tower.size] * 3)
-    bodies = [bullet.body(m, (inertia,) * 3, (0.0, 0.0, y), (0.0,) * 3, True, shape=shape, mu=mu)
-              for m, inertia, y, mu in zip(tower.masses, tower.inertias, tower.heights(), tower.frictions())]
-
-    bullet.begin()
-
-    def upward(c):
-        return c[9] * c[7][2] - c[10] * c[11][2] - c[12] * c[13][2]      # friction is that on the lower body
-
-    def wait():
-        for _ in range(round(tower.waiting / DT)):
-            bullet.step()
-        forces = [sum(map(upward, pb.getContactPoints(a, b))) for a, b in zip(bodies, [ground, *bodies])]
-        return np.array(forces), np.array([bullet.position(body)[2] for body in bodies]) - tower.heights()
-    return wait, bullet.close

@@ -6,7 +6,6 @@ A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
 """
 
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from . import quiet_import
 from .switches import Switch, made
 
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
-LEAST = 1e-14                            # moment of what has none [kg m²]: MuJoCo permits no less than 1e-15
 SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 
@@ -32,32 +30,21 @@ def text(values):
     return " ".join(repr(float(value)) for value in np.ravel(values))
 
 
-def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
-    """Return (model, data) of bodies in XML; `more` are further parts of the model."""
+def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4"):
+    """Return (model, data) of bodies in XML."""
     mujoco = module()
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="{text(dt)}" gravity="{text(gravity)}" integrator="{integrator}" cone="elliptic" '
         'tolerance="0" iterations="100"><flag autoreset="disable"/></option>'
-        f"{more}<worldbody>{bodies}</worldbody></mujoco>")
+        f"<worldbody>{bodies}</worldbody></mujoco>")
     return model, mujoco.MjData(model)
 
 
-def running(model, data, read, load=None):
-    """Make the EngineRun of a world.
-
-    load(data) adds forces to data.qfrc_passive in every stage of a step: a force that is set once per step would make
-    Runge–Kutta a method of order 1.  MuJoCo has one callback for all worlds, so it is there during the step only.
-    """
-    step, take = module().mj_step, module().set_mjcb_passive
+def running(model, data, read):
+    """Make the EngineRun of a world."""
+    step = module().mj_step
     made(model)
-
-    def loaded():
-        take(lambda model, data: load(data))
-        try:
-            step(model, data)
-        finally:
-            take(None)
-    return EngineRun(loaded if load else lambda: step(model, data), read, lambda: None)
+    return EngineRun(lambda: step(model, data), read, lambda: None)
 
 
 def empty_world():
@@ -72,97 +59,25 @@ def inertial(m, moments, place=(0.0, 0.0, 0.0)):
 
 # ---------------------------------------------------------------------------------------------- points
 
-def sliding(m, d, inside="", **joint):
+def sliding(m, d, **joint):
     """Return the XML of a body of m [kg] that slides along the first d axes; joint: attributes of its joints."""
     attributes = "".join(f' {name}="{text(value)}"' for name, value in joint.items())
     slides = "".join(f'<joint type="slide" axis="{text(axis)}"{attributes}/>' for axis in np.eye(3)[:d])
-    return f"{slides}{inertial(m, np.ones(3))}{inside}"
+    return f"{slides}{inertial(m, np.ones(3))}"
 
 
-def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), force=None, **joint):
+def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
     """Make the EngineRun of points at x (n, d) with velocities v; read(x (n, d)).
 
-    force(x, v) → (n, d) [N], of flat lists of floats, is called in every stage of a step.
     joint: stiffness [N/m] of a spring to the origin and damping [N s/m], along each axis.
     """
     d = len(x[0])
     model, data = world(dt, "".join(f"<body>{sliding(m, d, **joint)}</body>" for m in masses), gravity)
     data.qpos[:], data.qvel[:] = np.ravel(x), np.ravel(v)
-
-    def load(data):
-        data.qfrc_passive += force(data.qpos.tolist(), data.qvel.tolist())
-    return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()), load if force else None)
-
-
-def net(net, dt, observe):
-    """Make the EngineRun of a ReferenceNetwork of validate/reference; observe(x (n, d)) reads it.
-
-    Springs with dampers are tendons, viscosity is a damping of the joints, and wind is a part of gravity.
-    """
-    wide, d, free = net.padded(), net.x.shape[1], net.free()
-    site = lambda n, place: f'<site name="{n}" pos="{text(place)}"/>'
-    bodies = "".join(f'<body pos="{text(x)}">{sliding(net.m, d, site(n, np.zeros(3)), damping=net.k_v)}</body>'
-                     if free[n] else site(n, x) for n, x in enumerate(wide.x))
-    tendons = "".join(f'<spatial springlength="{text(rest)}" stiffness="{text(net.k)}" damping="{text(net.k_d)}">'
-                      f'<site site="{i}"/><site site="{j}"/></spatial>'
-                      for (i, j), rest in zip(net.pairs, net.rest) if free[i] or free[j])
-    model, data = world(dt, bodies, wide.gravity + wide.wind / net.m, more=f"<tendon>{tendons}</tendon>")
-    data.qvel[:] = net.v[free].ravel()
-
-    def read():
-        x = net.x.copy()
-        x[free] += data.qpos.reshape(-1, d)
-        return observe(x)
-    return running(model, data, read)
-
-
-# ---------------------------------------------------------------------------------------------- bodies on hinges
-
-def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4", joint=""):
-    """Make the EngineRun of rods between neighbouring ends (n + 1, 2), the first end in its place.
-
-    m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
-    read(angles (n,) of the rods from x).  joint: attributes of the hinges in XML.
-    """
-    body, angles = "", np.unwrap([np.arctan2(*(end - begin)[::-1]) for begin, end in pairwise(ends)])
-    lengths = [np.linalg.norm(end - begin) for begin, end in pairwise(ends)]
-    for k in reversed(range(len(lengths))):
-        place = (lengths[k - 1] if k else 0.0, 0.0, 0.0)
-        body = (f'<body pos="{text(place)}"><joint type="hinge" axis="0 -1 0" {joint}/>'
-                f'{inertial(m, np.full(3, max(inertia, LEAST)), (centre * lengths[k], 0.0, 0.0))}{body}</body>')
-    model, data = world(dt, body, (0.0, 0.0, -g), integrator)
-    data.qpos[:] = np.diff(angles, prepend=0.0)
-    return running(model, data, lambda: read(np.cumsum(data.qpos)))
+    return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()))
 
 
 # ---------------------------------------------------------------------------------------------- contacts
-
-def contacts(mu):
-    """Return the XML of the default of all shapes: friction, and a critically damped contact."""
-    return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
-            f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
-
-
-def tower(cubes, dt):
-    """Build a Tower of cubes; return a function that runs it and returns (force under each cube [N], its depth [m])."""
-    half, bodies = np.full(3, 0.5 * cubes.size), ""
-    for m, y in zip(cubes.masses, cubes.heights()):
-        bodies += (f'<body pos="0 0 {text(y)}"><freejoint/><geom type="box" size="{text(half)}" mass="{text(m)}"/>'
-                   "</body>")
-    model, data = world(dt, f'<geom type="plane" size="0 0 1"/>{bodies}', (0.0, 0.0, -cubes.g), "Euler",
-                        contacts(cubes.mu))
-
-    def wait():
-        mujoco, found, forces = module(), np.zeros(6), np.zeros(len(cubes.masses))
-        for _ in range(round(cubes.waiting / dt)):
-            mujoco.mj_step(model, data)
-        mujoco.mj_forward(model, data)                   # the contacts of the last places
-        for n, contact in enumerate(data.contact):
-            mujoco.mj_contactForce(model, data, n, found)
-            forces[max(model.geom_bodyid[contact.geom]) - 1] += found[0]          # body 0 is the floor
-        return forces, data.qpos.reshape(-1, 7)[:, 2] - cubes.heights()
-    return wait
-
 
 def sag(load, m, below):
     """Return the depth [m] of each of the four contacts under a cube that carry F/4: F (1 − d) τ² (1/m + 1/m')/4.

@@ -33,6 +33,8 @@ WITHOUT = {                  # {part: ({function: the one in its place, or None}
     "joints": ({"detect_unjoined": "detect_many", "contact_impulses_with_joints": "contact_impulses_of_pairs",
                 "hold": None}, ()),
 }
+WITH_RODS = {                # where joints are also rods
+    "close": "close_with_rods", "hold": "hold_with_rods", "contact_impulses_with_joints": "contact_impulses_with_rods"}
 TOTAL, DIMENSION = "all that the scene leaves out", "the third dimension"
 WITH, OWN = "all parts", "the scene's loop"
 SMALL = 0.01                 # radius of a body without a shape over the least distance of two bodies, or over 1 m [-]
@@ -88,7 +90,8 @@ def variants(lesson, model):
     """
     own, full = lesson.compose(model), lesson.compose(shaped(model))
     names = tuple(part.step.__name__ for part in own.parts)
-    named = partial(in_dimension, lesson, model.d)
+    rods = WITH_RODS if full.p.rods.a.size else {}
+    named = lambda name: in_dimension(lesson, model.d, rods.get(name, name))
     load = full.load if any(callable(load) for load in model.loads) else getattr(lesson, named("model_load"))
     bounds, narrow = ((lesson.convex_bounds_2d, lesson.convex_contacts_2d) if model.d == 2 else
                       (lesson.rounded_bounds, lesson.rounded_contacts))

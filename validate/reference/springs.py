@@ -44,9 +44,9 @@ class ReferenceNetwork(NamedTuple):
         """Return (n,) bool: whether each point can move."""
         return ~np.isin(np.arange(len(self.x)), self.fixed)
 
-    def padded(self):
-        """Return the same net with an unused third coordinate."""
-        pad = lambda a: np.concatenate((a, np.zeros((*a.shape[:-1], 3 - a.shape[-1]))), axis=-1)
+    def padded(self, d=3):
+        """Return the same net with d coordinates, the last of which are not used."""
+        pad = lambda a: np.concatenate((a, np.zeros((*a.shape[:-1], d - a.shape[-1]))), axis=-1)
         return self._replace(x=pad(self.x), v=pad(self.v), gravity=pad(self.gravity), wind=pad(self.wind))
 
 

@@ -378,7 +378,7 @@ def step_of(parts, advance, dt):
     if not (model.loads or model.springs):
         return advance
     pull = None if links else net_of(model)
-    acts = ([acting(parts, k, F, of) for k, (F, of) in forces.items()] if forces else
+    acts = ([acting(parts, k, *force) for k, force in forces.items()] if forces else
             [acting_net(parts, pull)] if pull else [lambda t: push(parts, t)])
 
     def step():
@@ -390,7 +390,7 @@ def step_of(parts, advance, dt):
     return step
 
 
-def acting(parts, k, F, of):
+def acting(parts, k, F, of, b):
     """Return the function of t that applies a force of floats to body k in the next step."""
     pb, (body, link) = parts.pb, parts.handles[k]
     place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
@@ -416,7 +416,12 @@ def acting(parts, k, F, of):
         here, v = place(body)[0], speed(body)[0]
         along, up = F((here[0], here[2]), (v[0], v[2]))
         apply(body, link, (along, 0.0, up), here, frame)
-    return {"t": of_time, "x": of_place, "v": of_velocity, "xv": of_both}[of]
+
+    def of_other(t):
+        here, there = place(body)[0], place(parts.handles[b][0])[0]
+        along, up = F((there[0] - here[0], there[2] - here[2]))
+        apply(body, link, (along, 0.0, up), here, frame)
+    return {"t": of_time, "x": of_place, "v": of_velocity, "xv": of_both, "r": of_other}[of]
 
 
 def acting_net(parts, pull):

@@ -168,8 +168,10 @@ def step_with_forces(space, bodies, forces, dt):
     are then those of before the step, so that their forces can be set before it.
     """
     of_velocity, of_time, advance, clock = [], [], space.step, [0]
-    for k, (F, of) in forces.items():
-        if "x" in of:
+    for k, (F, of, b) in forces.items():
+        if of == "r":
+            bodies[k].velocity_func = attracted(bodies[k].mass, F, bodies[b])
+        elif "x" in of:
             bodies[k].velocity_func = pulled(bodies[k].mass, F, of)
         else:
             (of_time if of == "t" else of_velocity).append((bodies[k], F))
@@ -194,6 +196,17 @@ def pulled(mass, force, of):
     def update(body, gravity, damping, dt):
         x, (right, up) = body.position, body.velocity
         F = force(x) if of == "x" else force(x, (right, up))
+        body.velocity = right + dt * (gravity[0] + share * F[0]), up + dt * (gravity[1] + share * F[1])
+    return update
+
+
+def attracted(mass, force, other):
+    """Return the velocity function of a body with a force that depends on the vector to another body."""
+    share = 1.0 / mass
+
+    def update(body, gravity, damping, dt):
+        (x, y), (there, high), (right, up) = body.position, other.position, body.velocity
+        F = force((there - x, high - y))
         body.velocity = right + dt * (gravity[0] + share * F[0]), up + dt * (gravity[1] + share * F[1])
     return update
 

@@ -164,7 +164,7 @@ def acceleration_at_start(model):
 
 
 def forces_of(model, springs):
-    """Return {number of a body: (F, of)}, as in a Force, if that is all that loads do; None otherwise.
+    """Return {number of a body: (F, of, b)}, as in a Force, if that is all that loads do; None otherwise.
 
     springs: the engine has none; then each may only hold the centre of a body to a place in the plane.
     """
@@ -173,9 +173,9 @@ def forces_of(model, springs):
     if (any(not isinstance(load, Drag | Force) for load in model.loads)
             or any(one.b != WORLD or model.d == 3 or any(one.place_a) for one in held)):
         return None
-    found = [(load.a, load.F, load.of) for load in model.loads if isinstance(load, Force)]
-    found += [(k, dragging(load.k, model.d), "v") for load in model.loads if isinstance(load, Drag) for k in free]
-    found += [(one.a, pull_of(one), "xv") for one in held]
+    found = [(load.a, load.F, load.of, load.b) for load in model.loads if isinstance(load, Force)]
+    found += [(k, dragging(load.k, model.d), "v", None) for load in model.loads if isinstance(load, Drag) for k in free]
+    found += [(one.a, pull_of(one), "xv", None) for one in held]
     return {a: how for a, *how in found} if len({a for a, *_ in found}) == len(found) else None
 
 
@@ -232,10 +232,10 @@ def with_plain_springs(model):
 
 
 def only_holds(model, k):
-    """Return whether body k is nothing but a place where springs end: it is fixed, without a shape and without joints.
+    """Return whether body k is nothing but a place where springs end: fixed, without a shape, joints, or a Force to it.
     """
-    body = model.bodies[k]
-    return not can_move(body) and body.shape is None and not any(k in (one.a, one.b) for one in model.joints)
+    body, linked = model.bodies[k], [*model.joints, *(load for load in model.loads if isinstance(load, Force))]
+    return not can_move(body) and body.shape is None and not any(k in (one.a, one.b) for one in linked)
 
 
 def tree(model, kinds=(Hinge, BallJoint, Weld)):

@@ -11,6 +11,7 @@ from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import bounces, cradle, oblique_discs, spinning_bounce
 from ..scenes.integrators import kepler, linear_drag, oscillator, throw
+from ..scenes.pbd import pendulum, rope
 from ..scenes.rotation import asymmetric_top, heavy_top, rolling_down, slide_then_roll
 from ..scenes.simulator import (
     backspin_ball,
@@ -22,7 +23,7 @@ from ..scenes.simulator import (
     rod_cradle,
     turntable,
 )
-from ..scenes.springs import spring_net
+from ..scenes.springs import hanging_springs, spring_net, two_stars
 
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
 
@@ -46,7 +47,9 @@ DESCRIBED = {                # name of the scene: Described
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
+    "hanging_springs": of(hanging_springs.SCENE),
     "spring_net": of(spring_net.SCENE),
+    "two_stars": of(two_stars.SCENE),
     "incline": of(incline.SCENE),
     "stick_slip": of(stick_slip.SCENE),
     "slide_then_roll": of(slide_then_roll.SCENE),
@@ -56,6 +59,8 @@ DESCRIBED = {                # name of the scene: Described
     "oblique_discs": of(oblique_discs.SCENE),
     "bounces": of(bounces.SCENE),
     "spinning_bounce": of(spinning_bounce.SCENE),
+    "pendulum": of(pendulum.SCENE),
+    "rope": of(rope.SCENE),
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": of(dominoes.SCENE, shown=NO_FORMULA),
     "machine": of(machine.SCENE, shown=NO_FORMULA),

@@ -86,7 +86,7 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     advance, take = mujoco.mj_step, mujoco.set_mjcb_passive
     load = forced_by(parts, world, data, order) or pushed_by(parts, world, order)
 
-    def loaded():
+    def loaded():                                            # the engine has one callback for all worlds
         take(load)
         try:
             advance(world, data)
@@ -313,16 +313,20 @@ def forced_by(parts, world, data, order):
     forces, rows = forces_of(parts.model, springs=False), []
     if not forces or not all(is_free(parts, k) for k in forces):
         return None
-    for k, (F, of) in forces.items():
+    for k, (F, of, b) in forces.items():
         first = world.joint(f"s{k}0" if slides(parts, k) else f"j{k}").dofadr[0]
         own = slice(first, first + parts.model.d)
-        rows.append((F, of, data.xpos[order[k]], data.qvel[own], data.qfrc_passive[own]))
+        rows.append((F, of, data.xpos[order[k]], data.qvel[own], data.qfrc_passive[own],
+                     None if b is None else data.xpos[order[b]]))
     along = slice(None, None, 2 if parts.space.flat else 1)
 
     def load(world, data):
-        for F, of, x, v, push in rows:
-            push += (F(x.tolist()[along]) if of == "x" else F(v.tolist()) if of == "v" else F(data.time) if of == "t"
+        for F, of, x, v, push, there in rows:
+            found = (F(x.tolist()[along]) if of == "x" else F(v.tolist()) if of == "v" else F(data.time) if of == "t"
+                     else F([b - a for a, b in zip(x.tolist()[along], there.tolist()[along])]) if of == "r"
                      else F(x.tolist()[along], v.tolist()))
+            for c, share in enumerate(found):                # faster than to add an array
+                push[c] += share
     return load
 
 

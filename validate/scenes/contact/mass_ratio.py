@@ -5,7 +5,6 @@ compared: the forces, the depth to which soft contacts sink, the number of sweep
 At a ratio of a million the sweeps do not converge, and must report it.
 """
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -17,10 +16,8 @@ from solutions.contact import (
 )
 from validate.check import Whose, states
 from validate.engines.bullet import CONTACT_ERP
-from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import sag as mujoco_sag
-from validate.engines.mujoco import tower as mujoco_tower
 from validate.methods import COUNTED_SWEEPS, DIRECT, PILE, SWEEPS
 from validate.reference.contact import (
     Settling,
@@ -33,16 +30,14 @@ from validate.reference.contact import (
 )
 from validate.reference.stored import stored
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Departure, Scene, engine, ours
-from validate.scenes._common import ANSWER, cases_with, check_positives, one_reading, sole_array
+from validate.scenes._common import ANSWER, cases_with, check_positives, sole_array
+from validate.scenes.contact._common import DT, FROM_ZERO, OVERLAP, WAITING, frictions, in_tower, tower
 from validate.scenes.drawing import outlines
 
 T = 1.0
 MU = 0.5                     # nothing slides
 SMALL = 1e-3                 # sweeps are counted until the forces have this error [-]
-DT = 1.0 / 240.0             # of the pile and of the engines [s]
 ZETA = 10.0                  # damping ratio of the pile's contacts [-]
-WAITING = 3.0                # duration of the engines' runs [s]
-OVERLAP = 1e-6               # of pymunk's bodies at first [m]: it detects a contact only if they overlap
 STANDS = 0.1                 # displacement over the size of a box below which it stands [-]
 WHOLE = 1e-15                # error of a whole number, which must be exact [-]
 ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
@@ -261,7 +256,7 @@ def normal_matrix(p):
 
 def unrest(p):
     """Return the relative error of pymunk's forces when they are read."""
-    how = Towers(DT, **FINE, overlap=OVERLAP, frictions=tower(p).joint_frictions(), seconds=WAITING)
+    how = Towers(DT, **FINE, overlap=OVERLAP, frictions=frictions(model(p)), seconds=WAITING)
     return stored("mass_ratio", unrest_in_pymunk, tuple(masses(p)), p.size, p.g, how)
 
 
@@ -287,23 +282,8 @@ def answer(p, forces, bottoms):
     return np.array([1.0 * (p.kind == "stands" and np.max(np.abs(bottoms)) < STANDS * p.size)])
 
 
-def tower(p):
-    return Tower(masses(p), masses(p) * p.size**2 / 6.0, p.size, p.g, MU, OVERLAP, WAITING)
-
-
-def pymunk_make(p, dt, iterations, slop):
-    wait = pymunk_tower(tower(p), iterations, slop)
-    return one_reading(lambda: answer(p, *wait()))
-
-
-def pybullet_make(p, dt, **settings):
-    wait, close = bullet_tower(tower(p), **settings)
-    return one_reading(lambda: answer(p, *wait()), close)
-
-
-def mujoco_make(p, dt):
-    wait = mujoco_tower(tower(p), DT)
-    return one_reading(lambda: answer(p, *wait()))
+def model(p, d=2):
+    return tower(masses(p), p.size, p.g, MU, d)
 
 
 def softly(p, t):
@@ -349,22 +329,23 @@ RUNNERS = (
          supports=up_to(forces=1e3, overlap=ANY, stands=ANY, refused=ANY)),
     ours(COUNTED_SWEEPS, limit=count_limit, order=EXACT, supports=up_to(sweeps=ANY, relaxed=ANY),
          predicted="exact: counts are whole numbers"),
-    engine(PYMUNK, "", partial(pymunk_make, **FINE), "1,000 iterations, collision_slop 1e-4; 3 s of 1/240 s",
+    engine(PYMUNK, "", in_tower(PYMUNK, model, answer, **FINE, overlap=OVERLAP),
+           "1,000 iterations, collision_slop 1e-4; 3 s of 1/240 s",
            order=EXACT, limit=pymunk_limit, predicted=PHASE, supports=up_to(forces=1e3, stands=ANY)),
-    engine(PYMUNK, "default", partial(pymunk_make, iterations=10, slop=0.1),
+    engine(PYMUNK, "default", in_tower(PYMUNK, model, answer, iterations=10, slop=0.1, overlap=OVERLAP),
            "10 iterations, collision_slop 0.1; 3 s of 1/240 s",
            order=EXACT, limit=count_limit, departure=too_few(10), supports=up_to(stands=ANY, refused=ANY),
            predicted="exact: it is 1 or 0"),
-    engine(PYBULLET, "", partial(pybullet_make, iterations=1000, residual=0, warm=1.0, maximal=True),
+    engine(PYBULLET, "", in_tower(PYBULLET, model, answer, **FROM_ZERO | {"ground": True}, iterations=1000, warm=1.0),
            "maximal coordinates, the floor's too; solverResidualThreshold 0, 1,000 iterations, warmStartingFactor 1; "
            "3 s of 1/240 s",
            order=EXACT, limit=pybullet_limit, supports=up_to(forces=1e3, stands=ANY),
            predicted="only the rounding of an overlap is left, and the limit bounds it"),
-    engine(PYBULLET, "default", partial(pybullet_make, iterations=50, residual=1e-7),
+    engine(PYBULLET, "default", in_tower(PYBULLET, model, answer, **FROM_ZERO, iterations=50, residual=1e-7),
            "maximal coordinates; 50 iterations; 3 s of 1/240 s",
            order=EXACT, limit=count_limit, departure=too_few(50), supports=up_to(stands=ANY, refused=ANY),
            predicted="exact: it is 1 or 0"),
-    engine(MUJOCO, "", mujoco_make, f"{SOFT}; 3 s of 1/240 s",
+    engine(MUJOCO, "", in_tower(MUJOCO, model, answer), f"{SOFT}; 3 s of 1/240 s",
            order=EXACT, limit=mujoco_limit, departure=SPRINGS,
            supports=up_to(forces=100.0, overlap=100.0),
            predicted="at rest only roundings are left, and the limit bounds them"),

@@ -15,23 +15,19 @@ from solutions.checks import check_positive
 from solutions.contact import make_contacts, make_pile, make_pile_2d
 from validate.check import states
 from validate.engines.bullet import CONTACT_ERP, WARM
-from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.engines.mujoco import SOFT
-from validate.engines.mujoco import tower as mujoco_tower
 from validate.methods import DIRECT, PILE, PILE_IN_SPACE, SWEEPS
 from validate.reference.contact import Settling, Towers, rounded_force, rounded_overlap, sway_of_tower, unrest_in_pymunk
 from validate.reference.stored import stored
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Scene, engine, ours
-from validate.scenes._common import ANSWER, check_positives, one_reading
+from validate.scenes._common import ANSWER, check_positives
+from validate.scenes.contact._common import DT, FROM_ZERO, OVERLAP, WAITING, frictions, in_tower, tower
 from validate.scenes.drawing import outlines
 
 T = 1.0
 MU = 0.5                     # nothing slides
-DT = 1.0 / 240.0             # of the pile and of the engines [s]
 SUBSTEPS, HERTZ, ZETA = 8, 240.0, 10.0       # of the pile: substeps per step, frequency [1/s], damping ratio [-]
 SETTLING = 1.5               # duration of the pile's run [s]
-WAITING = 3.0                # duration of the engines' runs [s]
-OVERLAP = 1e-6               # of pymunk's bodies at first [m]: it detects a contact only if they overlap
 WARMER = 0.85                # share of the last impulses with which pybullet's solver begins [-]
 ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
 FINE, DEFAULT = {"iterations": 100, "slop": 1e-4}, {"iterations": 10, "slop": 0.1}       # of pymunk; slop [m]
@@ -187,7 +183,7 @@ def sway(p):
 
 def unrest(p, iterations, slop):
     """Return the relative error of pymunk's forces when they are read."""
-    how = Towers(DT, iterations, slop, OVERLAP, tower(p).joint_frictions(), WAITING)
+    how = Towers(DT, iterations, slop, OVERLAP, frictions(model(p)), WAITING)
     return stored("stack", unrest_in_pymunk, (p.m,) * p.n, p.size, p.g, how)
 
 
@@ -208,23 +204,12 @@ def normal_matrix(p):
 
 # ---------------------------------------------------------------------------------------------- engines
 
-def tower(p):
-    return Tower([p.m] * p.n, [moment(p)] * p.n, p.size, p.g, MU, OVERLAP, WAITING)
+def model(p, d=2):
+    return tower([p.m] * p.n, p.size, p.g, MU, d)
 
 
-def pymunk_make(p, dt, iterations, slop):
-    wait = pymunk_tower(tower(p), iterations, slop)
-    return one_reading(lambda: wait()[0])
-
-
-def pybullet_make(p, dt, iterations, residual, warm):
-    wait, close = bullet_tower(tower(p), iterations, residual, warm)
-    return one_reading(lambda: wait()[0], close)
-
-
-def mujoco_make(p, dt):
-    wait = mujoco_tower(tower(p), DT)
-    return one_reading(lambda: wait()[0])
+def answer(p, forces, shifts):
+    return forces
 
 
 def are_boxes(p):
@@ -259,20 +244,22 @@ RUNNERS = (
          predicted="its sweeps stop at a residual, and the limit bounds what is left"),
     ours(PILE, limit=pile_limit, predicted=PHASE, order=EXACT, supports=are_boxes),
     ours(PILE_IN_SPACE, limit=partial(pile_limit, axes=2.0), predicted=PHASE, order=EXACT, supports=are_cubes),
-    engine(PYMUNK, "", partial(pymunk_make, **FINE), "100 iterations, collision_slop 1e-4; 3 s of 1/240 s",
+    engine(PYMUNK, "", in_tower(PYMUNK, model, answer, **FINE, overlap=OVERLAP),
+           "100 iterations, collision_slop 1e-4; 3 s of 1/240 s",
            order=EXACT, limit=partial(pymunk_limit, **FINE), predicted=PHASE, supports=are_boxes),
-    engine(PYMUNK, "default", partial(pymunk_make, **DEFAULT), "10 iterations, collision_slop 0.1; 3 s of 1/240 s",
+    engine(PYMUNK, "default", in_tower(PYMUNK, model, answer, **DEFAULT, overlap=OVERLAP),
+           "10 iterations, collision_slop 0.1; 3 s of 1/240 s",
            order=EXACT, limit=partial(pymunk_limit, **DEFAULT), predicted=PHASE, supports=are_boxes),
-    engine(PYBULLET, "", partial(pybullet_make, iterations=200, residual=0, warm=WARMER),
+    engine(PYBULLET, "", in_tower(PYBULLET, model, answer, **FROM_ZERO, iterations=200, warm=WARMER),
            f"maximal coordinates; solverResidualThreshold 0, 200 iterations, warmStartingFactor {WARMER}; "
            "3 s of 1/240 s",
            order=EXACT, limit=pybullet_limit, supports=are_boxes_or_cubes,
            predicted="only roundings of overlaps are left, and the limit bounds them"),
-    engine(PYBULLET, "default", partial(pybullet_make, iterations=50, residual=1e-7, warm=WARM),
+    engine(PYBULLET, "default", in_tower(PYBULLET, model, answer, **FROM_ZERO, iterations=50, residual=1e-7),
            f"maximal coordinates; 50 iterations, warmStartingFactor {WARM}; 3 s of 1/240 s",
            order=EXACT, limit=creeping_limit, supports=are_boxes_or_cubes,
            predicted="its tower creeps, and its solver's sweeps are not modelled"),
-    engine(MUJOCO, "", mujoco_make, f"{SOFT}; 3 s of 1/240 s",
+    engine(MUJOCO, "", in_tower(MUJOCO, model, answer), f"{SOFT}; 3 s of 1/240 s",
            order=EXACT, limit=mujoco_limit, supports=are_boxes_or_cubes,
            predicted="at rest only roundings are left, and the limit bounds them"),
 )

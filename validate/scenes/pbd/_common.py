@@ -1,6 +1,24 @@
-"""Points on threads: the same motion with an unused coordinate."""
+"""Points on strings: their Models, and the same motion with an unused coordinate."""
 
 import numpy as np
+
+from solutions.support.model import WORLD, Body, Distance, Hinge, make_model
+
+LEAST = 1e-14                # moment of a point on a hinge [kg m²]: MuJoCo permits no less than 1e-15
+
+
+def on_strings(x, m, g):
+    """Return the Model of points x (n, 2) that cannot turn, each on a rod without mass; the first hangs on the origin.
+    """
+    return make_model([Body(tuple(place), m) for place in x], (0.0, -g),
+                      [Distance(k, k - 1 if k else WORLD, (0.0, 0.0), (0.0, 0.0)) for k in range(len(x))])
+
+
+def on_hinges(x, m, g, inertia=LEAST):
+    """Return the Model of the same points with moments, whose only coordinates are the angles of hinges."""
+    above = ((0.0, 0.0), *map(tuple, x))
+    return make_model([Body(tuple(place), m, inertia=inertia) for place in x], (0.0, -g),
+                      [Hinge(k, k - 1 if k else WORLD, above[k]) for k in range(len(x))])
 
 
 def in_space(start):

@@ -9,7 +9,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.given.pbd import make_constraint_network
-from solutions.support.model import WORLD, Body, Distance, Hinge, make_model
 from validate.check import states
 from validate.methods import BLANES_MOAN, COMPOSED_ROPE, RK4, ROPE, SYMPLECTIC_EULER
 from validate.reference.pbd import (
@@ -25,6 +24,7 @@ from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
 from validate.scenes._common import ONE_LINK, built, check_positives, floor_of
 from validate.scenes.exams import iftomm
+from validate.scenes.pbd._common import on_hinges, on_strings
 
 T = 5.0                      # [s]: two swings
 STEPS = (100, 200, 300, 400, 1000, 4000, 10000)
@@ -95,15 +95,13 @@ ANGLE = Motion(T, lambda p: lambda t, theta, omega: -p.g / p.L * np.sin(theta), 
 WITH_MOMENT = ANGLE._replace(floor=floor_of(limits, 40.0 * SMALL))       # it is late by half of its share in the phase
 
 
-def on_a_string(p):
-    """Return the Model of a bob that cannot turn on a rod without mass."""
-    return make_model([Body((p.L, 0.0), p.m)], (0.0, -p.g), [Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0))])
+def model(p):
+    """Make the bob on a rod without mass."""
+    return on_strings([place(0.5 * np.pi, p)], p.m, p.g)
 
 
-def on_a_hinge(p):
-    """Return the Model of a bob whose only coordinate is the angle of its hinge."""
-    return make_model([Body((p.L, 0.0), p.m, inertia=SMALL * p.m * p.L**2)], (0.0, -p.g),
-                      [Hinge(0, WORLD, (0.0, 0.0))])
+def hinged(p):
+    return on_hinges([place(0.5 * np.pi, p)], p.m, p.g, SMALL * p.m * p.L**2)
 
 
 def read(state, p):
@@ -115,12 +113,12 @@ RUNNERS = (
     ours(RK4, limit=limits, predicted=ANGLE.predict(RK4.table)),
     ours(ROPE, limit=limits, predicted=BOB.predict(rattle_once, 2), most_in_quick=400),
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4), most_in_quick=400),
-    engine(PYMUNK, "", built(PYMUNK, on_a_string, read, iterations=1), "PinJoint; error_bias 0, 1 iteration",
+    engine(PYMUNK, "", built(PYMUNK, model, read, iterations=1), "PinJoint; error_bias 0, 1 iteration",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1)),
-    engine(PYBULLET, "", built(PYBULLET, on_a_hinge, read, maximal=False),
+    engine(PYBULLET, "", built(PYBULLET, hinged, read, maximal=False),
            "a link on a hinge, whose coordinate is the angle; no damping",
            order=1, limit=limits, predicted=WITH_MOMENT.predict(SYMPLECTIC_EULER.table)),
-    engine(MUJOCO, "", built(MUJOCO, on_a_hinge, read), "hinge; Runge–Kutta 4",
+    engine(MUJOCO, "", built(MUJOCO, hinged, read), "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=WITH_MOMENT.predict(RK4.table), most_steps=4000),
 )
 

@@ -1,6 +1,5 @@
 """A bob is released with its string horizontal: projection keeps the length of the string, but loses energy."""
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -8,8 +7,7 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.check import states
-from validate.engines import bullet, mujoco
-from validate.engines.pbd import pymunk_rope
+from validate.engines.bullet import HINGES
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
 from validate.reference.pbd import (
     Rope,
@@ -24,8 +22,8 @@ from validate.reference.pbd import (
 )
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, in_substeps, ours
-from validate.scenes._common import ONE_LINK, check_positives, floor_of
-from validate.scenes.pbd._common import in_space
+from validate.scenes._common import ONE_LINK, built, check_positives, floor_of
+from validate.scenes.pbd._common import in_space, on_hinges, on_strings
 
 T = 1.5                      # [s]: the bob has passed the lowest point and nearly reached its turning point
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -94,21 +92,20 @@ BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor_of(limits))
 ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor_of(limits))
 
 
-def pymunk_make(p, dt):
-    return pymunk_rope([place(np.radians(p.degrees), p)], p.L, p.m, p.g, dt, lambda x: x[0], 1)
+def model(p):
+    """Make the bob on a rod without mass."""
+    return on_strings([place(np.radians(p.degrees), p)], p.m, p.g)
 
 
-def hinged(p, dt, chain, **more):
-    """Make the EngineRun of a bob on a hinge; chain of validate/engines."""
-    string = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
-    return chain(string, p.m, 0.0, 1.0, p.g, dt,
-                 lambda angles: p.L * np.array([np.cos(angles[0]), np.sin(angles[0])]), **more)
+def hinged(p):
+    return on_hinges([place(np.radians(p.degrees), p)], p.m, p.g)
 
 
-mujoco_make = partial(hinged, chain=mujoco.chain)
+def read(state, p):
+    return state.x[0]
 
 
-HINGE = engine(PYBULLET, "", partial(hinged, chain=bullet.chain), bullet.HINGES,
+HINGE = engine(PYBULLET, "", built(PYBULLET, hinged, read, maximal=False), HINGES,
                order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table))
 RUNNERS = (
     ours(PROJECTION, limit=limits, predicted=BOB.predict(onto_circle, 1), most_in_quick=2000),
@@ -117,13 +114,15 @@ RUNNERS = (
     ours(RATTLE, limit=limits, predicted=BOB.predict(rattle, 2)),
     ours(ROPE, limit=limits, predicted=BOB.predict(rattle_once, 2)),
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
-    engine(PYMUNK, "", pymunk_make, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
+    engine(PYMUNK, "", built(PYMUNK, model, read, iterations=1),
+           "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
     HINGE,
     in_substeps(HINGE, 100),
-    engine(MUJOCO, "", mujoco_make, "hinge; Runge–Kutta 4",
+    engine(MUJOCO, "", built(MUJOCO, hinged, read), "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
-    engine(MUJOCO, "default", partial(mujoco_make, integrator="Euler"), "hinge; the semi-implicit Euler step",
+    engine(MUJOCO, "default", built(MUJOCO, hinged, read, integrator="Euler"),
+           "hinge; the semi-implicit Euler step",
            order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table), most_steps=5000),
 )
 
@@ -148,7 +147,7 @@ SCENE = Scene(
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.pbd.network_gravity, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14,
+    truth=truth, truth_uncertainty=1e-14, model=model, read=read,
     published_states=(
         (0.0, (1.0, 0.0), 1e-15),
         (10.0, (0.275087463, -0.961419205), 5e-10),

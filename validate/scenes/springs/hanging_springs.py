@@ -1,19 +1,17 @@
 """Ten masses on ten springs, hung one below the other and released with the springs unstretched."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from validate.check import states
-from validate.engines import mujoco
-from validate.engines.springs import pymunk_net
 from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, RK4
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
 from validate.scene import MUJOCO, PYMUNK, Scene, engine, ours
-from validate.scenes._common import floor_of, measured
+from validate.scenes._common import built, floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
-from validate.scenes.springs._common import in_space, net_fields
+from validate.scenes.springs._common import in_space, model_of, net_fields
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -115,21 +113,15 @@ def pymunk_model(p, h, steps, nudge):
 MOTION = Motion(T, law, released, from_modes, truth, floor_of(limits, 10.0 * UNCERTAINTY), advance_modes)
 
 
-def pymunk_make(p, dt):
-    return pymunk_net(net(p), dt, lambda x: observe((x,), p))
-
-
-def mujoco_make(p, dt):
-    return mujoco.net(net(p), dt, lambda x: observe((x,), p))
-
-
+# sideways nothing moves; a State begins with the places, as the states of our methods do
+MODEL: dict[str, Any] = {"model": model_of(lambda p: net(p).padded(2)), "read": observe}
 RUNNERS = (
     *integrator_runners(MOTION, limits, compiled=EXPLICIT),
     # in one coordinate springs are linear: one Newton step of the implicit mesh is all of implicit Euler
     ours(IMPLICIT_MESH, limit=limits, predicted=MOTION.predict(IMPLICIT_EULER.table), in_quick=False),
-    engine(PYMUNK, "", pymunk_make, "DampedSpring between point masses", finer_in_full=(50_000,),
-           order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_model))),
-    engine(MUJOCO, "", mujoco_make, "point masses on slide joints, tendons as springs; Runge–Kutta 4",
+    engine(PYMUNK, "", built(PYMUNK, **MODEL, own_drag=True), "DampedSpring between point masses",
+           finer_in_full=(50_000,), order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_model))),
+    engine(MUJOCO, "", built(MUJOCO, **MODEL), "point masses on slide joints, tendons as springs; Runge–Kutta 4",
            order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),
 )
 
@@ -151,7 +143,7 @@ def sanity_checks():
 
 SCENE = Scene(
     title="Hanging springs",
-    **net_fields(net, ("springs", "m", "k", "rest"), observe=observe, points=points, model=None, read=None,
+    **net_fields(net, ("springs", "m", "k", "rest"), observe=observe, points=points, **MODEL,
                  uses=("one coordinate", "springs with dampers", "one step function"),
                  ablations={"the second and third dimension": in_space(net),
                             **measured("rotation", "contact between masses")}),

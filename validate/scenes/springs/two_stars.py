@@ -5,14 +5,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solutions.support.model import Body, Force, make_model
 from validate.check import states
-from validate.engines import mujoco
-from validate.engines.bullet import Bullet
-from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS
 from validate.reference.integrators import kepler_motion, kepler_position
-from validate.scene import MUJOCO, PYBULLET, PYMUNK, EngineRun, Scene
-from validate.scenes._common import check_positives
+from validate.scene import Scene
+from validate.scenes._common import built, check_positives
 from validate.scenes.integrators._common import planet, planet_runners
 
 T = 20.0                     # [s]: six revolutions
@@ -85,66 +83,22 @@ def seen(r, p):
 MOTION = kepler_motion(T)._replace(seen=seen, truth=truth)
 
 
-def pulls(x, p):
-    """Return the accelerations (2, 2) [m/s²] of both, independent of the lesson's."""
-    r = x[1] - x[0]
-    F = p.G * p.m_a * p.m_b / np.sqrt(np.sum(r * r)) ** 3 * r
-    return np.stack((F / p.m_a, -F / p.m_b))
-
-
-def pymunk_stars(p, dt, ahead=0.0):
-    """Make the stars with their attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
-    import pymunk
-    space, bodies, (x, v) = pymunk_space(), [], start(p)
-    for m, place, speed, pull in zip((p.m_a, p.m_b), x, v, pulls(x, p)):
-        body = pymunk.Body(m, 1.0)
-        body.position, body.velocity = tuple(map(float, place)), tuple(map(float, speed + ahead * dt * pull))
-        bodies.append(body)
-
-    def attracted_by(other, m):
-        def attract(body, gravity, damping, dt):
-            r = other.position - body.position
-            body.velocity += p.G * m * dt / r.length**3 * r
-        return attract
-
-    bodies[0].velocity_func = attracted_by(bodies[1], p.m_b)
-    bodies[1].velocity_func = attracted_by(bodies[0], p.m_a)
-    space.add(*bodies)
-    return pymunk_world(space, dt, lambda: np.array([body.position for body in bodies]).ravel())
-
-
-def bullet_stars(p, dt, ahead=0.0):
-    """Apply the attraction as two opposite forces, from the positions before each step."""
-    bullet, (x, v) = Bullet(dt), start(p)
-    v = v - ahead * dt * pulls(x, p)
-    bodies = [bullet.point_mass(m, (*place, 0.0), (*speed, 0.0)) for m, place, speed in zip((p.m_a, p.m_b), x, v)]
-
-    def step():
-        x_a, x_b = (np.array(bullet.position(body)) for body in bodies)
-        r = x_b - x_a
-        F = p.G * p.m_a * p.m_b / np.linalg.norm(r) ** 3 * r
-        bullet.push(bodies[0], F, x_a)
-        bullet.push(bodies[1], -F, x_b)
-        bullet.step()
-
-    return EngineRun(step, lambda: np.array([bullet.position(body)[:2] for body in bodies]).ravel(), bullet.close)
-
-
-def mujoco_stars(p, dt):
-    """Call the attraction in every stage of Runge–Kutta's step."""
+def model(p):
+    """Make both stars, each with its attraction by the other."""
     strength = p.G * p.m_a * p.m_b
 
-    def pull(x, v):
-        along, up = x[2] - x[0], x[3] - x[1]
-        share = strength / (along * along + up * up) ** 1.5
-        return share * along, share * up, -share * along, -share * up
-    return mujoco.points((p.m_a, p.m_b), *start(p), dt, np.ravel, force=pull)
+    def attraction(r):
+        along, up = r
+        pull = strength / (along * along + up * up) ** 1.5
+        return pull * along, pull * up
+    x, v = start(p)
+    return make_model([Body(tuple(place), m, v=tuple(speed)) for m, place, speed in zip((p.m_a, p.m_b), x, v)],
+                      (0.0, 0.0), loads=[Force(0, attraction, "r", 1), Force(1, attraction, "r", 0)])
 
 
-def by_hand(product, **settings):
-    """Return make(p, dt) of an engine's runner: a Model has no force between two bodies but a spring."""
-    makes = {PYMUNK: pymunk_stars, PYBULLET: bullet_stars, MUJOCO: mujoco_stars}
-    return partial(makes[product], **settings)
+def read(state, p):
+    """Return the places of both stars."""
+    return state.x.ravel()
 
 
 def points(observed, p):
@@ -171,9 +125,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Two stars", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    runners=planet_runners(MOTION, INTEGRATORS, 20_000, compiled=(), world=by_hand),
+    runners=planet_runners(MOTION, INTEGRATORS, 20_000, compiled=(), world=partial(built, model=model, read=read)),
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-12,
+    truth=truth, truth_uncertainty=1e-12, model=model, read=read,
     sanity_checks=sanity_checks, points=points,
     film_seconds=6.3,                                    # two revolutions
     uses=("two points in the plane", "one force and its reaction", "one step function"),
