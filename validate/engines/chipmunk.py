@@ -24,14 +24,6 @@ def empty_world():
     return pymunk_world(pymunk_space(), 1e-3, lambda: None)
 
 
-def pymunk_floor(space):
-    """Make the floor y = 0, the upper side of a beam 10 m thick, which no body passes in one step."""
-    import pymunk
-    floor = pymunk.Segment(space.static_body, (-1000.0, -5.0), (1000.0, -5.0), 5.0)
-    floor.elasticity, floor.friction = 1.0, 1.0
-    space.add(floor)
-
-
 # ---------------------------------------------------------------------------------------------- switches
 
 def let_all_pass(space):
