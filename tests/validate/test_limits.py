@@ -8,7 +8,7 @@ import pytest
 from solutions.checks import BadInput
 from validate import methods
 from validate.reference import schemes
-from validate.reference.schemes import ErrorLaw, Tableau, advance, advance_modes
+from validate.reference.schemes import ErrorLaw, Tableau, advance, advance_linear, advance_modes
 from validate.report import limits
 from validate.run.store import FORMAT
 
@@ -74,6 +74,16 @@ def test_modes_that_do_not_touch_are_run_by_the_power_of_a_matrix(name):
     for steps in (1, 2, 37):
         one_by_one, at_once = (march(TABLES[name], law, x, v, 0.02, steps) for march in (advance, advance_modes))
         assert np.allclose(at_once, one_by_one, rtol=1e-13, atol=1e-13)
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_linear_law_is_run_by_the_power_of_a_matrix(name):
+    K, C, g = np.array(((2.0, -1.0), (0.5, 3.0))), np.array(((0.1, 0.3), (0.0, 0.2))), np.array((0.4, -9.81))
+    for law, x, v in ((lambda t, x, v: g - K @ x - C @ v, np.array((1.0, 2.0)), np.array((0.0, -3.0))),
+                      (lambda t, x, v: -9.81j - (2.0 + 1.0j) * x - 0.1 * v, 0.5 + 0.0j, 1.0j)):
+        for steps in (1, 2, 37):
+            one_by_one, at_once = (march(TABLES[name], law, x, v, 0.02, steps) for march in (advance, advance_linear))
+            assert np.allclose(at_once, one_by_one, rtol=1e-13, atol=1e-13)
 
 
 def test_an_expansion_says_how_far_it_can_be_trusted():

@@ -30,13 +30,13 @@ def text(values):
     return " ".join(repr(float(value)) for value in np.ravel(values))
 
 
-def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4"):
-    """Return (model, data) of bodies in XML."""
+def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
+    """Return (model, data) of bodies in XML; `more` are further parts of the model."""
     mujoco = module()
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="{text(dt)}" gravity="{text(gravity)}" integrator="{integrator}" cone="elliptic" '
         'tolerance="0" iterations="100"><flag autoreset="disable"/></option>'
-        f"<worldbody>{bodies}</worldbody></mujoco>")
+        f"{more}<worldbody>{bodies}</worldbody></mujoco>")
     return model, mujoco.MjData(model)
 
 

@@ -138,6 +138,26 @@ def advance_modes(scheme, law, x, v, h, steps):
     return after[..., 0, 0], after[..., 1, 0]
 
 
+def advance_linear(scheme, law, x, v, h, steps):
+    """Return the same for a law that is linear in x and v and the same at all times, by powers of the matrix of a step.
+
+    A last column holds what a step makes of rest in the origin, as weight does.
+    """
+    shape, n = np.shape(x), np.size(x)
+
+    def after(y):
+        moved = advance(scheme, law, y[:n].reshape(shape), y[n:].reshape(shape), h, 1)
+        return np.concatenate([np.ravel(part) for part in moved])
+
+    with np.errstate(all="ignore"):
+        added = after(np.zeros(2 * n, np.result_type(x, v, float)))
+        columns = [after(unit) - added for unit in np.eye(2 * n, dtype=added.dtype)]
+        one = np.eye(2 * n + 1, dtype=added.dtype)
+        one[:-1] = np.stack((*columns, added), axis=1)
+        end = np.linalg.matrix_power(one, steps)[:-1] @ np.concatenate((np.ravel(x), np.ravel(v), [1.0]))
+    return end[:n].reshape(shape), end[n:].reshape(shape)
+
+
 class ErrorLaw:
     """The error of a method as a function of its step, from a few coarse runs of the same method's table.
 
@@ -249,7 +269,7 @@ class Motion(NamedTuple):
     seen: Callable           # (x, p) → what the scene observes of x
     truth: Callable          # (p, t) → the same
     floor: Callable          # (p, dt) → round-off, relative
-    march: Callable = advance            # or `advance_modes` for modes that do not touch
+    march: Callable = advance            # or advance_linear; or advance_modes for modes that do not touch
 
     def model(self, scheme, law=None, ahead=0.0):
         """Return the Model of a method or an engine that follows a scheme; law: replaces the law of the scene."""

@@ -10,7 +10,7 @@ from solutions.support.model import WORLD, Body, Spring, make_model, start_of
 from validate.engines.bullet import hidden_damping
 from validate.engines.mujoco import points as points_in_mujoco
 from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER, RK4
-from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion, advance_linear
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, ours
 from validate.scenes._common import ONE_LINK, built, check_positives, coordinates, floor_of, measured
 from validate.scenes.integrators._common import BY_DEFAULT, damped
@@ -110,7 +110,8 @@ def spring_and_damper(p):
     return lambda law, t, x, v, h: (x + h * v, (v - h * p.k / p.m * (x + h * v)) * kept(h))
 
 
-MOTION = Motion(T, law, released, seen, truth, floor_of(limits))
+MOTION = Motion(T, law, released, seen, truth, floor_of(limits), advance_linear)
+DAMPED_MOTION = Motion(T, damped(law), released, seen, truth, floor_of(limits))
 DAMPED = hidden_damping(lambda t, x, v, p: oscillator_acceleration(t, x, v, oscillator(p)), start)
 IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # most steps of methods slow in plain Python
 
@@ -131,7 +132,7 @@ RUNNERS = (
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
     engine(PYBULLET, "default", world(PYBULLET, **BY_DEFAULT), "createMultiBody with its defaults",
            order=1, limit=limits, departure=DAMPED,
-           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped(law), follows=DAMPED.own_law)),
+           predicted=DAMPED_MOTION.predict(NEW_VELOCITY_OLD_FORCE, follows=DAMPED.own_law)),
     engine(PYBULLET, "", world(PYBULLET), "useMaximalCoordinates=1, no damping; force applied each step",
            order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
     engine(PYBULLET, "leapfrog start", world(PYBULLET, ahead=0.5),

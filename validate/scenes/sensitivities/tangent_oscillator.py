@@ -15,7 +15,7 @@ from solutions.integrators import Oscillator
 from validate.check import states
 from validate.engines.sensitivities import mujoco_tangents
 from validate.methods import IMPLICIT_TANGENTS, TANGENTS
-from validate.reference.schemes import SYMPLECTIC_EULER, Motion
+from validate.reference.schemes import SYMPLECTIC_EULER, Motion, advance_linear
 from validate.reference.sensitivities import oscillation, oscillator_sensitivities
 from validate.scene import EXACT, MUJOCO, ROUND_OFF, Scene, by_order, engine, ours
 from validate.scenes._common import check_positives, constantly, floor_of
@@ -117,8 +117,8 @@ def implicit_in_velocity(p):
     return step
 
 
-MOTION = Motion(T, law, released, seen, truth, floor_of(limits))
-BY_DIFFERENCES = Motion(T, law, released, seen, truth, floor_of(differenced_limits))
+MOTION = Motion(T, law, released, seen, truth, floor_of(limits), advance_linear)
+BY_DIFFERENCES = Motion(T, law, released, seen, truth, floor_of(differenced_limits), advance_linear)
 
 
 def mujoco_make(p, dt, integrator="Euler"):
