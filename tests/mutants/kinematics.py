@@ -1896,8 +1896,9 @@ edit("11.13", "does not turn a joint that is exactly between the end and the tar
      "(r_x * s_y != r_y * s_x) * np.arctan2(r_x * s_y")
 edit("11.14", "moves only the first six links on the way back", "range(n - 1, -1, -1)", "range(min(n, 6) - 1, -1, -1)")
 edit("11.14", "moves only the first six links on the way forth", "range(n):", "range(min(n, 6)):")
-edit("11.14", "leaves the end of a single link where it coincides with the base", "x[k + 1] = point_at(x[k], x[k + 1], lengths[k])",
-     "x[k + 1] = point_at(x[k], x[k + 1], lengths[k]) if n > 1 or np.any(x[1] != x[0]) else x[1]")
+edit("11.14", "leaves the end of a single link where it coincides with the base",
+     "point_at(x[k], x[k + 1], lengths[k])",
+     "point_at(x[k], x[k + 1], lengths[k]) if n > 1 or np.any(x[1] != x[0]) else x[1]")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way back", "point_at(x[k + 1], x[k],",
      "point_at(x[k + 1], x[k] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k + 1],")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way forth", "point_at(x[k], x[k + 1],",
