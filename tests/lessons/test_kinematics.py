@@ -218,7 +218,7 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), (2, 1.0)):   # and an arm with links of micrometres
+    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), *2 * ((2, 1.0),)):   # and an arm with links of micrometres
         x = size * draw(-2.0, 2.0, (rows, 2))
         if rows > 2:
             x[0, 0], x[1, 1] = -x[-1, 0], x[-1, 1]                       # joint 1 is as high as the end
