@@ -90,6 +90,11 @@ def linear(theta, target, arm):
     return target[:, 0] - J @ theta, J
 
 
+def arrived(theta, target, arm):
+    """Task of the tests: the end is at the target, whatever the angles are."""
+    return 0.0 * target, np.zeros((target.size, theta.size))
+
+
 EQUATIONS = ((8, 1.0), (1, 1.0), (3, 1e-12), (3, 1e6))                   # their number, and the size of e
 
 
@@ -97,6 +102,14 @@ def equations(draw, rows, size, n=5):
     """(e over its size, J, target) of that task for θ = 0, where all of e is exact."""
     e, J = draw(0.3, 1.0, rows), draw(-1.0, 1.0, (rows, n))
     return e, J, np.column_stack((size * e, J))
+
+
+def special_equations(draw):
+    """[(e, J, target)] of that task: no error, no joint that moves anything, one joint, and rows that depend."""
+    many, one, rank = draw(-1.0, 1.0, (2, 5)), draw(0.3, 1.0, (3, 1)), np.outer((1.0, 0.0, -2.0), draw(0.3, 1.0, 2))
+    e = draw(0.3, 1.0, 3)
+    pairs = ((0.0 * e[:2], many), (0.0 * e, one), (e[:2], 0.0 * many), (e[:1], np.zeros((1, 1))), (e, one), (e, rank))
+    return [(e, J, np.column_stack((e, J))) for e, J in pairs]
 
 
 def posed(draw, n, far=1.0):
@@ -205,9 +218,11 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size in ((draw.whole(3, 6), 1.0), (12, 1e-6)):             # and an arm with links of micrometres
+    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), *2 * ((2, 1.0),)):   # and an arm with links of micrometres
         x = size * draw(-2.0, 2.0, (rows, 2))
-        x[1, 1] = x[-1, 1]                                               # this joint is as high as the end
+        if rows > 2:
+            x[0, 0], x[1, 1] = -x[-1, 0], x[-1, 1]                       # joint 1 is as high as the end
+            x[2], x[4] = x[-1], x[3]                                     # joint 2 is there, and two are at one place
         r = x[-1] - x[:-1]
         close("J of joints in any place [m/rad]", lesson.jacobian_2d(x), np.stack((-r[:, 1], r[:, 0])),
               size * ROUND_OFF, given=f"joints and end at {x} m")
@@ -248,6 +263,10 @@ def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
     J = size * along
     close("half axes, and tangent of the angle, for a single joint [m, m, -]", shown(lesson.velocity_ellipse(J)),
           (size, 0.0, np.tan(angle)), MANY, given=f"J = {J}")
+    J = size * np.eye(2)
+    longer, shorter, angle = lesson.velocity_ellipse(J)
+    close("half axes of a circle [m, m]", (longer, shorter), (size, size), MANY, given=f"J = {J}")
+    between("angle of a circle, where any is right [rad]", angle, -2.0 * np.pi, 2.0 * np.pi, given=f"J = {J}")
     small = draw(1e-14, 1e-13)                                            # each product of this determinant is exact
     J = np.array([[p, q], [0.0, small]])
     _, shorter, _ = lesson.velocity_ellipse(J)
@@ -266,6 +285,11 @@ def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson
     close("half axes over what they should be [-]", (longer / size, shorter * size / (small * (a - b))), (1.0, 1.0),
           1e-5, given=f"J = {J}")
     close("angle of the longer axis [rad]", np.tan(found), np.tan(angle), 1e-6, given=f"J = {J}")
+    for tilt in (small, -small):                                          # tan 2φ = 2 a tilt/(a² − a²/16)
+        J = np.array([[a, 0.0], [tilt, 0.25 * a]])
+        _, _, found = lesson.velocity_ellipse(J)
+        close("tangent of the small angle of a longer axis along x, over its truth [-]", np.tan(found) / tilt,
+              16.0 / (15.0 * a), 1e-6, given=f"J = {J}")
     J = np.array([[0.0, 0.0, 0.0], [0.0, a, b]])
     _, shorter, found = lesson.velocity_ellipse(J)
     close("short half axis of an arm that is straight [m]", shorter, 0.0, 1e-15, given=f"J = {J}")
@@ -324,9 +348,10 @@ def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
             close("θ₂ for a target that is out of reach by round-off [rad]",
                   lesson.solve_2r(beyond * way, lengths, elbow)[1], straight, ROUND_OFF,
                   given=f"distance {beyond} m, lengths {lengths} m, elbow {elbow:g}")
-    theta = np.asarray(lesson.solve_2r(np.zeros(2), np.array([long, long]), 1.0))
-    close("end of an arm that is folded onto its base [m]", joints(theta, (long, long))[-1], np.zeros(2), SOLVED,
-          given=f"lengths {long} m and {long} m")
+    for away in (0.0, 1e-10 * long):
+        theta = np.asarray(lesson.solve_2r(away * way, np.array([long, long]), 1.0))
+        close("end of an arm that is folded onto its base [m]", joints(theta, (long, long))[-1], away * way, SOLVED,
+              given=f"target {away * way} m, lengths {long} m and {long} m")
 
 
 @exercise("11.4", points=0.25,
@@ -371,6 +396,22 @@ def test_three_links_end_in_a_place_with_a_direction(lesson, draw):
                 target = np.append(joints(theta, lengths)[-1], theta.sum() + 2.0 * np.pi * turns)
                 close("θ [rad]", lesson.solve_3r(target, lengths, elbow), theta, SOLVED,
                       given=f"target {target}, lengths {lengths} m, elbow {elbow:g}")
+    reach_special_targets(lesson, draw)
+
+
+def reach_special_targets(lesson, draw):
+    """Exercise 11.5 for a target or a wrist at the base, for a target nearer than the hand is long, and for φ = 0."""
+    drawn, some = draw(0.8, 1.2, 3), draw(-3.0, 3.0)
+    hand = drawn[2] * np.array([np.cos(some), np.sin(some)])
+    for lengths, place, phi in ((drawn, np.zeros(2), some), (drawn, 0.3 * hand, some), (drawn[[0, 0, 2]], hand, some),
+                                (drawn, draw(0.5, 1.3, 2), 0.0)):
+        for elbow in (1.0, -1.0):
+            got = np.asarray(lesson.solve_3r(np.append(place, phi), lengths, elbow))
+            given = f"target {place} m, φ = {phi}, lengths {lengths} m, elbow {elbow:g}"
+            close("end of the arm [m]", joints(got, lengths)[-1], place, SOLVED, given=given)
+            close("direction of the end [-]", (np.cos(got.sum()), np.sin(got.sum())), (np.cos(phi), np.sin(phi)),
+                  SOLVED, given=given)
+            close("sign of θ₂ [-]", np.sign(got[1]), elbow, 0.0, given=given)
 
 
 @exercise("11.5", points=0.5, hint="both elbows of the first two joints; the third turns the hand back to φ")
@@ -399,9 +440,12 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n in (draw.whole(3, 7), 9, 2, 1):
+    for n in (draw.whole(3, 7), 9, 2, 2, 1):
         theta, axes, offsets = chain(draw, n)
-        theta[n // 2] *= 1e-4                                            # this joint turns by less than a milliradian
+        theta[n // 2] *= 1e-4 if n < 9 else 1e-8                         # this joint hardly turns
+        if n == 9:                                                       # these not at all, twice, a half, and back
+            theta[:4], theta[6:8] = (0.0, draw(13.0, 20.0), np.pi, -draw(7.0, 12.0)), 0.0
+            offsets[:3], offsets[7] = 0.0, 0.0                           # a wrist of three joints at the base
         x, a, q = lesson.joint_frames(theta, axes, offsets)
         x_true, a_true, R = frames(theta, axes, offsets)
         given = f"θ = {theta}"
@@ -443,12 +487,15 @@ def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
 
 @exercise("11.7", points=0.5, hint="a × r is perpendicular to both, right-handed; r leads from the joint to the end")
 def test_an_axis_through_the_end_moves_it_nowhere(lesson, draw):
-    x, a = draw(-2.0, 2.0, (4, 3)), np.stack([unit(draw) for _ in range(3)])
-    x[3] = x[1] + draw(0.5, 2.0) * a[1]
+    x, a = draw(-2.0, 2.0, (5, 3)), np.stack([unit(draw) for _ in range(4)])
+    x[4] = x[1] + draw(0.5, 2.0) * a[1]
+    x[3] = x[4]                                                          # the last joint is at the end
     J = np.asarray(lesson.jacobian_3d(x, a))
-    close("velocity of an end that is on the axis [m/s]", J[:3, 1], np.zeros(3), ROUND_OFF, given=f"axis {a[1]}")
+    close("angular velocity of the last link [rad/s]", J[3:], a.T, ROUND_OFF, given=f"joints and end at {x} m")
+    for k in (1, 3):
+        close("velocity of an end that is on the axis [m/s]", J[:3, k], np.zeros(3), ROUND_OFF, given=f"axis {a[k]}")
     for k in (0, 2):
-        r = x[3] - x[k]
+        r = x[4] - x[k]
         expected = (a[k, 1] * r[2] - a[k, 2] * r[1], a[k, 2] * r[0] - a[k, 0] * r[2], a[k, 0] * r[1] - a[k, 1] * r[0])
         close("velocity of the end [m/s]", J[:3, k], expected, ROUND_OFF, given=f"axis {a[k]}, end at {r} m from it")
 
@@ -474,8 +521,11 @@ def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
 def test_small_and_large_angles_keep_their_digits(lesson, draw):
     axis, q = unit(draw), quaternion(unit(draw), draw(0.5, 3.0))
     still = np.array([1.0, 0.0, 0.0, 0.0])
-    close("rotation vector from an orientation to itself [rad]", lesson.rotation_error(q, q), np.zeros(3), 1e-15)
-    close("rotation vector of no rotation at all [rad]", lesson.rotation_error(still, still), np.zeros(3), 0.0)
+    for sign in (1.0, -1.0):
+        close("rotation vector from an orientation to itself [rad]", lesson.rotation_error(q, sign * q), np.zeros(3),
+              1e-15, given=f"q = {q}, q_target = {sign * q}")
+        close("rotation vector of no rotation at all [rad]", lesson.rotation_error(still, sign * still), np.zeros(3),
+              0.0, given=f"q = {still}, q_target = {sign * still}")
     for least in (3e-8, 1e-9, 1e-13, 1e-18, 1e-5, 1e-3, 1e-2):
         angle = draw(least, 1.3 * least)
         for sign in (1.0, -1.0):                                         # of a quaternion: both are this orientation
@@ -518,6 +568,9 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
         got = lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=gain, **around(theta)))
         close("change of θ towards a place and a direction, over the gain [-]", (np.asarray(got) - theta) / gain, e @ J,
               SOLVED, given=f"θ = {theta}, target {target}, α = {gain}, 3 rows")
+    close("θ after a step with the gain 0 [rad]",
+          lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=0.0)), theta, 0.0,
+          given=f"θ = {theta}, target {target}, α = 0")
     for rows, size in EQUATIONS:
         (e, J, target), gain = equations(draw, rows, size), draw(0.7, 3.0)
         got = lesson.transpose_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), gain=gain, **NARROW))
@@ -541,11 +594,15 @@ def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
 
 @exercise("11.10", points=0.5, hint="v_i u_iᵀ/σ_i, added up; the result has as many rows as J has columns")
 def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
-    for m, n, size in ((2, 5, 1.0), (3, 3, 1.0), (4, 2, 1.0), (8, 9, 1.0), (6, 4, 1.0), (2, 3, 1e-13)):
+    for m, n, size in ((2, 5, 1.0), (3, 3, 1.0), (4, 2, 1.0), (8, 9, 1.0), (6, 4, 1.0), (2, 3, 1e-13),
+                       (1, 4, 1.0), (5, 1, 1.0), (1, 1, 1.0)):
         J, _ = with_singular_values(draw, size * draw(0.5, 3.0, min(m, n)), max(m, n))
         J = np.ascontiguousarray(J if m <= n else J.T)
         expected = np.stack([np.linalg.lstsq(J, e, rcond=None)[0] for e in np.eye(m)], axis=1)
         close("J⁺", np.asarray(lesson.pseudo_inverse(J)) * size, size * expected, SOLVED, given=f"J = {J}")
+    J = draw(0.5, 2.0) * np.eye(5)[[3, 0, 4]]
+    close("J⁺, with singular values that are equal", lesson.pseudo_inverse(J), J.T / np.max(J) ** 2, SOLVED,
+          given=f"J = {J}")
 
 
 @exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of a round-off would spoil the answer")
@@ -568,7 +625,9 @@ def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
         J, u = with_singular_values(draw, sigma, large + 2)
         close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(large + 1),
               1e-4, given=f"σ = {sigma}")
-    close("J⁺ of a J of zeros", lesson.pseudo_inverse(np.zeros((2, 3))), np.zeros((3, 2)), 0.0)
+    for m, n in ((2, 3), (1, 1), (1, 4), (5, 1)):
+        close("J⁺ of a J of zeros", lesson.pseudo_inverse(np.zeros((m, n))), np.zeros((n, m)), 0.0,
+              given=f"{m} rows, {n} columns")
 
 
 def damped(J, e, damping):
@@ -599,10 +658,16 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
         got = lesson.damped_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), damping=damping, **NARROW))
         close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size, damped(J, e, damping),
               SOLVED, given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows")
-    lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
-    expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
-    got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
-    close("θ after a step without damping [rad]", got, expected, 1e-9, given=f"θ = {theta}, λ = 0")
+    for e, J, target in special_equations(draw):
+        n = J.shape[1]
+        got = lesson.damped_step(linear, np.zeros(n), target, arm_of(lesson, np.ones(n), damping=damping, **NARROW))
+        close("change of θ for a special linear task [-]", got, damped(J, e, damping), SOLVED,
+              given=f"θ = 0, e = {e}, J = {J}, λ = {damping}")
+    for n in (2, draw.whole(3, 6)):                                          # J Jᵀ has an inverse, Jᵀ J has none
+        lengths, theta, target = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2)
+        shortest = np.linalg.lstsq(slopes(theta, lengths), target - points_of(theta, lengths), rcond=None)[0]
+        got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
+        close("θ after a step without damping [rad]", got, theta + shortest, 1e-9, given=f"θ = {theta}, λ = 0")
 
 
 @exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), whatever J is")
@@ -637,8 +702,9 @@ def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
 
 @exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
 def test_factors_at_the_ends_of_their_range(lesson, draw):
-    size, ratio, small = draw(0.3, 3.0), draw(5.0, 9.0), draw(1e-4, 2e-4)
-    for parts in (np.array([0.0, small, 1.0, ratio]), np.array([ratio])):                # of what α and λ are made of
+    ratio, small = draw(5.0, 9.0), draw(1e-4, 2e-4)
+    for parts, scale in (((0.0, small, 1.0, ratio), 1.0), ((ratio,), 1.0), ((1.0, ratio), 1e-7), ((1.0, ratio), 1e7)):
+        parts, size = np.array(parts), scale * draw(0.3, 3.0)                            # of what α and λ are made of
         factors = lesson.contraction_factors(size * parts, 1.0 / size**2, size)
         for got, expected in zip(factors, (1.0 - parts**2, 1.0 / (1.0 + parts**2)), strict=True):
             close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {size * parts} m, α = 1/λ², λ = {size} m")
@@ -677,6 +743,34 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
     expected = coordinate_descent(theta, np.zeros(2), lengths, arm.low, arm.high)
     between("θ₁ for a target at the base [rad]", got[0], -2.0 * np.pi, 2.0 * np.pi, given=f"θ = {theta}")
     close("θ₂ and θ₃ for a target at the base [rad]", got[1:], expected[1:], 1e-9, given=f"θ = {theta}")
+    target = draw(-2.0, 2.0, 2)
+    close("θ after a sweep, where the task has another end [rad]", lesson.ccd_step(arrived, theta, target, arm),
+          coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9, given=f"θ = {theta}, target {target} m")
+
+
+def sweep_special_arms(lesson, draw):
+    """The sweep of 11.13 for an end at the target, joints without room, and targets at the base or exactly behind."""
+    n = draw.whole(2, 5)
+    lengths, theta = np.round(64.0 * lengths_of(draw, n)) / 64.0, np.zeros(n)
+    end = np.array([lengths.sum(), 0.0])                                 # of few binary digits: exactly there
+    for side in (1.0, -1.0):
+        near = side * draw(0.2, 0.8, n)                                  # the limit that all joints are beyond
+        low, high = np.minimum(near, 2.0 * near), np.maximum(near, 2.0 * near)
+        got = lesson.ccd_step(reach, theta, end, arm_of(lesson, lengths, low=low, high=high))
+        close("θ after a sweep of an arm that is at the target, but beyond its limits [rad]", got,
+              coordinate_descent(theta, end, lengths, low, high), 1e-9,
+              given=f"θ = {theta}, target {end} m, limits {low} to {high}")
+        for target in (end, np.zeros(2), draw(-2.0, 2.0, 2)):
+            close("θ after a sweep of joints whose two limits are equal [rad]",
+                  lesson.ccd_step(reach, theta, target, arm_of(lesson, lengths, low=near, high=near)), near,
+                  ROUND_OFF, given=f"θ = {theta}, target {target} m, limits {near}")
+    for parts in (np.ones(1), np.array([1.0, 0.5, 0.75])):               # the last one folds, and then turns as a whole
+        lengths, target = draw(0.5, 2.0) * parts, np.array([-draw(0.5, 1.0), 0.0])
+        theta, arm = np.zeros(len(parts)), arm_of(lesson, lengths)
+        got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
+        close("end of an arm along x after a sweep to a target exactly behind [m]", joints(got, lengths)[-1],
+              joints(coordinate_descent(theta, target, lengths, arm.low, arm.high), lengths)[-1], 1e-9,
+              given=f"lengths {lengths} m, target {target} m")
 
 
 @exercise("11.13", points=0.5,
@@ -702,6 +796,7 @@ def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
                  high=theta + np.eye(3)[0])
     got = np.asarray(lesson.ccd_step(reach, theta, draw(0.5, 1.0, 2), arm))
     between("θ₁ of a stiff arm whose end is at its base [rad]", got[0], -1.0, 1.0, given=f"θ = {theta}")
+    sweep_special_arms(lesson, draw)
 
 
 def there_and_back(x, target, lengths):
@@ -721,12 +816,12 @@ def there_and_back(x, target, lengths):
 @exercise("11.14", points=0.5,
           hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
-    for d, far in ((3, 0.0), (2, 0.0), (2, 20.0)):                            # the last target is out of reach
-        n = draw.whole(3, 6)
-        x, target = np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), far + draw(-3.0, 3.0, d)
-        lengths = lengths_of(draw, n)                                         # not what they are before the sweep
+    for d, far, n, size in ((3, 0.0, draw.whole(3, 6), 1.0), (2, 0.0, draw.whole(7, 9), 1.0),
+                            (2, 20.0, draw.whole(3, 6), 1.0), (2, 0.0, 3, 1e-9)):     # out of reach; nanometres
+        x, target = size * np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), size * (far + draw(-3.0, 3.0, d))
+        lengths = size * lengths_of(draw, n)                                  # not what they are before the sweep
         expected = there_and_back(x, target, lengths)
-        close("positions after a sweep [m]", lesson.fabrik_sweep(x, target, lengths), expected, ROUND_OFF,
+        close("positions after a sweep [m]", lesson.fabrik_sweep(x, target, lengths), expected, size * ROUND_OFF,
               given=f"joints at {x} m, target {target} m, lengths {lengths} m")
     x, lengths = draw(0.3, 1.0, (4, 2)) + np.arange(4.0)[:, None], np.array([3.0, 0.5, 0.5])
     for parts, target in ((4, x[3]), (4, x[0]), (4, x[0] + 0.1), (2, x[3])):  # the end, the base, too near; one link
@@ -734,6 +829,9 @@ def test_a_sweep_projects_there_and_back(lesson, draw):
         close("positions after a sweep to a special target [m]", got,
               there_and_back(x[:parts], target, lengths[:parts - 1]), ROUND_OFF,
               given=f"joints at {x[:parts]} m, target {target} m, lengths {lengths[:parts - 1]} m")
+    close("base and end of a single link after a sweep to a target at the base [m]",
+          lesson.fabrik_sweep(x[:2].copy(), x[0].copy(), lengths[:1]), (x[0], x[0] + (lengths[0], 0.0)), ROUND_OFF,
+          given=f"base at {x[0]} m, length {lengths[0]} m")
     size, half = draw(0.5, 2.0), np.sqrt(0.5)                                 # for a target at a joint two points
     last = np.array([-half, 1.0 - half]) / np.hypot(half, 1.0 - half)         # coincide: point_at goes along axis 0
     for way, expected in (((1.0, 0.0), ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0))),
@@ -772,6 +870,21 @@ def hold_a_joint_that_nothing_pushes(lesson, draw):
               lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
 
 
+def step_between_far_limits(lesson, draw):
+    """The step of 11.15 for special linear tasks, and without damping."""
+    damping = draw(0.5, 1.0)
+    for e, J, target in special_equations(draw):
+        n = J.shape[1]
+        got = lesson.limited_step(linear, np.zeros(n), target, arm_of(lesson, np.ones(n), damping=damping))
+        close("change of θ for a special linear task [-]", got, damped(J, e, damping), SOLVED,
+              given=f"θ = 0, e = {e}, J = {J}, λ = {damping}")
+    for n in (2, draw.whole(4, 6)):                                           # J Jᵀ has an inverse, Jᵀ J has none
+        lengths, theta, target = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2)
+        shortest = np.linalg.lstsq(slopes(theta, lengths), target - points_of(theta, lengths), rcond=None)[0]
+        got = lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
+        close("θ after a step without damping [rad]", got, theta + shortest, 1e-9, given=f"θ = {theta}, λ = 0")
+
+
 @exercise("11.15", points=0.5, hint="a joint inside its limits, or at one but pushed inwards, moves as in damped_step")
 def test_limits_that_stop_nothing_change_nothing(lesson, draw):
     for task, count in TASKS:
@@ -780,9 +893,9 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
         target = draw(-2.0, 2.0, 2 * count)
         J, e = slopes_of(theta, lengths, count), target - points_of(theta, lengths, count)
         wish, free = e @ J, damped(J, e, damping)
-        far = np.full(n, 50.0)
-        for low, high in ((-far, far), (np.where((wish > 0.0) & (free > 0.0), theta, -far),
-                                        np.where((wish < 0.0) & (free < 0.0), theta, far))):
+        far, up, down = np.full(n, 50.0), (wish > 0.0) & (free > 0.0), (wish < 0.0) & (free < 0.0)
+        for low, high in ((-far, far), (np.where(up, theta, -far), np.where(down, theta, far)),
+                          (np.where(up, theta + 0.5 * free, -far), np.where(down, theta + 0.5 * free, far))):
             arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
             got = lesson.limited_step(task, theta, target, arm)
             close("θ after a step [rad]", got, theta + free, SOLVED, given=f"θ = {theta}, limits {low} to {high}")
@@ -801,6 +914,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
               damped(np.where(first, 0.0, J), e, damping), SOLVED,
               given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows, limits {arm.low} to {arm.high}")
     hold_a_joint_that_nothing_pushes(lesson, draw)
+    step_between_far_limits(lesson, draw)
 
 
 @exercise("11.15", points=0.25,
@@ -913,6 +1027,12 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         close("change of θ for a linear task, over the size of e [-]", np.asarray(got) / size,
               z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9,
               given=f"θ = 0, e = {size * e}, J = {J}, {rows} rows, κ (rest − θ) = {size * z}")
+    for e, J, target in special_equations(draw):
+        n = J.shape[1]
+        z, arm = pull * rest[:n], arm_of(lesson, np.ones(n), rest=rest[:n], pull=pull, **NARROW)
+        close("change of θ for a special linear task [-]", lesson.null_space_step(linear, np.zeros(n), target, arm),
+              z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9,
+              given=f"θ = 0, e = {e}, J = {J}, κ (rest − θ) = {z}")
     hold_straight_arms(lesson, draw, rest, pull)
 
 
@@ -942,6 +1062,14 @@ def settled(lengths, target, damping, theta, iterations=3000):
     return np.sqrt(e @ e)
 
 
+def ring(lengths):
+    """The least and the largest distance [m] of the end from the base, link after link."""
+    least = most = 0.0
+    for length in lengths:
+        least, most = max(least - length, length - most, 0.0), most + length
+    return least, most
+
+
 @exercise("11.17", points=1, hint="a damped step does not move the arm if Jᵀ e = 0: which place of its reach is that?")
 def test_damped_steps_leave_the_predicted_distance(lesson, draw):
     l_1, l_2, l_3 = draw(1.2, 1.4), draw(0.3, 0.5), draw(0.2, 0.4)
@@ -958,6 +1086,16 @@ def test_damped_steps_leave_the_predicted_distance(lesson, draw):
         # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
         close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
               given=f"lengths {lengths}, {away} m away, λ = {damping}")
+    for n, k in ((1, 0), (2, 1), (3, 1), (4, 3), (8, 3)):                # the k-th is the longest, or all are alike
+        for long in (1.0, n - draw(0.5, 0.9)):
+            lengths = draw(0.5, 2.0) * np.where(np.arange(n) == k, long, 1.0)
+            least, most = ring(lengths)
+            for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most,
+                                    draw(20.0, 30.0) * most), 0.0):
+                target, damping = away * np.array([np.cos(turn), np.sin(turn)]), draw(0.7, 1.2) * most
+                close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
+                      max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
+                      given=f"lengths {lengths}, {away} m away, λ = {damping}")
 
 
 @exercise("11.18", points=1,

@@ -993,9 +993,9 @@ def damping_of(of=same, error=same, weight=lambda arm, e, J: arm.damping**2,
     return damped_step
 
 
-right("11.11", "as a system for all joints")(lambda task, theta, target, arm: theta + np.linalg.solve(
-    task(theta, target, arm)[1].T @ task(theta, target, arm)[1] + arm.damping**2 * np.eye(len(theta)),
-    task(theta, target, arm)[1].T @ task(theta, target, arm)[0]))
+right("11.11", "by least squares, with a row for each joint")(lambda task, theta, target, arm: theta + np.linalg.lstsq(
+    np.vstack((task(theta, target, arm)[1], arm.damping * np.eye(len(theta)))),
+    np.append(task(theta, target, arm)[0], 0.0 * theta), rcond=None)[0])
 for story, part in SEEN.items():
     wrong("11.11", story)(damping_of(of=part))
 for story, part in DONE.items():
@@ -1827,6 +1827,97 @@ edit("11.16", "normalises a pull that is longer than 1", PULLED, f"(lambda z: {P
 edit("11.16", "uses a pull of at most ½", "arm.pull *", "min(arm.pull, 0.5) *")
 
 
+# special cases --------------------------------------------------------------------------------------------------
+# Joints at one place or at the end, angles and arms of 0, a single joint or more than six, no damping, equal limits.
+edit("11.2", "divides by the distance of the end from a joint, which may be 0", "x[k, 1] - x[n, 1],",
+     "x[k, 1] - x[n, 1] + 0.0 / np.hypot(x[n, 0] - x[k, 0], x[n, 1] - x[k, 1]),")
+edit("11.2", "returns zeros for the second of two joints at one place", "return J",
+     "J[:, 1:][:, np.all(x[1:n] == x[:n - 1], axis=1)] = 0.0; return J")
+edit("11.2", "takes the base to be at (0, 0) where there is a single joint", "return J",
+     "return J if n > 1 else np.array(((-x[1, 1],), (x[1, 0],)))")
+edit("11.3", "returns atan2(σ₁² − a, b), which loses the digits of a small angle", TURN,
+     "np.arctan2(longer * longer - a, b)")
+edit("11.3", "returns no number for the angle of a circle", TURN, f"({TURN} if b != 0.0 or a != c else np.nan)")
+edit("11.4", "refuses a target nearer to the base than 1e-9 m", "r < least - EDGE * most",
+     "0.0 < r < 1e-9 or r < least - EDGE * most")
+for refused, what in (("a target nearer to the base than l₃", "np.hypot(target[0], target[1]) < lengths[2]"),
+                      ("a target at the base", "np.hypot(target[0], target[1]) == 0.0"),
+                      ("a last joint at the base", "np.hypot(wrist[0], wrist[1]) < 1e-9")):
+    edit("11.5", f"refuses {refused}", "theta = solve_2r(wrist,",
+         f"if {what}: raise BadInput('distance of the target [m]', 0.0, 'go away')\n    theta = solve_2r(wrist,")
+edit("11.5", "takes the direction of the target where φ is exactly 0", "phi = target[2]",
+     "phi = target[2] if target[2] != 0.0 else np.arctan2(target[1], target[0])")
+edit("11.6", "leaves out the offset of a joint whose angle is 0", "rotate(q, row(offsets, k))",
+     "scaled(float(theta[k] != 0.0), rotate(q, row(offsets, k)))")
+edit("11.6", "does not rotate the axis of a joint whose angle is 0", "put(a, k, rotate(q, axis))",
+     "put(a, k, rotate(q, axis) if theta[k] != 0.0 else axis)")
+edit("11.6", "divides by the length of an offset, which may be 0", "plus(row(x, k), 1.0,",
+     "plus(row(x, k), 1.0 + 0.0 / np.sqrt(np.sum(offsets[k] ** 2)),")
+edit("11.6", "uses the same axis for two joints at one place", "return x, a, q",
+     "k = np.flatnonzero(np.all(x[1:n] == x[:n - 1], axis=1)); a[k + 1] = a[k]; return x, a, q")
+edit("11.6", "cuts the angles off at two turns", "scaled(theta[k], axis)",
+     "scaled(min(max(theta[k], -4.0 * np.pi), 4.0 * np.pi), axis)")
+edit("11.6", "does not turn by exactly half a turn", "scaled(theta[k], axis)",
+     "scaled(theta[k] if abs(theta[k]) != np.pi else 0.0, axis)")
+edit("11.6", "does not turn by angles below 1e-6", "scaled(theta[k], axis)",
+     "scaled(theta[k] if abs(theta[k]) > 1e-6 else 0.0, axis)")
+edit("11.7", "returns no angular velocity where the end does not move", "v[c], a[k, c]",
+     "v[c], (a[k, c] if any(v) else 0.0)")
+edit("11.7", "divides by the distance of the end from a joint, which may be 0", "v[c], a[k, c]",
+     "v[c] + 0.0 / np.sqrt(np.sum((x[n] - x[k]) ** 2)), a[k, c]")
+edit("11.8", "divides zero by zero where q_target is −q", "2.0 if size == 0.0", "2.0 if np.all(q == q_target)")
+edit("11.9", "takes a gain of 0 for 1", "arm.gain *", "(arm.gain or 1.0) *")
+SVD = "u, sigma, v = np.linalg.svd(J, False)"
+edit("11.10", "divides a single row by its square, which may be 0", SVD,
+     f"if len(J) == 1: return J.T / (J @ J.T)\n    {SVD}")
+edit("11.10", "divides a single column by its square, which may be 0", SVD,
+     f"if J.shape[1] == 1: return J.T / (J.T @ J)\n    {SVD}")
+edit("11.10", "adds only one of several σ_i that are equal", f"not sigma[i] <= {CUTOFF}",
+     f"not (sigma[i] <= {CUTOFF} or i > 0 and sigma[i] == sigma[i - 1])")
+edit("11.11", "inverts JᵀJ + λ² 1, which has no inverse for λ = 0", "sum_of_rows(J, solve_symmetric(A, e))",
+     "np.linalg.solve(J.T @ J + arm.damping**2 * np.eye(theta.size), e @ J)")
+edit("11.11", "uses only the first row of the task for a single joint", SUM,
+     f"if theta.size == 1: return theta + J[0] * e[0] / (J[0, 0] ** 2 + arm.damping**2)\n    {SUM}")
+edit("11.11", "divides by the size of the step, which may be 0", f"return {SOLVED}",
+     f"return (lambda new: new + 0.0 / np.sqrt((new - theta) @ (new - theta)))({SOLVED})")
+edit("11.12", "uses a damping that is not below 1e-3 m", "damping**2 / (sigma**2 + damping**2)",
+     "max(damping, 1e-3)**2 / (sigma**2 + max(damping, 1e-3)**2)")
+edit("11.12", "does not let σ² + λ² be below 1e-12", "(sigma**2 + damping**2)",
+     "np.maximum(sigma**2 + damping**2, 1e-12)")
+edit("11.12", "limits the gain to 10", "gain * sigma**2", "min(gain, 10.0) * sigma**2")
+edit("11.13", "takes the end from the task, which is not used", ENDS,
+     "e, _ = task(theta, target, arm); end_x, end_y = target[0] - e[0], target[1] - e[1]")
+edit("11.13", "does nothing where the end is at the target, whatever the limits are", ENDS,
+     f"{ENDS}\n    if end_x == target[0] and end_y == target[1]: return theta")
+edit("11.13", "does not keep the limits of a joint that is at the target", NEW, f"{NEW} if s_x or s_y else wish")
+edit("11.13", "does not keep the limits of a joint that need not turn", NEW, f"{NEW} if wish != theta[k] else wish")
+edit("11.13", "does not keep limits that are equal", NEW, f"{NEW} if arm.low[k] < arm.high[k] else wish")
+edit("11.13", "does not turn a joint that is exactly between the end and the target", "np.arctan2(r_x * s_y",
+     "(r_x * s_y != r_y * s_x) * np.arctan2(r_x * s_y")
+edit("11.14", "moves only the first six links on the way back", "range(n - 1, -1, -1)", "range(min(n, 6) - 1, -1, -1)")
+edit("11.14", "moves only the first six links on the way forth", "range(n):", "range(min(n, 6)):")
+edit("11.14", "leaves the end of a single link where it coincides with the base",
+     "point_at(x[k], x[k + 1], lengths[k])",
+     "point_at(x[k], x[k + 1], lengths[k]) if n > 1 or np.any(x[1] != x[0]) else x[1]")
+edit("11.14", "takes joints nearer than 1e-6 m for one on the way back", "point_at(x[k + 1], x[k],",
+     "point_at(x[k + 1], x[k] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k + 1],")
+edit("11.14", "takes joints nearer than 1e-6 m for one on the way forth", "point_at(x[k], x[k + 1],",
+     "point_at(x[k], x[k + 1] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k],")
+edit("11.15", "inverts J'ᵀJ' + λ² 1, which has no inverse for λ = 0", "sum_of_rows(J, solve_symmetric(A, e))",
+     "np.linalg.solve(J.T @ J + arm.damping**2 * np.eye(theta.size), e @ J)")
+edit("11.15", "adds the step to angles that it has set to the limits", "theta + sum_of_rows",
+     "np.clip(theta, arm.low, arm.high) + sum_of_rows")
+edit("11.15", "blocks joints beyond a limit, whatever the direction", "if (theta[k] >= arm.high[k]",
+     "if theta[k] > arm.high[k] or theta[k] < arm.low[k] or (theta[k] >= arm.high[k]")
+wrongs("11.15", between_limits, {"sets joints beyond a limit to the limit, without a step": {
+    "done": lambda theta, change, arm: np.where(clipped(theta, arm) == theta, clipped(theta + change, arm),
+                                                clipped(theta, arm))}})
+edit("11.16", "does not pull where the task has more rows than there are joints", "arm.pull *",
+     "arm.pull * (theta.size >= e.size) *")
+edit("11.16", "does not pull where J is 0", "arm.pull *", "arm.pull * np.any(J) *")
+edit("11.16", "does not pull a single joint", "arm.pull *", "arm.pull * (theta.size > 1) *")
+
+
 # 11.17 --------------------------------------------------------------------------------------------------------------
 @right("11.17", "by cases")
 def remaining_distance(lengths, target, damping):
@@ -1850,6 +1941,22 @@ edit("11.17", "has a hole also where the other links together are longer than th
 edit("11.17", "takes the difference of the longest and the shortest link for the hole",
      "2.0 * np.max(lengths) - reach", "np.max(lengths) - np.min(lengths)")
 edit("11.17", "returns the distance from the base", "np.maximum(0.0, np.maximum(away - reach, hole - away))", "away")
+LEFT = "return np.maximum(0.0, np.maximum(away - reach, hole - away))"
+edit("11.17", "takes the first or the last link for the longest", "np.max(lengths)", "max(lengths[0], lengths[-1])")
+edit("11.17", "takes the longest of the first three links for the longest", "np.max(lengths)", "np.max(lengths[:3])")
+edit("11.17", "has no hole for a single link", "2.0 * np.max(lengths) - reach",
+     "2.0 * np.max(lengths) - reach if lengths.size > 1 else 0.0")
+edit("11.17", "has no hole with more than three links", "2.0 * np.max(lengths) - reach",
+     "2.0 * np.max(lengths) - reach if lengths.size <= 3 else 0.0")
+edit("11.17", "has a small hole also where two links are equal", "2.0 * np.max(lengths) - reach",
+     "max(2.0 * np.max(lengths) - reach, 0.01 * np.min(lengths))")
+edit("11.17", "adds up only the first six links", "np.sum(lengths)", "np.sum(lengths[:6])")
+edit("11.17", "returns 0 for a target at the base", LEFT, f"{LEFT} if away > 0.0 else 0.0")
+edit("11.17", "takes a distance below 0.01 m for 0", LEFT, f"hole -= 1e-2; reach += 1e-2; left = {LEFT[7:]}\n"
+     "    return left + 1e-2 if left > 0.0 else 0.0")
+edit("11.17", "takes a distance below 0.1 m in the hole for 0", LEFT, f"{LEFT} if not 0.0 < hole - away < 0.1 else 0.0")
+edit("11.17", "returns at most 5 m", LEFT, f"return min(5.0, {LEFT[7:]})")
+edit("11.17", "computes in single precision", "np.sum(lengths)", "np.float64(np.float32(np.sum(lengths)))")
 edit("11.17", "takes the longest link as the reach", "reach, away = np.sum(lengths)", "reach, away = np.max(lengths)")
 
 
