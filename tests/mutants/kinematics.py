@@ -993,6 +993,9 @@ def damping_of(of=same, error=same, weight=lambda arm, e, J: arm.damping**2,
     return damped_step
 
 
+right("11.11", "as a system for all joints")(lambda task, theta, target, arm: theta + np.linalg.solve(
+    task(theta, target, arm)[1].T @ task(theta, target, arm)[1] + arm.damping**2 * np.eye(len(theta)),
+    task(theta, target, arm)[1].T @ task(theta, target, arm)[0]))
 right("11.11", "by least squares, with a row for each joint")(lambda task, theta, target, arm: theta + np.linalg.lstsq(
     np.vstack((task(theta, target, arm)[1], arm.damping * np.eye(len(theta)))),
     np.append(task(theta, target, arm)[0], 0.0 * theta), rcond=None)[0])
@@ -1874,8 +1877,6 @@ edit("11.10", "divides a single column by its square, which may be 0", SVD,
      f"if J.shape[1] == 1: return J.T / (J.T @ J)\n    {SVD}")
 edit("11.10", "adds only one of several σ_i that are equal", f"not sigma[i] <= {CUTOFF}",
      f"not (sigma[i] <= {CUTOFF} or i > 0 and sigma[i] == sigma[i - 1])")
-edit("11.11", "inverts JᵀJ + λ² 1, which has no inverse for λ = 0", "sum_of_rows(J, solve_symmetric(A, e))",
-     "np.linalg.solve(J.T @ J + arm.damping**2 * np.eye(theta.size), e @ J)")
 edit("11.11", "uses only the first row of the task for a single joint", SUM,
      f"if theta.size == 1: return theta + J[0] * e[0] / (J[0, 0] ** 2 + arm.damping**2)\n    {SUM}")
 edit("11.11", "divides by the size of the step, which may be 0", f"return {SOLVED}",
@@ -1903,8 +1904,6 @@ edit("11.14", "takes joints nearer than 1e-6 m for one on the way back", "point_
      "point_at(x[k + 1], x[k] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k + 1],")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way forth", "point_at(x[k], x[k + 1],",
      "point_at(x[k], x[k + 1] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k],")
-edit("11.15", "inverts J'ᵀJ' + λ² 1, which has no inverse for λ = 0", "sum_of_rows(J, solve_symmetric(A, e))",
-     "np.linalg.solve(J.T @ J + arm.damping**2 * np.eye(theta.size), e @ J)")
 edit("11.15", "adds the step to angles that it has set to the limits", "theta + sum_of_rows",
      "np.clip(theta, arm.low, arm.high) + sum_of_rows")
 edit("11.15", "blocks joints beyond a limit, whatever the direction", "if (theta[k] >= arm.high[k]",
