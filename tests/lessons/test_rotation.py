@@ -48,6 +48,37 @@ def spin_of(draw):
     return draw(0.5, 1.5, 3) * np.where(draw(-1.0, 1.0, 3) < 0.0, -1.0, 1.0)
 
 
+STILL = np.array([1.0, 0.0, 0.0, 0.0])                               # no rotation
+
+
+def orientation_of_few(draw):
+    """A drawn unit quaternion, some components of which are exactly 0."""
+    q = draw.sparse(-1.0, 1.0, 4)
+    q[draw.whole(0, 3)] = 1.0
+    return unit_of(q)
+
+
+def round_bodies(draw):
+    """Moments [kg m²] of three bodies with two equal ones, and of a ball."""
+    across, along = draw(2.0, 3.0), draw(1.0, 1.8)
+    return *np.where(np.eye(3) > 0.0, along, across), np.full(3, across)
+
+
+def few(draw, size):
+    """Vectors with components that are exactly 0, and 0 itself."""
+    return *draw.sparse(-size, size, (3, 3)), np.zeros(3)
+
+
+def one_at_zero(vectors):
+    """Copies (n, n, 3) of these n vectors; in each, another one is 0."""
+    return np.where(np.eye(len(vectors))[:, :, None] > 0.0, 0.0, vectors)
+
+
+def third_way(omega, dt):
+    """The matrix of the quaternion (1, ½dt ω)."""
+    return turn(np.concatenate(([1.0], 0.5 * dt * omega)))
+
+
 def inertia(q, I_body):
     """The matrix R I_body Rᵀ."""
     R = turn(q)
@@ -58,20 +89,22 @@ def inertia(q, I_body):
 
 @exercise("5.1", points=1, hint="the first row gives the x component of a × b, a_y b_z − a_z b_y: (0, −a_z, a_y)")
 def test_a_skew_matrix_multiplies_like_a_cross_product(lesson, draw):
-    a, b = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
-    matrix = lesson.skew(a)
-    close("a* b − a × b", np.asarray(matrix) @ b - np.cross(a, b), np.zeros(3), EXACT, given=f"a = {a}, b = {b}")
-    close("a* e for the three axes e, as columns", matrix, np.cross(a, np.eye(3)).T, EXACT, given=f"a = {a}")
+    b = draw(-2.0, 2.0, 3)
+    for a in (draw(-2.0, 2.0, 3), *few(draw, 2.0)):
+        matrix = lesson.skew(a)
+        close("a* b − a × b", np.asarray(matrix) @ b - np.cross(a, b), np.zeros(3), EXACT, given=f"a = {a}, b = {b}")
+        close("a* e for the three axes e, as columns", matrix, np.cross(a, np.eye(3)).T, EXACT, given=f"a = {a}")
 
 
 @exercise("5.2", points=0.5, hint="the point moves with v, plus ω × r because the body rotates, in this order")
 def test_a_point_moves_as_the_body_carries_it(lesson, draw):
-    v, omega, r = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-1.0, 1.0, 3)
+    general = np.array([draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-1.0, 1.0, 3)])
     h = 1e-4
-    before, after = (s * h * v + about(s * h * omega) @ r for s in (-1.0, 1.0))
-    # h²/6 |ω|³ |r| < 1e-8/6 · 42 · 1.8 = 1.3e-7
-    close("velocity of the point [m/s]", lesson.point_velocity(v, omega, r), (after - before) / (2.0 * h), 2e-7,
-          given=f"v = {v}, ω = {omega}, r = {r}")
+    for v, omega, r in (general, *one_at_zero(general), *draw.sparse(-1.0, 1.0, (3, 3, 3))):
+        before, after = (s * h * v + about(s * h * omega) @ r for s in (-1.0, 1.0))
+        # h²/6 |ω|³ |r| < 1e-8/6 · 42 · 1.8 = 1.3e-7
+        close("velocity of the point [m/s]", lesson.point_velocity(v, omega, r), (after - before) / (2.0 * h), 2e-7,
+              given=f"v = {v}, ω = {omega}, r = {r}")
 
 
 @exercise("5.3", points=1,
@@ -90,6 +123,12 @@ def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
     close("torque of a couple [N m], about any point", tau, np.cross(points[0] - points[1], forces[0]), EXACT)
     F, tau = lesson.total_load(x, points[:1] * 0.0 + x, forces[:1])
     close("torque of a force at the centre of mass [N m]", tau, np.zeros(3), EXACT)
+    for n in (1, 1, 2, 7):
+        x, points, forces = draw.sparse(-1.0, 1.0, 3), draw.sparse(-2.0, 2.0, (n, 3)), draw.sparse(-5.0, 5.0, (n, 3))
+        forces[:n // 2] = 0.0
+        F, tau = lesson.total_load(x, points, forces)
+        close("total force, where some forces are 0 [N]", F, forces.sum(axis=0), EXACT)
+        close("torque, where some forces are 0 [N m]", tau, np.cross(points - x, forces).sum(axis=0), EXACT)
 
 
 @exercise("5.4", points=1,
@@ -101,29 +140,34 @@ def test_angular_momentum_gives_back_the_angular_velocity(lesson, draw):
     close("ω of a body with L = I ω [rad/s]", got, omega, EXACT, given=f"ω = {omega}, I_body = {I_body}")
     close("ω about a principal axis: along it [rad/s]",
           lesson.angular_velocity(np.eye(3), np.array([0.0, 2.0 * I_body[1], 0.0]), I_body), [0.0, 2.0, 0.0], EXACT)
+    for I_body in round_bodies(draw):
+        for q in (orientation(draw), orientation_of_few(draw)):
+            for omega in few(draw, 3.0):
+                close("ω of a body with equal moments [rad/s]",
+                      lesson.angular_velocity(turn(q), inertia(q, I_body) @ omega, I_body), omega, EXACT,
+                      given=f"ω = {omega}, I_body = {I_body}")
 
 
 @exercise("5.5", points=1,
           hint="ẋ is P over the mass, and Ṙ is skew(ω) R; the other two are F and τ")
 def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
-    q = orientation(draw)
-    I_body = moments(draw)
-    omega = spin_of(draw)
-    m = draw(1.0, 3.0)
-    h = 1e-4
-    R = turn(q)
-    P, F, tau = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
-    S = lesson.RigidBodyState(draw(-1.0, 1.0, 3), R, P, inertia(q, I_body) @ omega)
-    light, heavy = (lesson.state_derivative(S, F, tau, lesson.RigidBody(share * m, I_body))[0] for share in (0.1, 10.0))
-    x_rate, R_rate, P_rate, L_rate = lesson.state_derivative(S, F, tau, lesson.RigidBody(m, I_body))
-    before, after = (about(s * h * omega) @ R for s in (-1.0, 1.0))
-    close("ẋ of a body a tenth, once and ten times as heavy [m/s]", [light, x_rate, heavy],
-          [10.0 * P / m, P / m, 0.1 * P / m], EXACT * 10.0)
-    # h²/6 |ω|³ < 1e-8/6 · 18
-    close("Ṙ: rate of change of the body's axes [1/s]", R_rate, (after - before) / (2.0 * h), 5e-8,
-          given=f"ω = {omega}")
-    close("Ṗ [N]", P_rate, F, 0.0)
-    close("L̇ [N m]", L_rate, tau, 0.0)
+    h, m = 1e-4, draw(1.0, 3.0)
+    general = np.array([draw(-1.0, 1.0, 3), draw(-2.0, 2.0, 3), spin_of(draw), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)])
+    for q, I_body in ((orientation(draw), moments(draw)), (STILL, round_bodies(draw)[0])):
+        for x, P, omega, F, tau in (general, *one_at_zero(general), np.zeros((5, 3)),
+                                    *draw.sparse(-1.0, 1.0, (2, 5, 3))):
+            S, R = lesson.RigidBodyState(x, turn(q), P, inertia(q, I_body) @ omega), turn(q)
+            light, heavy = (lesson.state_derivative(S, F, tau, lesson.RigidBody(share * m, I_body))[0]
+                            for share in (0.1, 10.0))
+            x_rate, R_rate, P_rate, L_rate = lesson.state_derivative(S, F, tau, lesson.RigidBody(m, I_body))
+            before, after = (about(s * h * omega) @ R for s in (-1.0, 1.0))
+            close("ẋ of a body a tenth, once and ten times as heavy [m/s]", [light, x_rate, heavy],
+                  [10.0 * P / m, P / m, 0.1 * P / m], EXACT * 10.0)
+            # h²/6 |ω|³ < 1e-8/6 · 18
+            close("Ṙ: rate of change of the body's axes [1/s]", R_rate, (after - before) / (2.0 * h), 5e-8,
+                  given=f"ω = {omega}")
+            close("Ṗ [N]", P_rate, F, 0.0)
+            close("L̇ [N m]", L_rate, tau, 0.0)
 
 
 # ---------------------------------------------------------------------------------------------- three rotation updates
@@ -132,16 +176,17 @@ def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
           hint="first R + dt ω* R; then its columns: the first to length 1, the second perpendicular "
                "to the first, the third by a cross product")
 def test_the_matrix_update_keeps_a_matrix_orthonormal(lesson, draw):
-    R, omega, dt = turn(orientation(draw)), spin_of(draw), draw(0.1, 0.4)
-    kept = R.copy()
-    got = np.asarray(lesson.matrix_update(R, omega, dt))
-    moved = R + dt * np.cross(omega, R.T).T
-    Q, upper = np.linalg.qr(moved)
-    close("orientation, compared with a QR factorisation of R + dt ω* R", got, Q * np.sign(np.diag(upper)), EXACT,
-          given=f"ω = {omega}, dt = {dt}")
-    close("R Rᵀ of the result", got @ got.T, np.eye(3), EXACT)
-    close("input R after the call: unchanged", R, kept, 0.0)
-    close("orientation at ω = 0", lesson.matrix_update(R, np.zeros(3), dt), R, EXACT)
+    general, dt = turn(orientation(draw)), draw(0.1, 0.4)
+    kept = general.copy()
+    for R in (general, np.eye(3)):
+        for omega in (spin_of(draw), *few(draw, 1.5)):
+            got = np.asarray(lesson.matrix_update(R, omega, dt))
+            Q, upper = np.linalg.qr(R + dt * np.cross(omega, R.T).T)
+            close("orientation, compared with a QR factorisation of R + dt ω* R", got, Q * np.sign(np.diag(upper)),
+                  EXACT, given=f"ω = {omega}, dt = {dt}")
+            close("R Rᵀ of the result", got @ got.T, np.eye(3), EXACT)
+    close("input R after the call: unchanged", general, kept, 0.0)
+    close("orientation at ω = 0", lesson.matrix_update(general, np.zeros(3), dt), general, EXACT)
 
 
 @exercise("5.7", points=0.5,
@@ -159,6 +204,10 @@ def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
     close("orientation at ω = 0: that of R", still, R, 0.0)
     truth("whether this is the array that was handed in: orientation at ω = 0",
           np.shares_memory(np.asarray(still), R), False)
+    for R in (turn(orientation(draw)), np.eye(3)):
+        for omega in few(draw, 1.5):
+            close("orientation after dt, where components of ω are 0", lesson.axis_angle_update(R, omega, dt),
+                  about(dt * omega) @ R, EXACT, given=f"ω = {omega}, dt = {dt}")
 
 
 @exercise("5.7", points=0.5,
@@ -185,10 +234,12 @@ def pauli(q):
 
 @exercise("5.8", points=1, hint="scalar: a₀b₀ − 𝐚·𝐛; vector: a₀𝐛 + b₀𝐚 + 𝐚×𝐛; i j = k, but j i = −k")
 def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
-    pairs = draw(-2.0, 2.0, (8, 2, 4))
+    pairs = np.concatenate((draw(-2.0, 2.0, (10, 2, 4)), draw.sparse(-2.0, 2.0, (6, 2, 4))))
     # Two pairs have no scalar part: the scalar part of the product is −𝐚·𝐛, of either sign.
     pairs[:2, :, 0] = 0.0
     pairs[1, 1] = pairs[1, 0]
+    # Two have a factor without a vector part, and two a factor 0.
+    pairs[8, 0, 1:], pairs[9, 1, 1:], pairs[10, 0], pairs[11, 1] = 0.0, 0.0, 0.0, 0.0
     for a, b in pairs:
         expected = pauli(a) @ pauli(b)
         got = np.asarray(lesson.quaternion_product(a, b))
@@ -201,9 +252,10 @@ def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
 @exercise("5.9", points=1,
           hint="the terms with w have opposite signs across the diagonal: 2(xy − wz) above it, 2(xy + wz) below")
 def test_a_quaternion_turns_as_its_matrix_does(lesson, draw):
-    q = orientation(draw)
-    close("matrix of the quaternion", lesson.rotation_matrix(q), turn(q), EXACT, given=f"q = {q}")
-    close("matrix of its negative: the same", lesson.rotation_matrix(-q), turn(q), EXACT)
+    half_turn = np.concatenate(([0.0], unit_of(draw(-1.0, 1.0, 3))))
+    for q in (orientation(draw), half_turn, *np.eye(4), orientation_of_few(draw), orientation_of_few(draw)):
+        close("matrix of the quaternion", lesson.rotation_matrix(q), turn(q), EXACT, given=f"q = {q}")
+        close("matrix of its negative: the same", lesson.rotation_matrix(-q), turn(q), EXACT)
     half = np.sqrt(0.5)
     close("x axis after a quarter turn about z",
           np.asarray(lesson.rotation_matrix(np.array([half, 0.0, 0.0, half])))[:, 0], [0.0, 1.0, 0.0], EXACT)
@@ -213,24 +265,24 @@ def test_a_quaternion_turns_as_its_matrix_does(lesson, draw):
           hint="the product (0, ω) q, with ω on the left because it is in world "
                "coordinates; times ½ dt; then normalise")
 def test_the_quaternion_update_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
-    q, omega, dt = orientation(draw), spin_of(draw), draw(0.1, 0.5)
-    kept = q.copy()
-    rate = np.linalg.norm(omega)
-    got = lesson.quaternion_update(q, omega, dt)
-    expected = about(2.0 * np.arctan(0.5 * rate * dt) / rate * omega) @ turn(q)
-    close("length of the new quaternion", np.linalg.norm(got), 1.0, EXACT)
-    close("orientation after dt, as a matrix", turn(got), expected, EXACT, given=f"ω = {omega}, dt = {dt}")
-    close("orientation after dt and −dt: back, as a matrix",
-          turn(lesson.quaternion_update(np.asarray(got, dtype=float), omega, -dt)), turn(q), EXACT)
-    close("input q after the call: unchanged", q, kept, 0.0)
+    general, dt = orientation(draw), draw(0.1, 0.5)
+    kept = general.copy()
+    for q in (general, STILL, orientation_of_few(draw)):
+        for omega in (spin_of(draw), *few(draw, 1.5)):
+            got = lesson.quaternion_update(q, omega, dt)
+            close("length of the new quaternion", np.linalg.norm(got), 1.0, EXACT)
+            close("orientation after dt, as a matrix", turn(got), third_way(omega, dt) @ turn(q), EXACT,
+                  given=f"ω = {omega}, dt = {dt}")
+            close("orientation after dt and −dt: back, as a matrix",
+                  turn(lesson.quaternion_update(np.asarray(got, dtype=float), omega, -dt)), turn(q), EXACT)
+    close("input q after the call: unchanged", general, kept, 0.0)
 
 
 @exercise("5.10", points=0.25, hint="normalise with unit: it raises BadInput for a quaternion of length zero")
 def test_a_quaternion_of_length_zero_is_refused(lesson, draw):
     q, omega = orientation(draw), spin_of(draw)
-    rate = np.linalg.norm(omega)
     close("orientation after 0.1 s, for a q that is not zero", turn(lesson.quaternion_update(q, omega, 0.1)),
-          about(2.0 * np.arctan(0.05 * rate) / rate * omega) @ turn(q), EXACT, given=f"q = {q}, ω = {omega}")
+          third_way(omega, 0.1) @ turn(q), EXACT, given=f"q = {q}, ω = {omega}")
     raises("q = 0", BadInput, lesson.quaternion_update, np.zeros(4), omega, 0.1)
 
 
@@ -254,6 +306,15 @@ def test_a_body_speeds_up_as_eulers_equations_say(lesson, draw):
     close("ω̇ about a principal axis, without torque [rad/s²]",
           lesson.angular_acceleration(q, along, np.zeros(3), I_body), np.zeros(3), EXACT)
     close("ω̇ of a ball [rad/s²]: τ/I", lesson.angular_acceleration(q, omega, tau, 2.0 * np.ones(3)), 0.5 * tau, EXACT)
+    simple = *one_at_zero(np.array([omega, tau])), *draw.sparse(-2.0, 2.0, (2, 2, 3))
+    for some in (I_body, *round_bodies(draw)):
+        for r in (q, STILL):
+            I = inertia(r, some)
+            for omega, tau in simple:
+                close("ω̇ where some components are 0, or some moments equal [rad/s²]",
+                      lesson.angular_acceleration(r, omega, tau, some),
+                      np.linalg.solve(I, tau - np.cross(omega, I @ omega)), EXACT,
+                      given=f"q = {r}, ω = {omega}, τ = {tau}, I_body = {some}")
 
 
 def swirling_load(t, x, q, v, omega, body):
@@ -262,35 +323,39 @@ def swirling_load(t, x, q, v, omega, body):
     return F, np.array([x[1] - omega[0], v[1] + q[0], np.sin(t) - omega[2]])
 
 
-@exercise("5.12", points=0.5,
-          hint="evaluate load at the old state, divide F by m; update v and ω; then x and q with the new v and ω")
-def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
-    for m in (draw(0.01, 0.1), draw(1.0, 3.0), draw(20.0, 90.0)):
-        t, dt = draw(0.5, 1.5), draw(0.1, 0.3)
-        x, v = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
-        q = orientation(draw)
-        omega = spin_of(draw)
-        I_body = moments(draw)
-        body = lesson.RigidBody(m, I_body)
-        kept = [a.copy() for a in (x, q, v, omega)]
-        x_new, q_new, v_new, omega_new = lesson.rigid_body_step(swirling_load, t, x, q, v, omega, dt, body)
-        F, tau = swirling_load(t, x, q, v, omega, body)
-        I = inertia(q, I_body)
-        faster = v + dt * F / m
-        turned = omega + dt * np.linalg.solve(I, tau - np.cross(omega, I @ omega))
-        rate = np.linalg.norm(turned)
-        after = about(2.0 * np.arctan(0.5 * rate * dt) / rate * turned) @ turn(q)
-        close("v after one step [m/s]", v_new, faster, EXACT)
-        close("x after one step [m]", x_new, x + dt * faster, EXACT)
-        close("ω after one step [rad/s]", omega_new, turned, EXACT)
-        close("length of q after one step", np.linalg.norm(q_new), 1.0, EXACT)
-        close("orientation after one step, as a matrix", turn(q_new), after, EXACT)
-        close("input state after the call: return new arrays", np.concatenate((x, q, v, omega)),
-              np.concatenate(kept), 0.0)
+def check_one_step(lesson, load, t, state, dt, body):
+    x, q, v, omega = state
+    kept = [a.copy() for a in state]
+    x_new, q_new, v_new, omega_new = lesson.rigid_body_step(load, t, x, q, v, omega, dt, body)
+    F, tau = load(t, x, q, v, omega, body)
+    I = inertia(q, body.I_body)
+    faster = v + dt * F / body.m
+    turned = omega + dt * np.linalg.solve(I, tau - np.cross(omega, I @ omega))
+    given = f"v = {v}, ω = {omega}, F = {F}, τ = {tau}"
+    close("v after one step [m/s]", v_new, faster, EXACT, given=given)
+    close("x after one step [m]", x_new, x + dt * faster, EXACT, given=given)
+    close("ω after one step [rad/s]", omega_new, turned, EXACT, given=given)
+    close("length of q after one step", np.linalg.norm(q_new), 1.0, EXACT, given=given)
+    close("orientation after one step, as a matrix", turn(q_new), third_way(turned, dt) @ turn(q), EXACT, given=given)
+    close("input state after the call: return new arrays", np.concatenate((x, q, v, omega)), np.concatenate(kept), 0.0)
 
 
 def unloaded(t, x, q, v, omega, body):
     return np.zeros(3), np.zeros(3)
+
+
+@exercise("5.12", points=0.5,
+          hint="evaluate load at the old state, divide F by m; update v and ω; then x and q with the new v and ω")
+def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
+    for m in (draw(0.01, 0.1), draw(1.0, 3.0), draw(20.0, 90.0)):
+        state = draw(-1.0, 1.0, 3), orientation(draw), draw(-1.0, 1.0, 3), spin_of(draw)
+        check_one_step(lesson, swirling_load, draw(0.5, 1.5), state, draw(0.1, 0.3), lesson.RigidBody(m, moments(draw)))
+    general = draw(-1.0, 1.0, (3, 3))
+    for x, v, omega in (*one_at_zero(general), *draw.sparse(-1.0, 1.0, (2, 3, 3)), np.zeros((3, 3))):
+        for q, I_body in ((orientation(draw), moments(draw)), (STILL, round_bodies(draw)[2])):
+            for load in (swirling_load, unloaded):
+                state, body = (x, q, v, omega), lesson.RigidBody(draw(1.0, 3.0), I_body)
+                check_one_step(lesson, load, draw.sparse(0.5, 1.5), state, draw(0.1, 0.3), body)
 
 
 @exercise("5.12", points=0.5,
@@ -317,10 +382,12 @@ def test_the_loop_converges_to_the_free_motion_of_a_body(lesson, draw):
 
 @exercise("5.13", points=0.5, hint="½ Σ Lₖ²/Iₖ over the components of L in body coordinates: unrotate L first")
 def test_kinetic_energy_is_that_of_omega(lesson, draw):
-    q, I_body, omega = orientation(draw), moments(draw), draw(-3.0, 3.0, 3)
-    I = inertia(q, I_body)
-    close("rotational energy [J]", lesson.kinetic_energy(q, I @ omega, I_body), 0.5 * omega @ I @ omega, 1e-11,
-          given=f"ω = {omega}, I_body = {I_body}")
+    for I_body in (moments(draw), *round_bodies(draw)):
+        for q in (orientation(draw), STILL):
+            for omega in (draw(-3.0, 3.0, 3), *few(draw, 3.0)):
+                I = inertia(q, I_body)
+                close("rotational energy [J]", lesson.kinetic_energy(q, I @ omega, I_body), 0.5 * omega @ I @ omega,
+                      1e-11, given=f"ω = {omega}, I_body = {I_body}")
 
 
 @exercise("5.14", points=1,
@@ -338,28 +405,46 @@ def test_only_the_middle_axis_tumbles(lesson, draw):
               given=f"I_body = {I_body}, spin = {spin}")
         close(f"rate about axis {k}, rotating the other way [1/s]", lesson.tumbling_rate(I_body, k, -spin),
               growth.real.max(), 1e-7)
-    close("rate of a ball [1/s]", lesson.tumbling_rate(2.0 * np.ones(3), 0, spin), 0.0, 0.0)
+        close(f"rate about axis {k} without a spin [1/s]", lesson.tumbling_rate(I_body, k, 0.0), 0.0, 0.0)
+        for equal in round_bodies(draw):
+            close(f"rate about axis {k} of a body with equal moments [1/s]", lesson.tumbling_rate(equal, k, spin), 0.0,
+                  1e-7, given=f"I_body = {equal}")
 
 
 @exercise("5.15", points=0.5,
           hint="rotate (0, 0, 1) to find the top's axis; gravity pulls its tip down, "
                "so the torque is horizontal and perpendicular to the axis")
 def test_the_torque_on_a_top_is_the_derivative_of_its_energy(lesson, draw):
-    for upwards in (1.0, -1.0):
-        q = orientation(draw)
-        mgl, L = draw(1.0, 5.0), draw(-1.0, 1.0, 3)
-        h = 1e-4
-        if turn(q)[2, 2] * upwards < 0.0:
-            q = np.array([-q[1], q[0], -q[3], q[2]])                     # rotated by π about its own first axis
-        tau = lesson.heavy_top_torque(draw(0.0, 1.0), q, L, lesson.Top(np.array([2.0, 2.0, 1.0]), mgl))
-        height = lambda phi, q=q: (about(phi) @ turn(q))[2, 2]
-        slope = [-mgl * (height(h * e) - height(-h * e)) / (2.0 * h) for e in np.eye(3)]
-        # h²/6 · mgl = 8e-9
-        close("torque [N m]: minus the change of Mgl e_z per radian about x, y, z", tau, slope, 2e-8,
-              given=f"q = {q}, Mgl = {mgl}")
+    inclined = orientation(draw)
+    upside_down = np.array([-inclined[1], inclined[0], -inclined[3], inclined[2]])       # by π about its own first axis
+    level = np.array([0.5, 0.5, 0.5, 0.5]) * np.where(draw(-1.0, 1.0, 4) < 0.0, -1.0, 1.0)
+    for q in (inclined, upside_down, level, *np.eye(4), orientation_of_few(draw)):
+        for L in (draw(-1.0, 1.0, 3), *few(draw, 1.0)):
+            mgl, h = draw(1.0, 5.0), 1e-4
+            tau = lesson.heavy_top_torque(draw.sparse(0.0, 1.0), q, L, lesson.Top(np.array([2.0, 2.0, 1.0]), mgl))
+            height = lambda phi, q=q: (about(phi) @ turn(q))[2, 2]
+            slope = [-mgl * (height(h * e) - height(-h * e)) / (2.0 * h) for e in np.eye(3)]
+            # h²/6 · mgl = 8e-9
+            close("torque [N m]: minus the change of Mgl e_z per radian about x, y, z", tau, slope, 2e-8,
+                  given=f"q = {q}, L = {L}, Mgl = {mgl}")
 
 
 # ---------------------------------------------------------------------------------------------- rotations, composed
+
+def check_turn(lesson, q, omega, I_body, dt):
+    """Check that a turn solves its equation and keeps L; return m/I_body, the ω in the body at its middle."""
+    L = inertia(q, I_body) @ omega
+    q_new = lesson.midpoint_free_rotation(q, L, I_body, dt)
+    close("length of the new quaternion", np.linalg.norm(q_new), 1.0, EXACT)
+    before, after = turn(q).T @ L, turn(q_new).T @ L
+    m = 0.5 * (before + after)
+    given = f"q = {q}, ω = {omega}, I_body = {I_body}, dt = {dt}"
+    # Newton's last correction is below 1e-12 of |m| < 11, and the remaining error is its square.
+    close("ℓ_new − ℓ − dt m × w in body coordinates [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
+          np.zeros(3), 1e-11, given=given)
+    close("orientation after dt, as a matrix", turn(q_new), turn(q) @ third_way(m / I_body, dt), 1e-11, given=given)
+    return m / I_body
+
 
 @exercise("5.16", points=0.5,
           hint="w = m/I_body with the m of the last iteration; q on the left, (1, ½dt "
@@ -370,17 +455,7 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     omega = spin_of(draw)
     dt = draw(0.1, 0.4)
     kept, L = q.copy(), inertia(q, I_body) @ omega
-    q_new = lesson.midpoint_free_rotation(q, L, I_body, dt)
-    close("length of the new quaternion", np.linalg.norm(q_new), 1.0, EXACT)
-    before, after = turn(q).T @ L, turn(q_new).T @ L
-    m = 0.5 * (before + after)
-    w = m / I_body
-    # Newton's last correction is below 1e-12 of |m| < 11, and the remaining error is its square.
-    close("ℓ_new − ℓ − dt m × w in body coordinates [kg m²/s]", after - before - dt * np.cross(m, w),
-          np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
-    rate = np.linalg.norm(w)
-    expected = turn(q) @ about(2.0 * np.arctan(0.5 * rate * dt) / rate * w)
-    close("orientation after dt, as a matrix", turn(q_new), expected, 1e-11)
+    expected = turn(q) @ third_way(check_turn(lesson, q, omega, I_body, dt), dt)
     # Scaling L and I_body does not change the motion: a correction is small only relative to m.
     for size in (1e6, 1e-6):
         scaled = lesson.midpoint_free_rotation(q, size * L, size * I_body, dt)
@@ -389,6 +464,10 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     close("input q after the call: unchanged", q, kept, 0.0)
     long = lesson.midpoint_free_rotation((1.0 + 5e-10) * q, L, I_body, dt)        # check_rotation accepts this length
     close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
+    for some in (I_body, *round_bodies(draw)):
+        for omega in few(draw, 1.5):
+            for r in (STILL, orientation(draw)):
+                check_turn(lesson, r, omega, some, dt)
 
 
 @exercise("5.16", points=0.25,
@@ -450,8 +529,8 @@ def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
 @exercise("5.16", points=0.25, hint="for a body at rest m = 0, and the condition 0 ≤ 0 must end the loop")
 def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
     turn_once(lesson, draw)
-    q, I_body = orientation(draw), moments(draw)
-    close("q of a body at rest", lesson.midpoint_free_rotation(q, np.zeros(3), I_body, 0.1), q, EXACT)
+    for q, I_body in ((orientation(draw), moments(draw)), (STILL, round_bodies(draw)[3])):
+        close("q of a body at rest", lesson.midpoint_free_rotation(q, np.zeros(3), I_body, 0.1), q, EXACT)
 
 
 @exercise("5.16", points=0.25,
@@ -487,21 +566,19 @@ def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
           hint="on the right of q: angles (1/I_a − 1/I_b) L_a dt about a, and likewise about c; on its left: dt/I_b L "
                "about L; for two equal moments this is exact")
 def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
-    across, along = draw(2.0, 3.0), draw(1.0, 1.8)
-    q = orientation(draw)
-    omega = spin_of(draw)
     dt = draw(0.5, 2.0)
-    for k in range(3):
-        I_body = np.full(3, across)
-        e = np.eye(3)[k]
-        I_body[k] = along
-        L = inertia(q, I_body) @ omega
-        spin = (1.0 - along / across) * (turn(q).T @ omega @ e)
-        expected = about(dt / across * L) @ turn(q) @ about(dt * spin * e)
-        got = lesson.splitting_free_rotation(q, L, I_body, dt)
-        close(f"length of the new quaternion, where moment {k} differs", np.linalg.norm(got), 1.0, EXACT)
-        close(f"orientation after dt, where moment {k} differs", turn(got), expected, EXACT,
-              given=f"I_body = {I_body}, ω = {omega}, dt = {dt}")
+    bodies = round_bodies(draw)
+    across = bodies[3][0]
+    for omega, q in ((spin_of(draw), orientation(draw)), *zip(few(draw, 1.5), (STILL, *np.eye(4)[1:]), strict=True)):
+        for k, I_body in enumerate(bodies):
+            e = np.eye(3)[k % 3]
+            L = inertia(q, I_body) @ omega
+            spin = (1.0 - I_body[k % 3] / across) * (turn(q).T @ omega @ e)
+            expected = about(dt / across * L) @ turn(q) @ about(dt * spin * e)
+            got = lesson.splitting_free_rotation(q, L, I_body, dt)
+            given = f"q = {q}, I_body = {I_body}, ω = {omega}, dt = {dt}"
+            close("length of the new quaternion", np.linalg.norm(got), 1.0, EXACT, given=given)
+            close("orientation after dt", turn(got), expected, EXACT, given=given)
 
 
 @exercise("5.17", points=0.5,
@@ -539,10 +616,12 @@ class Growth(NamedTuple):
 
 def bent_step(torque, t, q, L, dt, body):
     """A reversible second-order step for L̇ = rate L + push cos t, with a known result:
-    half push, growth, half push.
+    half push, growth, half push.  q turns by 1 rad/s about a fixed axis x, without an error.
     """
     L = L + 0.5 * dt * torque(t, q, L, body)
     L = L * (1.0 + 0.5 * dt * body.rate) / (1.0 - 0.5 * dt * body.rate)
+    c, s = np.cos(0.5 * dt), np.sin(0.5 * dt)
+    q = np.array([c * q[0] - s * q[1], c * q[1] + s * q[0], c * q[2] - s * q[3], c * q[3] + s * q[2]])
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
@@ -558,17 +637,20 @@ def test_five_reversible_substeps_make_fourth_order(lesson, draw):
     growth = Growth(draw(-1.5, -0.5), draw(0.5, 1.0))
     gamma = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
     kept = L.copy()
-    for push, dt in ((0.0, draw(0.3, 0.6)), (growth.push, draw(0.3, 0.6))):
-        p = growth._replace(push=push)
-        _, got = lesson.compose(bent_step, waves, t, q, L, dt, p)
-        expected, now = L, t
+    for push, L0, q0 in ((0.0, L, q), (growth.push, L, q), (growth.push, np.zeros(3), STILL),
+                         (growth.push, draw.sparse(0.5, 1.5, 3), orientation_of_few(draw))):
+        p, dt = growth._replace(push=push), draw(0.3, 0.6)
+        q_new, got = lesson.compose(bent_step, waves, t, q0, L0, dt, p)
+        expected, now = L0, t
         for share in (gamma, gamma, 1.0 - 4.0 * gamma, gamma, gamma):
             h = share * dt
             expected = (expected + 0.5 * h * push * np.cos(now)) * (1.0 + 0.5 * h * p.rate) / (1.0 - 0.5 * h * p.rate)
             now += h
             expected = expected + 0.5 * h * push * np.cos(now)
         close(f"L after one composed step {'with' if push else 'without'} a time-dependent push", got,
-              expected, EXACT, given=f"t = {t}, dt = {dt}")
+              expected, EXACT, given=f"t = {t}, dt = {dt}, L = {L0}")
+        close("orientation after one composed step, as a matrix", turn(q_new), about(dt * np.eye(3)[0]) @ turn(q0),
+              EXACT, given=f"dt = {dt}, q = {q0}")
     close("input L after the call: unchanged", L, kept, 0.0)
     p = growth._replace(push=0.0)
     errors = []
@@ -607,8 +689,15 @@ def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
             close("rate of steady precession [rad/s]", lesson.precession_rate(I_body, mgl, tilt, spin),
                   steady_rates(I_body, mgl, tilt, spin)[0], 1e-10, given=f"I_body = {I_body}, Mgl = {mgl:.4g} N m, "
                   f"tilt = {tilt:.4g} rad, spin = {spin:.4g} rad/s")
-    close("rate with a level axis [rad/s]", lesson.precession_rate(I_body, mgl, 0.5 * np.pi, limit),
-          mgl / (I_body[2] * limit), 1e-12)
+        round_top = np.full(3, I_body[0])
+        close("rate of a top with three equal moments [rad/s]", lesson.precession_rate(round_top, mgl, tilt, limit),
+              steady_rates(round_top, mgl, tilt, limit)[0], 1e-10, given=f"I_body = {round_top}, Mgl = {mgl:.4g} N m, "
+              f"tilt = {tilt:.4g} rad, spin = {limit:.4g} rad/s")
+        close("rate of a top that stands on its centre of mass, Mgl = 0 [rad/s]",
+              lesson.precession_rate(I_body, 0.0, tilt, limit), 0.0, EXACT, given=f"tilt = {tilt:.4g} rad")
+    for spin in (limit, -limit):
+        close("rate with a level axis [rad/s]", lesson.precession_rate(I_body, mgl, 0.5 * np.pi, spin),
+              mgl / (I_body[2] * spin), 1e-12, given=f"spin = {spin:.4g} rad/s")
 
 
 @exercise("5.20", points=1, hint="a disturbance grows as e^(λt): how much later does a tenth of it reach the same?")

@@ -21,6 +21,7 @@ ROUND_OFF = 1e-11
 SOLVED = 1e-9                # of implicit_euler_step, which ends its iterations at 1e-12 of the velocity
 TINY = 1e-20                 # no law here has a scale
 SIZES = ((1, 1), (1, 3), (2, 1), (2, 2), (3, 2), (3, 3))                 # coordinates d, inputs m
+LARGER = (*SIZES, (7, 2), (2, 8))
 
 
 def unit(draw, d):
@@ -54,8 +55,8 @@ def place(s, p):
 
 @exercise("12.1", points=0.5, hint="(f(s + h) − f(s − h)) / 2h: the distance between the two inputs is 2h")
 def test_a_central_difference_of_a_cubic_is_off_by_a_sixth_of_its_third_derivative(lesson, draw):
-    for h in (draw(0.1, 0.5), draw(1.0, 2.0)):
-        s, p = draw(0.5, 2.0), draw(0.5, 2.0, 4)
+    for h, s in ((draw(0.1, 0.5), draw(0.5, 2.0)), (draw(1.0, 2.0), draw(0.5, 2.0)), (draw(0.1, 0.5), 0.0)):
+        p = draw(0.5, 2.0, 4)
         slope = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s
         close("central difference of a cubic", lesson.central_difference(cubic, s, h, p), slope + h * h * p[3],
               ROUND_OFF, given=f"s = {s}, h = {h}, coefficients {p}")
@@ -63,8 +64,9 @@ def test_a_central_difference_of_a_cubic_is_off_by_a_sixth_of_its_third_derivati
 
 @exercise("12.1", points=0.5, hint="f may return an array: subtract and divide it as a whole")
 def test_a_central_difference_has_the_shape_of_its_function(lesson, draw):
-    for d in (2, 1, 3):
-        s, h, p = draw(-2.0, -0.5), draw(0.1, 0.5), draw(-2.0, 2.0, d)
+    for s, p in ((draw(-2.0, -0.5), draw(-2.0, 2.0, 2)), (draw(-2.0, -0.5), draw(-2.0, 2.0, 1)),
+                 (0.0, draw(-2.0, 2.0, 3)), (draw(-2.0, -0.5), draw.sparse(-2.0, 2.0, 8)), (0.0, np.zeros(2))):
+        h = draw(0.1, 0.5)
         close("central difference of an array", lesson.central_difference(place, s, h, p), (3.0 * s * s + h * h) * p,
               ROUND_OFF, given=f"s = {s}, h = {h}, factors {p}")
 
@@ -100,8 +102,8 @@ def test_the_best_step_of_a_parabola_is_infinite(lesson, draw):
 
 @exercise("12.3", points=0.5, hint="np.imag(f(s + 1j * h, p)) / h: no difference, so no digits are lost")
 def test_a_complex_step_gives_all_digits(lesson, draw):
-    for h in (1e-20, 1e-100):
-        s, p = draw(0.5, 1.5), draw(0.5, 1.5, 3)
+    for h, s in ((1e-20, draw(0.5, 1.5)), (1e-100, draw(0.5, 1.5)), (1e-20, 0.0)):
+        p = draw(0.5, 1.5, 3)
         slope = p[0] * np.exp(p[1] * s) * (p[1] * np.sin(p[2] * s) + p[2] * np.cos(p[2] * s))
         close("derivative by a complex step", lesson.complex_step(wave, s, h, p), slope, ROUND_OFF,
               given=f"s = {s}, h = {h}, parameters {p}")
@@ -109,8 +111,9 @@ def test_a_complex_step_gives_all_digits(lesson, draw):
 
 @exercise("12.3", points=0.5, hint="divide the imaginary part by h; f may return an array")
 def test_a_long_complex_step_of_a_cubic_is_off_by_the_negative_of_a_difference(lesson, draw):
-    for d in (2, 1, 3):
-        s, h, p = draw(-2.0, -0.5), draw(0.1, 0.5), draw(-2.0, 2.0, d)
+    for s, p in ((draw(-2.0, -0.5), draw(-2.0, 2.0, 2)), (draw(-2.0, -0.5), draw(-2.0, 2.0, 1)),
+                 (0.0, draw(-2.0, 2.0, 3)), (draw(-2.0, -0.5), draw.sparse(-2.0, 2.0, 8)), (0.0, np.zeros(2))):
+        h = draw(0.1, 0.5)
         close("complex step of an array", lesson.complex_step(place, s, h, p), (3.0 * s * s - h * h) * p, ROUND_OFF,
               given=f"s = {s}, h = {h}, factors {p}")
 
@@ -151,6 +154,19 @@ def spring(draw, d, m):
     p = Spring(draw(0.5, 3.0), draw(0.2, 1.0), draw(-2.0, 2.0, d), draw(1.0, 3.0), *near_one,
                draw(-1.0, 1.0, m), draw(-1.0, 1.0, m), draw(-1.0, 1.0, (d, m)))
     return p, draw(-1.0, 1.0, d), draw(-1.0, 1.0, d), draw(-1.0, 1.0, (d, m)), draw(-1.0, 1.0, (d, m))
+
+
+def springs(draw):
+    """Springs as of `spring` of all sizes, and some of which much is 0: terms of the law, the state, the tangents."""
+    for d, m in SIZES:
+        yield spring(draw, d, m)
+    for d, m in LARGER:
+        yield spring(draw.sparse, d, m)
+    for d, m in ((1, 1), (3, 2)):
+        p, x, v, dx, dv = spring(draw, d, m)
+        yield p, x, v, np.zeros((d, m)), np.zeros((d, m))
+        yield p, np.zeros(d), np.zeros(d), dx, dv
+        yield p._replace(k_s=np.zeros(m), c_s=np.zeros(m), load_s=np.zeros((d, m))), x, v, dx, dv
 
 
 def moved(p, x, v, dx, dv, k):
@@ -248,12 +264,11 @@ def errors_of_tangents(step, draw):
                " the new dv")
 def test_the_tangents_are_the_derivatives_of_the_step(lesson, draw):
     t = draw(0.3, 1.0)
-    for d, m in SIZES:
-        p, x, v, dx, dv = spring(draw, d, m)
+    for p, x, v, dx, dv in springs(draw):
         dt = draw(0.1, 0.5)
         got = lesson.tangent_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
         close_tangents(got, tangents(explicit, t, p, x, v, dx, dv, dt), ROUND_OFF,
-                       given=f"coordinates: {d}, inputs: {m}, t = {t} s, dt = {dt} s")
+                       given=f"x = {x} m, v = {v} m/s, inputs: {dx.shape[1]}, t = {t} s, dt = {dt} s")
 
 
 @exercise("12.4", points=0.5,
@@ -278,12 +293,11 @@ def after_three_implicit_steps(x, v, k, c, dt):
           hint="(1 − dt a_v − dt² a_x) dvₙ₊₁ = dvₙ + dt (a_x dxₙ + a_s), with derivatives at t + dt and the new x, v")
 def test_the_tangents_are_the_derivatives_of_the_implicit_step(lesson, draw):
     t = draw(0.3, 1.0)
-    for d, m in SIZES:
-        p, x, v, dx, dv = spring(draw, d, m)
+    for p, x, v, dx, dv in springs(draw):
         dt = draw(0.1, 0.4)
         got = lesson.tangent_implicit_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
         close_tangents(got, tangents(implicit, t, p, x, v, dx, dv, dt), SOLVED,
-                       given=f"coordinates: {d}, inputs: {m}, t = {t} s, dt = {dt} s")
+                       given=f"x = {x} m, v = {v} m/s, inputs: {dx.shape[1]}, t = {t} s, dt = {dt} s")
 
 
 @exercise("12.5", points=1, hint="solve one linear system for dvₙ₊₁, with a_x, a_v and a_s at the new x and v;"
@@ -309,8 +323,8 @@ def test_the_tangents_of_an_implicit_step_do_not_explode(lesson, draw):
 # ---------------------------------------------------------------------------------------------- events
 
 def fall_time(phi, u, a):
-    """First τ > 0 with φ + u τ + ½ a τ² = 0, for φ > 0 and a < 0; complex numbers allowed."""
-    return (-u - np.sqrt(u * u - 2.0 * a * phi)) / a
+    """First τ > 0 with φ + u τ + ½ a τ² = 0, for φ > 0 and a ≤ 0; complex numbers allowed."""
+    return 2.0 * phi / (np.sqrt(u * u - 2.0 * a * phi) - u)
 
 
 def arrival(n, x, v, a, c):
@@ -330,12 +344,36 @@ def dropped(draw, d, m):
     return (n, x, v, a, c, X, V, c_s), arrival(n, x, v, a, c)
 
 
+def dropped_plainly(draw, d, m):
+    """The same with much that is 0: n along an axis, perhaps no acceleration, and few or no inputs that matter."""
+    n = np.eye(d)[draw.whole(0, d - 1)] * (2.0 * draw.whole(0, 1) - 1.0)
+    a, c = -draw.sparse(5.0, 9.0) * n, draw.sparse(-1.0, 1.0)
+    x, v = (c + draw(0.5, 2.0)) * n, draw.sparse(-2.0, 2.0, d)
+    v -= (n @ v + draw(0.5, 2.0)) * n
+    X, V, c_s = draw.sparse(-1.0, 1.0, (d, m)), draw.sparse(-1.0, 1.0, (d, m)), draw.sparse(-1.0, 1.0, m)
+    return (n, x, v, a, c, X, V, c_s), arrival(n, x, v, a, c)
+
+
+def drops(draw):
+    """(numbers, flight, τ) of flights of both kinds and all sizes, and of two that no input moves.
+
+    numbers: how further numbers of such a flight are drawn, with many that are 0 or without.
+    """
+    for d, m in SIZES:
+        yield draw, *dropped(draw, d, m)
+    for d, m in LARGER:
+        yield draw.sparse, *dropped_plainly(draw, d, m)
+    for d, m in ((1, 1), (3, 2)):
+        flight, tau = dropped(draw, d, m)
+        yield draw, (*flight[:5], np.zeros((d, m)), np.zeros((d, m)), np.zeros(m)), tau
+
+
 @exercise("12.6", points=1,
           hint="dtau = −(g_x dx + g_v dv + g_s)/(g_x · v + g_v · a): the change of g at a fixed time, over its rate")
 def test_the_time_of_an_impact_on_an_oblique_plane_moves_with_all_inputs(lesson, draw):
     """In closed form: τ is the root of a quadratic equation, whose coefficients depend on the inputs."""
-    for d, m in SIZES:
-        (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
+    for _, (n, x, v, a, c, X, V, c_s), tau in drops(draw):
+        d, m = X.shape
         expected = slopes(arrival, n, (x, X), (v, V), a, (c, c_s))
         got = lesson.event_time_sensitivity(n, 0.0 * n, -c_s, v + tau * a, a, X + tau * V, V)
         close("dtau of an impact", got, expected, ROUND_OFF, given=f"coordinates: {d}, inputs: {m}, n = {n}")
@@ -403,9 +441,9 @@ def behind(time, n, x, v, a, c, a_new, R):
           hint="dx⁺ = dx⁻ + (v⁻ − v⁺) dtauᵀ;  dv⁺ = R_v (dv⁻ + a⁻ dtauᵀ) + R_s − a⁺ dtauᵀ, with np.outer for y dtauᵀ")
 def test_behind_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw):
     """The jump v⁺ = R v⁻ is any matrix that depends on the inputs, and the acceleration changes at the impact, too."""
-    for d, m in SIZES:
-        (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
-        R, R_by, a_new = draw(-1.0, 1.0, (d, d)), draw(-1.0, 1.0, (d, d, m)), draw(-9.0, 9.0, d)
+    for numbers, (n, x, v, a, c, X, V, c_s), tau in drops(draw):
+        d, m = X.shape
+        R, R_by, a_new = numbers(-1.0, 1.0, (d, d)), numbers(-1.0, 1.0, (d, d, m)), numbers(-9.0, 9.0, d)
         expected = slopes(behind, tau, n, (x, X), (v, V), a, (c, c_s), a_new, (R, R_by))
         dtau = slopes(arrival, n, (x, X), (v, V), a, (c, c_s))
         v_old = v + tau * a
@@ -439,9 +477,9 @@ def reflected(n, e):
 @exercise("12.8", points=1,
           hint="v − (1 + e)(v · n) n; then dtau with gap_x = n, and saltation with R_v, R_s and a before and after")
 def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, draw):
-    for d, m in SIZES:
-        (n, x, v, a, c, X, V, c_s), tau = dropped(draw, d, m)
-        e, e_s = draw(0.2, 0.9), draw(-1.0, 1.0, m)
+    for numbers, (n, x, v, a, c, X, V, c_s), tau in drops(draw):
+        d, m = X.shape
+        e, e_s = draw(0.2, 0.9), numbers(-1.0, 1.0, m)
         R = reflected(n, e), -np.multiply.outer(np.outer(n, n), e_s)
         expected = slopes(behind, tau, n, (x, X), (v, V), a, (c, c_s), a, R)
         v_old = v + tau * a
@@ -483,6 +521,16 @@ def hills(s, p):
     return np.sum(p[0] + (p[1] + (p[2] + p[3] * s) * s) * s)
 
 
+def check_orders(lesson, draw, s, y, p, gradient):
+    steps = np.array([draw(0.3, 0.4), draw(0.1, 0.2), draw(0.04, 0.05), draw(0.01, 0.02), draw(0.5, 0.6)])
+    first, second, third = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s, (p[2] + 3.0 * p[3] * s) @ y**2, p[3] @ y**3
+    left = np.abs((first - gradient) @ y * steps + second * steps**2 + third * steps**3)
+    expected = np.log(left[1:] / left[:-1]) / np.log(steps[1:] / steps[:-1])
+    got = lesson.remainder_orders(hills, gradient, s, y, steps, p)
+    close("observed orders of the remainder [-]", got, expected, 1e-5,
+          given=f"s = {s}, y = {y}, gradient {gradient}, steps {steps}")
+
+
 @exercise("12.9", points=1.5,
           hint="remainder |f(s + h y) − f(s) − h g · y| of each h; then log of its ratio over log of that of the steps")
 def test_taylors_test_tells_a_right_gradient_from_a_wrong_one(lesson, draw):
@@ -492,14 +540,12 @@ def test_taylors_test_tells_a_right_gradient_from_a_wrong_one(lesson, draw):
     """
     for m, off in ((1, 0.0), (3, 0.0), (2, 0.5), (3, -0.5), (2, 1e-3)):
         s, y, p = draw(0.5, 1.0, m), draw(0.5, 1.0, m), draw(0.5, 1.5, (4, m))
-        steps = np.array([draw(0.3, 0.4), draw(0.1, 0.2), draw(0.04, 0.05), draw(0.01, 0.02), draw(0.5, 0.6)])
-        gradient = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s + off
-        second, third = (p[2] + 3.0 * p[3] * s) @ y**2, p[3] @ y**3
-        left = np.abs(-off * np.sum(y) * steps + second * steps**2 + third * steps**3)
-        expected = np.log(left[1:] / left[:-1]) / np.log(steps[1:] / steps[:-1])
-        got = lesson.remainder_orders(hills, gradient, s, y, steps, p)
-        close("observed orders of the remainder [-]", got, expected, 1e-5,
-              given=f"{m} inputs, steps {steps}, the gradient is off by {off}")
+        check_orders(lesson, draw, s, y, p, p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s + off)
+    for m in (2, 8):
+        s, y, p = np.zeros(m), draw.sparse(0.5, 1.0, m), draw.sparse(0.5, 1.5, (4, m))
+        y[0], p[1:, 0], p[0] = 1.0, draw(0.5, 1.5, 3), 0.0
+        check_orders(lesson, draw, s, y, p, p[1])
+        check_orders(lesson, draw, s, y, p, np.zeros(m))                 # the gradient of a place where f is flat
 
 
 @exercise("12.9", points=0.5, hint='call check_positive("remainder of a step", …) for every remainder')
@@ -571,9 +617,9 @@ def test_newtons_method_hits_what_it_aims_at(lesson, draw):
     first = np.linalg.norm(by_speed_and_angle(start, p)[0])
     close("first miss [m]", np.asarray(misses)[0], first, ROUND_OFF, given=given)
     between("last miss [m]", np.asarray(misses)[-1], 0.0, 1e-10, given=given)
-    for k in (1, 3):
-        right = draw(0.2, 0.8, k)
-        s, misses = lesson.aim(ring, np.zeros(k), 1e-12, 20, right + 0.3 * np.roll(right, -1) ** 2)
+    for k, start, right in ((1, 0.0, draw(0.2, 0.8, 1)), (3, 0.0, draw(0.2, 0.8, 3)),
+                            (8, 0.1, draw.sparse(0.2, 0.8, 8)), (1, 0.1, np.zeros(1))):
+        s, misses = lesson.aim(ring, np.full(k, start), 1e-12, 20, right + 0.3 * np.roll(right, -1) ** 2)
         close("inputs that hit, of equations with a known solution", s, right, ROUND_OFF, given=f"{k} inputs")
         between("number of iterations", len(misses) - 1, 1, 8, given=f"{k} inputs")
 
@@ -586,6 +632,11 @@ def test_the_misses_are_those_of_newtons_method(lesson, draw):
         found, misses = lesson.aim(square, np.array([start]), 100.0, most, np.array([a]))
         close("inputs that hit before the first iteration", found, [start], 0.0, given=f"s = {start}")
         close("misses without an iteration", misses, [start * start - a], ROUND_OFF, given=f"s² = {a}, s = {start}")
+        for root, tolerance in ((2.0, 0.0), (0.0, 4.0)):                 # a miss of exactly the tolerance is a hit
+            found, misses = lesson.aim(square, np.array([root]), tolerance, most, np.array([4.0]))
+            given = f"s² = 4, s = {root}, tolerance {tolerance}"
+            close("inputs that hit, with a miss of just the tolerance", found, [root], 0.0, given=given)
+            close("misses, where the first is just the tolerance", misses, [tolerance], 0.0, given=given)
     for tolerance in (1e-2, 1e-9):
         s, expected = start, [start * start - a]
         while expected[-1] > tolerance:
@@ -647,7 +698,7 @@ def test_the_error_of_a_pencil_has_grown_to_what_is_allowed(lesson, draw):
 @exercise("12.11", points=0.25, hint="where the error is as large as allowed from the start, the time is 0")
 def test_an_error_that_is_too_large_from_the_start_helps_for_no_time(lesson, draw):
     error = draw(0.1, 1.0)
-    for share in (1.0, *draw.within()):
+    for share in (1.0, *draw.within(), 0.0):
         close("time for which the start is known well enough [s]", lesson.predicted_horizon(3.0, error, share * error),
               0.0, 0.0, given=f"error {error} m, allowed {share * error} m")
     known = lesson.predicted_horizon(3.0, error, 2.0 * error)

@@ -27,6 +27,8 @@ edit("5.1", "has the wrong sign of a_y in the first row", "-a[2], a[1]]", "-a[2]
 SIGN_IN_SECOND_ROW = edit("5.1", "has the wrong sign of a_x in the second row", "0.0, -a[0]]", "0.0, a[0]]")
 edit("5.1", "has the wrong sign of a_z in the first row", "[[0.0, -a[2]", "[[0.0, a[2]")
 edit("5.1", "exchanges the components x and y", "return np", "a = a[[1, 0, 2]]; return np")
+edit("5.1", "takes the identity matrix for a = 0, as for a rotation by nothing",
+     "return np", "return np.eye(3) if not a.any() else np")
 
 
 # 5.2 ------------------------------------------------------------------------------------------------------------
@@ -40,6 +42,8 @@ edit("5.2", "omits the velocity of the centre of mass", "v + cross(omega, r)", "
 edit("5.2", "omits the rotation, ω × r", "v + cross(omega, r)", "v.copy()")
 edit("5.2", "multiplies ω and r component by component", "cross(omega, r)", "omega * r")
 ROTATION_SUBTRACTED = edit("5.2", "subtracts the rotation", "v + cross", "v - cross")
+edit("5.2", "leaves out the rotation where the centre of mass is at rest",
+     "cross(omega, r)", "cross(omega, r) * v.any()")
 
 
 # 5.3 ------------------------------------------------------------------------------------------------------------
@@ -59,6 +63,8 @@ edit("5.3", "keeps the last force only", "F += forces", "F = forces")
 edit("5.3", "returns the torque first", "return F, tau", "return tau, F")
 edit("5.3", "adds the centre of mass", "points[i] - x", "points[i] + x")
 edit("5.3", "takes the mean of the forces", "return F, tau", "return F / forces.shape[0], tau")
+edit("5.3", "ends at the first force that is 0",
+     "F += forces[i]", "if not forces[i].any(): break\n        F += forces[i]")
 
 
 # 5.4 ------------------------------------------------------------------------------------------------------------
@@ -74,6 +80,8 @@ WORLD_FOR_BODY = edit("5.4", "exchanges R and its transpose", "R @ ((R.T @ L) / 
 edit("5.4", "divides L of the world by the moments and rotates the result",
      "R @ ((R.T @ L) / I_body)", "R @ (L / I_body)")
 edit("5.4", "converts with R and R, not with Rᵀ first", "(R.T @ L)", "(R @ L)")
+edit("5.4", "takes a body with two equal moments for a ball",
+     "R @ ((R.T @ L) / I_body)", "R @ ((R.T @ L) / I_body) if I_body[0] != I_body[1] else L / I_body[0]")
 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
@@ -103,6 +111,8 @@ edit("5.5", "returns the new orientation, R + ω* R", "skew(omega) @ S.R,", "S.R
 edit("5.5", "returns ω* in place of ω* R", "skew(omega) @ S.R", "skew(omega)")
 edit("5.5", "returns the momenta in place of force and torque", "F, tau)", "S.P, S.L)")
 edit("5.5", "returns the acceleration in place of the force", "F, tau)", "F / body.m, tau)")
+edit("5.5", "leaves the orientation as it is where no torque acts",
+     "skew(omega) @ S.R", "skew(omega) @ S.R * tau.any()")
 
 
 # 5.6 ------------------------------------------------------------------------------------------------------------
@@ -134,6 +144,7 @@ edit("5.6", "adds the part along the first column", "second -= dot", "second += 
 edit("5.6", "leaves out R: keeps only the change", "M = R + dt", "M = dt")
 edit("5.6", "uses ½ dt, which belongs to a quaternion", "dt * (skew", "0.5 * dt * (skew")
 edit("5.6", "keeps the third column of the step", "cross(first, second)), axis=1", "M[:, 2] / norm(M[:, 2])), axis=1")
+edit("5.6", "takes a body for one at rest where any component of ω is 0", "R + dt", "R + bool(omega.all()) * dt")
 
 
 # 5.7 ------------------------------------------------------------------------------------------------------------
@@ -176,6 +187,7 @@ edit("5.7", "takes the part along r in place of n", "dot(n, r) * n", "dot(n, r) 
 edit("5.7", "converts the angle to degrees",
      "np.cos(rate * dt), np.sin(rate * dt)", "np.cos(np.degrees(rate * dt)), np.sin(np.degrees(rate * dt))")
 edit("5.7", "rotates the rows, not the columns", "return turned", "return R @ R @ turned.T")      # R Qᵀ = R R (Q R)ᵀ
+edit("5.7", "takes a body for one at rest where any component of ω is 0", "rate != 0.0", "omega.all()")
 
 
 # 5.8 ------------------------------------------------------------------------------------------------------------
@@ -210,6 +222,8 @@ edit("5.8", "returns the product with a conjugated",
      "return np", "a = np.array([a[0], -a[1], -a[2], -a[3]]); return np")
 edit("5.8", "returns the product with b conjugated",
      "return np", "b = np.array([b[0], -b[1], -b[2], -b[3]]); return np")
+edit("5.8", "returns b where a has no vector part, as if its scalar part were 1",
+     "return np", "if not a[1:].any(): return b.copy()\n    return np")
 
 
 # 5.9 ------------------------------------------------------------------------------------------------------------
@@ -232,6 +246,8 @@ edit("5.9", "adds the squares on the diagonal", "[[1.0 - 2.0", "[[1.0 + 2.0")
 edit("5.9", "forgets the factor 2 on the diagonal", "1.0 - 2.0 * (y * y + z * z)", "1.0 - (y * y + z * z)")
 edit("5.9", "uses the component's own square on the diagonal",
      "1.0 - 2.0 * (y * y + z * z)", "1.0 - 2.0 * (x * x + z * z)")
+edit("5.9", "takes half a turn, where w = 0, for no rotation",
+     "w, x, y, z = q[0]", "q = q if q[0] != 0.0 else np.eye(4)[0]; w, x, y, z = q[0]")
 
 
 # 5.10 -----------------------------------------------------------------------------------------------------------
@@ -265,6 +281,8 @@ edit("5.10", "puts ω into the first three components",
      "[0.0, omega[0], omega[1], omega[2]]", "[omega[0], omega[1], omega[2], 0.0]")
 edit("5.10", "normalises the turn, not its result",
      "unit(q + 0.5 * dt * quaternion_product(spin, q))", "q + unit(0.5 * dt * quaternion_product(spin, q))")
+edit("5.10", "takes a body for one at rest where any component of ω is 0",
+     "return unit", "return q.copy() if not omega.all() else unit")
 
 
 # 5.11 -----------------------------------------------------------------------------------------------------------
@@ -305,6 +323,10 @@ edit("5.11", "divides only the torque by the moments",
      "(unrotate(q, tau) - cross(omega_body, I_body * omega_body)) / I_body",
      "unrotate(q, tau) / I_body - cross(omega_body, I_body * omega_body)")
 edit("5.11", "exchanges rotate and unrotate for ω", "unrotate(q, omega)", "rotate(q, omega)")
+edit("5.11", "takes ω to stay as it is where no torque acts", "return rotate(q,", "return tau.any() * rotate(q,")
+edit("5.11", "takes a body with two equal moments for a ball",
+     "I_body * omega_body", "I_body * omega_body * (I_body[0] != I_body[1])")
+edit("5.11", "keeps a body at rest that a torque acts on", "unrotate(q, tau)", "omega.any() * unrotate(q, tau)")
 
 
 # 5.12 -----------------------------------------------------------------------------------------------------------
@@ -343,6 +365,8 @@ edit("5.12", "moves with the mean of the old and the new velocity",
      "v = v + dt / body.m * F", "v = v + dt / body.m * F; x = x - 0.5 * dt * dt / body.m * F")
 edit("5.12", "does not rotate the body", "quaternion_update(q, omega, dt), v", "q, v")
 edit("5.12", "does not move the body", "return x + dt * v,", "return x,")
+edit("5.12", "returns the state unchanged where nothing moves yet",
+     "F, tau = load", "if not (v.any() or omega.any()): return x, q, v, omega\n    F, tau = load")
 
 
 # 5.13 -----------------------------------------------------------------------------------------------------------
@@ -357,6 +381,8 @@ edit("5.13", "takes L for ω", "L_body * L_body / I_body", "L_body * L_body * I_
 edit("5.13", "turns L the wrong way", "unrotate(q, L)", "rotate(q, L)")
 edit("5.13", "forgets the square of L", "L_body * L_body / I_body", "L_body / I_body")
 edit("5.13", "divides by the squares of the moments", "L_body * L_body / I_body", "(L_body / I_body)**2")
+edit("5.13", "divides by |L|, which is 0 for a body at rest", "L_body * L_body / I_body",
+     "(L_body / norm(L)) ** 2 * dot(L, L) / I_body")
 
 
 # 5.14 -----------------------------------------------------------------------------------------------------------
@@ -393,6 +419,7 @@ edit("5.14", "uses the difference of the other two moments",
 edit("5.14", "counts the axes from 1", "i, j =", "k = k - 1; i, j =")
 edit("5.14", "takes the sizes of both differences",
      "(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])", "abs(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])")
+edit("5.14", "divides by the spin, which may be 0", "abs(spin)", "spin / abs(spin) * spin")
 
 
 # 5.15 -----------------------------------------------------------------------------------------------------------
@@ -413,6 +440,7 @@ edit("5.15", "takes the weight for the torque", "[-e[1], e[0], 0.0]", "[0.0, 0.0
 edit("5.15", "returns the torque about the top's own axis", "[-e[1], e[0], 0.0]", "[e[0], e[1], e[2]]")
 edit("5.15", "takes L for the axis", "rotate(q, np.array([0.0, 0.0, 1.0]))", "L / np.sqrt(L @ L)")
 edit("5.15", "takes the x axis of the body for the axis of the top", "[0.0, 0.0, 1.0]", "[1.0, 0.0, 0.0]")
+edit("5.15", "takes a top that does not turn for one without weight", "top.mgl * np", "L.any() * top.mgl * np")
 
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
@@ -468,6 +496,8 @@ edit("5.16", "omits the old value in the residual", "r = m - start", "r = m")
 edit("5.16", "rotates with the angular momentum m in place of w",
      "[1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]]",
      "[1.0, 0.5 * dt * m[0], 0.5 * dt * m[1], 0.5 * dt * m[2]]")
+edit("5.16", "takes a body for one at rest where any component of its ℓ is 0",
+     "one = np.eye(3)", "if not start.all(): return q.copy()\n    one = np.eye(3)")
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
@@ -511,6 +541,8 @@ edit("5.17", "forgets the moment in the rotation about L", "exponential(dt / I_b
 edit("5.17", "rotates about L the other way", "exponential(dt / I_body[b] * L)", "exponential(-dt / I_body[b] * L)")
 edit("5.17", "rotates about c by half of the angle", "c, slow_c * body", "c, 0.5 * slow_c * body")
 edit("5.17", "forgets the component of L in the angle about c", "slow_c * body_component(turned, L, c)", "slow_c")
+edit("5.17", "divides by |L|, which is 0 for a body at rest",
+     "exponential(dt / I_body[b] * L)", "exponential(dt / I_body[b] * norm(L) * (L / norm(L)))")
 
 
 # 5.18 -----------------------------------------------------------------------------------------------------------
@@ -542,6 +574,9 @@ edit("5.18", "advances the time before the substep",
 edit("5.18", "takes 1 − 2γ in the middle", "1.0 - 4.0 * SUZUKI", "1.0 - 2.0 * SUZUKI")
 edit("5.18", "takes the negative substep last", "(SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)",
      "(SUZUKI, SUZUKI, SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI)")
+edit("5.18", "leaves a body as it is where L = 0, also under a torque",
+     "for share in", "if not L.any(): return q, L\n    for share in")
+edit("5.18", "keeps the q of the beginning", "q, L = step(torque", "_, L = step(torque")
 
 
 # 5.19 -----------------------------------------------------------------------------------------------------------
@@ -568,6 +603,8 @@ edit("5.19", "forgets the 2", "2.0 * mgl / (", "mgl / (")
 edit("5.19", "exchanges the two moments", "along = I_body[2]", "I_body = I_body[::-1]; along = I_body[2]")
 edit("5.19", "adds the weight under the root", "along * along - 4.0", "along * along + 4.0")
 edit("5.19", "turns the other way", "return 2.0", "return -2.0")
+edit("5.19", "loses the sign of the spin where the axis is level",
+     SLOW, f"{SLOW} if abs(np.cos(tilt)) > 1e-9 else mgl / abs(along)")
 
 
 # 5.20 -----------------------------------------------------------------------------------------------------------

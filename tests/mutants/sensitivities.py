@@ -32,6 +32,8 @@ edit("12.1", "makes the step relative to s", "(f(s + h, p) - f(s - h, p)) / (2.0
 edit("12.1", "returns one number for an array", "(f(s + h, p) - f(s - h, p))", "np.sum(f(s + h, p) - f(s - h, p))")
 edit("12.1", "always takes a very short step", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
      "(f(s + 1e-6, p) - f(s - 1e-6, p)) / 2e-6")
+edit("12.1", "takes a forward difference at s = 0", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
+     "(f(s + h, p) - f(s - h, p)) / (2.0 * h) if s != 0.0 else (f(s + h, p) - f(s, p)) / h")
 
 
 # 12.2 -----------------------------------------------------------------------------------------------------------
@@ -83,6 +85,8 @@ edit("12.3", "gives h no unit i: takes a step of (1 + i) h", "s + 1j * h", "s + 
 edit("12.3", "always takes the step 1e-20", "np.imag(f(s + 1j * h, p)) / h", "np.imag(f(s + 1e-20j, p)) / 1e-20")
 edit("12.3", "returns one number for an array", "np.imag(f(s + 1j * h, p))",
      "np.sum(np.imag(f(s + 1j * h, p)))")
+edit("12.3", "takes a real difference at s = 0", "np.imag(f(s + 1j * h, p)) / h",
+     "np.imag(f(s + 1j * h, p)) / h if s != 0.0 else (f(s + h, p) - f(s - h, p)) / (2.0 * h)")
 
 
 # 12.4 -----------------------------------------------------------------------------------------------------------
@@ -120,6 +124,7 @@ edit("12.4", "returns the sensitivities first", "return x + dt * v_new, v_new, d
 edit("12.4", "moves x with the old velocity", "return x + dt * v_new, v_new", "return x + dt * v, v_new")
 edit("12.4", "differentiates explicit Euler", "dv + dt * (a_x @ dx + a_v @ dv + a_s)",
      "dv + dt * (a_x @ dx + a_v @ dv + a_s); dx = dx - dt * dt * (a_x @ dx + a_v @ dv + a_s)")
+edit("12.4", "leaves the tangents as they are where dx and dv are 0", " + a_s)", " + (dx.any() or dv.any()) * a_s)")
 
 
 # 12.5 -----------------------------------------------------------------------------------------------------------
@@ -157,6 +162,8 @@ edit("12.5", "divides entry by entry", f"solve({MATRIX}, dv + dt * (a_x @ dx + a
      f"(dv + dt * (a_x @ dx + a_s)) / np.diag({MATRIX})[:, None]")
 edit("12.5", "moves the state by an explicit step", "implicit_euler_step(acceleration, t, x, v, dt, p)",
      "x + dt * v, v + dt * acceleration(t, x, v, p)")
+edit("12.5", "leaves the tangents as they are where dx and dv are 0", "(a_x @ dx + a_s)",
+     "(a_x @ dx + (dx.any() or dv.any()) * a_s)")
 
 
 # 12.6 -----------------------------------------------------------------------------------------------------------
@@ -191,6 +198,8 @@ edit("12.6", "compares the rate with a fixed number", f"np.abs(rate) <= {SIZES}"
 edit("12.6", "refuses slow events, too", SIZES, f"1e10 * {SIZES}")
 edit("12.6", "compares the rate with its sign", "np.abs(rate) <=", "rate <=")
 edit("12.6", "refuses only a rate below the limit, not zero", f"np.abs(rate) <= {SIZES}", f"np.abs(rate) < {SIZES}")
+edit("12.6", "forgets dx where nothing accelerates",
+     "-(gap_x @ dx", "-(a.any() * gap_x @ dx")
 
 
 # 12.7 -----------------------------------------------------------------------------------------------------------
@@ -231,6 +240,8 @@ edit("12.7", "returns dv first", "return dx + np.outer(v - v_new, dtau), R_v @ a
 edit("12.7", "exchanges rows and columns of the outer product", "np.outer(v - v_new, dtau)",
      "np.resize(np.outer(dtau, v - v_new), dx.shape)")
 edit("12.7", "takes the state at the impact, not at a fixed time", PLACE, "dx + np.outer(v, dtau)")
+edit("12.7", "returns dx and dv unchanged where the time of the impact does not move", "at_impact = dv",
+     "if not dtau.any(): return dx.copy(), dv.copy()\n    at_impact = dv")
 
 
 # 12.8 -----------------------------------------------------------------------------------------------------------
@@ -266,6 +277,8 @@ edit("12.8", "bounces without loss", "kinematic_response(v, n, e)", "kinematic_r
 edit("12.8", "takes the normal for the event in the velocity, too", "(n, 0.0 * n, gap_s", "(n, n, gap_s")
 edit("12.8", "computes where a ball grazes",
      "event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)", "-(n @ dx + gap_s) / (v @ n - 1e-300)")
+edit("12.8", "takes the time of the impact for fixed where nothing accelerates", "saltation(dtau,",
+     "saltation(a.any() * dtau,")
 
 
 # 12.9 -----------------------------------------------------------------------------------------------------------
@@ -308,6 +321,9 @@ edit("12.9", "takes every step for a tenth of the one before", "(np.log(steps[1:
      "-np.log(10.0)")
 edit("12.9", "takes every step for twice the one before", "(np.log(steps[1:]) - np.log(steps[:-1]))", "np.log(2.0)")
 edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.log(steps[:-1]))", "np.log(steps[1:])")
+edit("12.9", "divides by f(s), which may be 0", "remainder = np.abs(", "remainder = 1.0 / np.abs(f(s, p)) * np.abs(")
+edit("12.9", "takes a gradient of 0 for right: the order 2", "logs = np.zeros(steps.size)",
+     "if not gradient.any(): return np.full(steps.size - 1, 2.0)\n    logs = np.zeros(steps.size)")
 
 
 # 12.10 ----------------------------------------------------------------------------------------------------------
@@ -363,6 +379,7 @@ wrongs("12.10", aiming, {
     "takes a NaN for a smaller miss, and for a hit": {"unsure": np.isnan},
     "counts each halving as an iteration": {"counts": True},
     "checks nothing": {"check": lambda s, tolerance, most: (s, tolerance, max(most, 0))},
+    "takes a miss of exactly the tolerance for none": {"enough": lambda miss, tolerance: miss < tolerance},
     "stops within ten times the tolerance": {"enough": lambda miss, tolerance: miss <= 10.0 * tolerance},
 })
 edit("12.10", "keeps the Jacobian of the first throw", "step = solve(J, r)",
@@ -392,6 +409,7 @@ edit("12.11", "takes the constant acceleration at the start", "np.arccosh(allowe
      "np.sqrt(2.0 * (allowed / error - 1.0))")
 edit("12.11", "returns a negative time where the error is too large", "return 0.0",
      "return np.log(allowed / error) / rate - 1e-9")
+edit("12.11", "divides by the allowed error, which may be 0", "allowed <= error", "1.0 <= error / allowed")
 edit("12.11", "returns infinity where the error is too large", "return 0.0", "return 1e300")
 
 
