@@ -199,8 +199,8 @@ def row_by_row(quantity, got, expected, tolerance, p):
     got = numbers(quantity, got, np.shape(expected))
     off = np.abs(got - expected).reshape(len(got), -1)
     for i in np.flatnonzero(np.any(off > tolerance, axis=1)):
-        row, signs = expected[i], "above 0" if p.inv_mass[i] > 0.0 else "0", "above 0" if np.any(p.inv_inertia[i] > 0.0) else "0"
-        close(quantity, got[i], row, tolerance,
+        signs = "above 0" if p.inv_mass[i] > 0.0 else "0", "above 0" if np.any(p.inv_inertia[i] > 0.0) else "0"
+        close(quantity, got[i], expected[i], tolerance,
               given=f"row {i} of {len(expected)}: inv_mass is {signs[0]}, inv_inertia {signs[1]}")
 
 
@@ -1012,8 +1012,8 @@ def test_a_floor_moves_as_a_rigid_body(lesson, draw):
         ball, h, rate = ball._replace(floor_omega=spin, floor_v=v, centre=centre), 1e-4, np.linalg.norm(spin)
         ends = [centre + s * h * v + about(spin / (rate or 1.0), s * h * rate) @ (place - centre) for s in (1.0, -1.0)]
         # central difference: its error is h² |ω|³ |place − centre|/6, below 5e-7
-        close("velocity of the floor [m/s]", lesson.support_velocity(place, ball), (ends[0] - ends[1]) / (2.0 * h), 1e-6,
-              given=f"place {place} m, centre {centre} m, ω = {spin} rad/s, v = {v} m/s")
+        close("velocity of the floor [m/s]", lesson.support_velocity(place, ball), (ends[0] - ends[1]) / (2.0 * h),
+              1e-6, given=f"place {place} m, centre {centre} m, ω = {spin} rad/s, v = {v} m/s")
 
 
 @exercise("10.8", points=0.5, hint="at the centre the velocity is floor_v; elsewhere add the part from floor_omega")
@@ -1109,7 +1109,8 @@ def rubbed(x, v, omega, dt, ball):
     return v + J / ball.m, omega + np.cross(r, J) / ball.I_body[0]
 
 
-@exercise("10.9", points=0.125, hint="stop_slip first, with the floor at x + dt v; μ may be 0 or ∞, and the floor at rest")
+@exercise("10.9", points=0.125,
+          hint="stop_slip with the floor at x + dt v, also where ball or floor is at rest, and for μ = 0 or ∞")
 def test_friction_is_that_of_the_floor_ahead_wherever_ball_and_floor_rest(lesson, draw):
     """All that moves may be 0 or along an axis, and floors carry, brake or do neither; half of all is very slow."""
     level, q = np.array([1.0, 1.0, 0.0]), np.eye(4)[0]
@@ -1255,7 +1256,8 @@ def rolling_cases(draw, lesson):
         u = (v + np.cross(omega, [0.0, 0.0, -r])) * [1.0, 1.0, 0.0]
         along = u / np.linalg.norm(u) if u.any() else np.append(unit_vector(draw, 2), 0.0)
         down = draw.rng.choice([-G, -G, 0.0, G]) if np.isfinite(mu) else -G
-        yield lesson.RollingBall(m, np.full(3, share * m * r * r), r, mu, tilt * along + [0.0, 0.0, down]), v, omega, u, size
+        gravity = tilt * along + np.array([0.0, 0.0, down])
+        yield lesson.RollingBall(m, np.full(3, share * m * r * r), r, mu, gravity), v, omega, u, size
 
 
 def accelerations(ball, along):
@@ -1264,7 +1266,8 @@ def accelerations(ball, along):
     return ball.gravity * [1.0, 1.0, 0.0] + friction, ball.m * ball.radius**2 / ball.I_body[0] * friction
 
 
-@exercise("10.10", points=0.25, hint="μ max(0, −g_z) (1 + m radius²/I) less gravity along u; v, ω or gravity may be 0")
+@exercise("10.10", points=0.25,
+          hint="the same rate for a ball that stands or does not spin; there is no friction where g_z ≥ 0")
 def test_the_slip_of_a_ball_at_rest_or_along_an_axis_ends_when_theory_says(lesson, draw):
     for ball, v, omega, u, _ in rolling_cases(draw, lesson):
         slip, given = np.linalg.norm(u), f"v = {v} m/s, ω = {omega} rad/s, μ = {ball.mu}, gravity {ball.gravity} m/s²"
@@ -1365,7 +1368,8 @@ def rolled(v, rim, T, ball):
     return (way + rest * v + 0.5 * rest**2 * (g + friction), v + rest * (g + friction), rim + rest * share * friction)
 
 
-@exercise("10.11", points=0.125, hint="what is at rest, rolls, or only spins may be pulled by gravity; μ may be 0 or ∞")
+@exercise("10.11", points=0.125,
+          hint="both parts for every ball: one at rest, or that only spins, too, may begin to move")
 def test_one_step_is_exact_for_a_ball_at_rest_or_along_an_axis(lesson, draw):
     level = np.array([1.0, 1.0, 0.0])
     for ball, v, omega, u, size in rolling_cases(draw, lesson):
@@ -1439,14 +1443,14 @@ def test_a_rocking_block_keeps_what_housner_says(lesson, draw):
 def test_the_corner_stops_and_one_impulse_there_explains_it(lesson, draw):
     """In any direction, of light and of heavy bodies, near their centres and far from them; and hardly moving.
 
-    What is often 0 comes last: r, v and ω.
+    At last r, v and ω are often 0 or along an axis.
     """
     kinds = (1.0, 1.0, 1.0), (3.0, 1.0, 1.0), (1.0, 1e-9, 1.0), (1.0, 1.0, 1e6), (1.0, 1.0, 1e-6)
     usual = [(speed, heavy, np.append(size * unit_vector(draw, 2), speed * draw(-2.0, 2.0, 3)))
              for size, speed, heavy in 4 * kinds]
     arms, speeds, spins = often_zero(draw, 60, 2), often_zero(draw, 60, 2), often_zero(draw, 60, 1)
-    for speed, heavy, numbers_of in usual + [(1.0, 1.0, row) for row in np.hstack((arms, speeds, spins))]:
-        m, I, r, v, omega = heavy * draw(0.5, 2.0), heavy * draw(0.5, 2.0), numbers_of[:2], numbers_of[2:4], numbers_of[4]
+    for speed, heavy, row in usual + [(1.0, 1.0, often) for often in np.hstack((arms, speeds, spins))]:
+        m, I, r, v, omega = *heavy * draw(0.5, 2.0, 2), row[:2], row[2:4], row[4]
         v_new, omega_new = lesson.corner_impact(v, omega, r, 1.0 / m, 1.0 / I)
         v_new, given = np.asarray(v_new), f"r = {r} m, m = {m} kg, I = {I} kg m², v = {v} m/s, ω = {omega} rad/s"
         close("velocity of the corner [m/s]", v_new + omega_new * np.array([-r[1], r[0]]), np.zeros(2),
