@@ -489,7 +489,8 @@ def test_a_turned_box_touches_a_floor_with_its_lowest_corners(lesson, draw):
             got = lesson.find_contacts(narrow, x, *bounds(x, q, p.half), p)
             for i in range(2):
                 gaps = heights[i] - np.min(heights[i]) + 0.2 * margin
-                along, gaps, mine = x[i, 0] + ways[i][gaps <= margin], np.sort(gaps[gaps <= margin]), np.asarray(got.a) == i
+                along, gaps = x[i, 0] + ways[i][gaps <= margin], np.sort(gaps[gaps <= margin])
+                mine = np.asarray(got.a) == i
                 close("number of contacts of a box with the floor [-]", np.count_nonzero(mine), len(gaps), 0.0,
                       given=f"half sizes {half[0]} m, turned by {turns[i]} rad")
                 close("gaps of a box [m]", np.sort(np.asarray(got.gap)[mine]), gaps, ROUND_OFF)
