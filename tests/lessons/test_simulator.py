@@ -159,8 +159,8 @@ SPECIAL = 128                # bodies that are drawn at once, so that all combin
 def special(draw, lesson, d):
     """(t, x, q, v, omega, dt, p) of bodies without planes whose numbers are often 0 or equal, and of one of each kind.
 
-    A body and its gravity may be at rest, at the origin, or along an axis, q the identity or a half-turn, and moments
-    equal or nearly so.  A step may be short, or so long that bodies turn around.
+    They may be at rest, at the origin or along an axis; q may be the identity or a half-turn, moments equal or nearly
+    so, and gravity 0.  A step may be short, or so long that bodies turn around.
     """
     x, v, q, omega = (often_zero(draw, SPECIAL, count) for count in ((2, 2, 1, 1) if d == 2 else (3, 3, 4, 3)))
     inv_mass = draw.rng.choice([0.0, 0.0, draw(0.3, 2.0), draw(11.0, 12.0)], SPECIAL)
