@@ -19,6 +19,7 @@ import numpy as np
 from solutions.checks import check_end, check_load, check_shape, checked_run, float_copy
 from solutions.collisions import gjk
 from solutions.contact import kept_impulses, velocity_sweep, velocity_sweep_2d
+from solutions.friction import cone_radius
 from solutions.given.bodies import (
     Bodies,
     CarriedBall,
@@ -221,8 +222,8 @@ def slip_time(v, omega, ball):
 
     *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
         u = v + ω × r,      r = (0, 0, −radius)
-    The rate is constant.  Friction is as large as Coulomb allows, μ m |g_z|.  I = I_body[0] is the same about all
-    axes.
+    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.  I =
+    I_body[0] is the same about all axes.
     Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     All numbers are finite, but μ may be ∞; advance_rigid_body has checked that.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
@@ -236,7 +237,8 @@ def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
     """Return (x, q, v, ω) of a RollingBall after dt, exact for every dt.
 
     *Find* how.  average_rolling_step is exact while the accelerations are constant.  They change once, when the slip
-    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.
+    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.  As there, gravity
+    along the floor is zero or parallel to the slip; where nothing slips it may have any direction.
 
     *Source:* event-driven integration; stick and slip of lesson 3.
     """
@@ -324,7 +326,8 @@ def compare(full, minimal, runs, clock):
 
     full() and minimal() return arrays of the same shape.  Run full and then minimal, `runs` times, and time each run
     with clock() [s].  The difference is the largest |full − minimal| of neighbouring runs, over all entries and all
-    rounds.  The ratio is the median, over the rounds, of the time of full over that of minimal.
+    rounds, and NaN where one of them is NaN.  The ratio is the median, over the rounds, of the time of full over that
+    of minimal.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.16: compare")
@@ -387,7 +390,7 @@ def stopping_depth(speed, gap, margin, dt):
     """Return the depth [m] below the floor at which the loop stops a body that comes straight at it; 0 on its surface.
 
     The body has the speed > 0 [m/s], no gravity acts, and at the start it is at a gap > 0 [m] above a plane.  Each step
-    of dt > 0 [s] looks for contacts before it moves the body.  A contact is found where the gap is below the margin
+    of dt > 0 [s] looks for contacts before it moves the body.  A contact is found where the gap is at most the margin
     ≥ 0 [m], and then the body may move to the surface, but no further.  The loop never pushes bodies out.
     *Find* the depth before you run anything.  Which step finds the contact, and how much of the gap is left then?
     """

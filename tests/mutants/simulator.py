@@ -189,6 +189,35 @@ edits("10.2",
       ("evaluates the load for bodies that turn and do not move", "q, v, omega, p)", "q, 0.0 * v, omega, p)"),
       ("sorts the moments of inertia", "1.0 / p.inv_inertia[i]", "np.sort(1.0 / p.inv_inertia[i])"))
 
+WITHOUT = "omega[i] * ({}), tau[i], 1.0"                                 # the gyroscopic term, unless this holds
+edits("10.1 10.2",
+      ("sets no body in motion that is at rest", FORCE, f"np.where(v.any(axis=1)[:, None], {FORCE}, v)"),
+      ("returns v itself where no force acts", FORCE, f"({FORCE} if F.any() else v)"),
+      ("loses the row of one body alone", FORCE, f"np.squeeze({FORCE})"),
+      ("does not move bodies above 10⁶ kg", "p.inv_mass[:, None]",
+       "np.where(p.inv_mass < 1e-6, 0.0, p.inv_mass)[:, None]"))
+edits("10.1",
+      ("sets no body turning that does not turn yet", TORQUE, f"{TORQUE} * (omega != 0.0)"),
+      ("omits torques on bodies on which no force acts", TORQUE, f"{TORQUE} * F.any(axis=1)"),
+      ("omits forces with equal coordinates", "p.inv_mass[:, None] * F",
+       "p.inv_mass[:, None] * F * (F[:, :1] != F[:, 1:])"),
+      ("returns omega itself where no torque acts", TORQUE, f"({TORQUE} if tau.any() else omega)"),
+      ("returns v and omega themselves where no load can change them", LOADS,
+       f"{LOADS}\n    if not (p.inv_mass.any() or p.inv_inertia.any()): return v, omega"))
+edits("10.2",
+      ("omits the gyroscopic term where the first two moments are equal", "omega[i], tau[i], 1.0",
+       WITHOUT.format("p.inv_inertia[i, 0] != p.inv_inertia[i, 1]")),
+      ("omits the gyroscopic term where the last two moments are equal", "omega[i], tau[i], 1.0",
+       WITHOUT.format("p.inv_inertia[i, 1] != p.inv_inertia[i, 2]")),
+      ("omits the gyroscopic term where the first and the last moment are equal", "omega[i], tau[i], 1.0",
+       WITHOUT.format("p.inv_inertia[i, 0] != p.inv_inertia[i, 2]")),
+      ("omits the gyroscopic term where moments differ by less than a tenth", "omega[i], tau[i], 1.0",
+       WITHOUT.format("np.max(p.inv_inertia[i]) > 1.1 * np.min(p.inv_inertia[i])")),
+      ("omits the gyroscopic term where q = (1, 0, 0, 0)", "omega[i], tau[i], 1.0", WITHOUT.format("q[i, 0] != 1.0")),
+      ("omits the gyroscopic term where ω has no part along one of the body's axes", "omega[i], tau[i], 1.0",
+       WITHOUT.format("np.min(np.abs(unrotate(q[i], omega[i]))) > 1e-9")),
+      ("does not turn bodies with moments above 10⁶ kg m²", "p.inv_inertia[i, 0] > 0.0", "p.inv_inertia[i, 0] > 1e-6"))
+
 
 # 10.3 and 10.4 --------------------------------------------------------------------------------------------------
 @right("10.3", "changes of positions apart")
@@ -346,6 +375,24 @@ edit("10.3", "leaves out ways below 1 nm", "x + dt * v", "np.where(np.abs(dt * v
 edit("10.4", "leaves out spins below 1 µrad/s", "q[i] = quaternion",
      "if dot(omega[i], omega[i]) > 1e-12: q[i] = quaternion")
 
+edits("10.3 10.4", ("loses the row of one body alone", "x + dt * v", "np.squeeze(x + dt * v)"))
+FIRST = "v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)"
+edits("10.3",
+      ("does not move bodies that do not turn", "x + dt * v",
+       "x + dt * v * ((omega != 0.0) | (p.inv_inertia == 0.0))[:, None]"),
+      ("does not move rows of infinite mass that do not turn", "x + dt * v",
+       "x + dt * v * ((p.inv_mass > 0.0) | (omega != 0.0))[:, None]"),
+      ("does not turn bodies that do not move along", "q + dt * omega", "q + dt * omega * v.any(axis=1)"),
+      ("moves bodies below 0.1 kg with the mean of old and new velocities", FIRST, f"old = v; {FIRST}; "
+       "return x + np.where(p.inv_mass[:, None] > 10.0, 0.5 * dt * (old + v), dt * v), q + dt * omega, v, omega"))
+edits("10.4",
+      ("turns by a quarter turn per step at most", "omega[i], dt)",
+       "omega[i] * min(1.0, 2.0 / max(norm(omega[i]) * dt, 1e-300)), dt)"),
+      ("takes the angle |ω| dt modulo 2π", "omega[i], dt)",
+       "omega[i] * np.remainder(norm(omega[i]) * dt, 2.0 * np.pi) / max(norm(omega[i]) * dt, 1e-300), dt)"),
+      ("uses the exponential for small angles", UPDATE,
+       f"{UPDATE} if norm(omega[i]) * dt > 0.01 else quaternion_product(exponential(dt * omega[i]), q[i])"))
+
 
 # 10.5 -----------------------------------------------------------------------------------------------------------
 @right("10.5", "tries all pairs")
@@ -441,6 +488,18 @@ edits("10.5",
       ("uses the planes from the last to the first", "p.half, p.planes, pairs",
        "p.half, np.ascontiguousarray(p.planes[::-1]), pairs"),
       ("uses the rotation of the first body for all", "turn, p.half", "0.0 * turn + turn[:1], p.half"))
+
+edits("10.5",
+      ("omits the planes where there is one body", "high + p.margin, p.planes)",
+       "high + p.margin, p.planes if len(p.half) > 1 else p.planes[:0])"),
+      ("uses the transposed rotations in space", "turn, p.half",
+       "np.ascontiguousarray(turn.transpose(0, 2, 1)) if turn.ndim == 3 else turn, p.half"),
+      ("uses the opposite angles in the plane", "turn, p.half",
+       "turn * np.array([1.0, -1.0]) if turn.ndim == 2 else turn, p.half"),
+      ("loses the signs of cosine and sine in the plane", "turn, p.half",
+       "np.abs(turn) if turn.ndim == 2 else turn, p.half"),
+      ("omits pairs of bodies with the same centre", "return",
+       SOME.format("j >= len(p.half) or np.any(x[i] != x[j])")))
 
 
 # 10.6 and 10.7 --------------------------------------------------------------------------------------------------
@@ -708,6 +767,30 @@ edits("10.7",
       ("has no limit of the friction", "p.mu)", "np.inf)"),
       ("uses a friction of 0.5 for all scenes", "p.mu)", "0.5)"))
 
+edits("10.6 10.7",
+      ("returns the old contacts where there are as many", "v, omega, contacts, J)",
+       "v, omega, old if old.a.size == contacts.a.size else contacts, J)"),
+      ("returns normals and places of the old contacts where there are as many", "v, omega, contacts, J)",
+       "v, omega, contacts._replace(n=old.n, p=old.p) if old.p.shape == contacts.p.shape else contacts, J)"),
+      ("makes no sweep where there is no plane", LOOP, "for _ in range(p.sweeps if len(p.planes) else 0):"),
+      ("makes twice as many sweeps where there is no plane", LOOP,
+       "for _ in range(p.sweeps if len(p.planes) else 2 * p.sweeps):"),
+      ("forgets the impulses of contacts with a gap", KEEP, f"{KEEP} * (contacts.gap < 1e-12)[:, None]"),
+      ("forgets the impulses of contacts that overlap", KEEP, f"{KEEP} * (contacts.gap > -1e-12)[:, None]"),
+      ("forgets the impulses on bodies that cannot turn", KEEP,
+       f"{KEEP} * p.inv_inertia.reshape(len(x), -1)[contacts.a].any(axis=1)[:, None]"),
+      ("forgets the impulses between two bodies", KEEP, f"{KEEP} * (contacts.b >= len(p.half))[:, None]"),
+      ("forgets the impulses of rows of infinite mass that move", KEEP,
+       f"{KEEP} * (1.0 - (p.inv_mass[contacts.b] == 0.0) * v[contacts.b].any(axis=1))[:, None]"),
+      ("forgets the impulses of contacts that part", KEEP,
+       f"{KEEP} * (np.sum((v[contacts.a] - v[contacts.b]) * contacts.n, axis=1) < 1e-12)[:, None]"))
+edits("10.6",
+      ("omits the friction where there is no plane", "arms, p)", "arms, p if len(p.planes) else p._replace(mu=0.0))"),
+      ("takes infinite friction for 1000", "arms, p)", "arms, p._replace(mu=min(p.mu, 1000.0)))"))
+edits("10.7",
+      ("omits the friction where there is no plane", "p.mu)", "p.mu if len(p.planes) else 0.0)"),
+      ("takes infinite friction for 1000", "p.mu)", "min(p.mu, 1000.0))"))
+
 
 # 10.8 -----------------------------------------------------------------------------------------------------------
 @right("10.8", "coordinate by coordinate")
@@ -868,12 +951,12 @@ def slip_time(v, omega, ball):
     if size == 0.0:
         return 0.0
     K = 1.0 / ball.m + ball.radius**2 / ball.I_body[0]
-    force = ball.mu * ball.m * abs(ball.gravity[2])
+    force = ball.mu * ball.m * max(0.0, -ball.gravity[2])
     slower = force * K - ball.gravity[:2] @ u / size
     return size / slower if slower > 0.0 else np.inf
 
 
-SPUN = "ball.m * ball.radius * ball.radius / ball.I_body[0]"
+SPUN, RUBS = "ball.m * ball.radius * ball.radius / ball.I_body[0]", "cone_radius(ball.mu, -ball.gravity[2])"
 ENDS, LOWEST = "size / rate if rate > 0.0 else np.inf", "point_velocity(v, omega, np.array([0.0, 0.0, -ball.radius]))"
 edits("10.10",
       ("uses the size of the slip along x only", "norm(slip)", "abs(slip[0])"),
@@ -909,13 +992,12 @@ edits("10.10",
       ("uses the coordinate x of gravity along the slope", "dot(slip, ball.gravity) / size", "ball.gravity[0]"),
       ("lets gravity along the slope turn the ball, too", f"(1.0 + {SPUN}) - along",
        f"(1.0 + {SPUN}) - along * (1.0 + {SPUN})"),
-      ("uses the whole gravity in the friction", "-ball.mu * ball.gravity[2]", "ball.mu * norm(ball.gravity)"),
-      ("uses 9.81 m/s² in the friction", "-ball.mu * ball.gravity[2]", "ball.mu * 9.81"),
-      ("uses g_z with its sign: friction speeds the slip up", "-ball.mu * ball.gravity[2]",
-       "ball.mu * ball.gravity[2]"),
-      ("multiplies friction by the mass", "-ball.mu * ball.gravity[2]", "-ball.mu * ball.m * ball.gravity[2]"),
-      ("omits the friction coefficient", "-ball.mu * ball.gravity[2]", "-ball.gravity[2]"),
-      ("forgets gravity in the friction", "-ball.mu * ball.gravity[2] *", "ball.mu *"),
+      ("uses the whole gravity in the friction", RUBS, "ball.mu * norm(ball.gravity)"),
+      ("uses 9.81 m/s² in the friction", RUBS, "ball.mu * 9.81"),
+      ("uses g_z with its sign: friction speeds the slip up", RUBS, "ball.mu * ball.gravity[2]"),
+      ("multiplies friction by the mass", RUBS, f"ball.m * {RUBS}"),
+      ("omits the friction coefficient", RUBS, "-ball.gravity[2]"),
+      ("forgets gravity in the friction", RUBS, "ball.mu"),
       ("returns infinity where the ball does not slip", "return 0.0", "return np.inf"),
       ("takes a slow slip for none", "size == 0.0", "size < 1e-3"),
       ("returns a finite time where the slip never ends", ENDS, "size / rate"),
@@ -1343,7 +1425,7 @@ def compare(full, minimal, runs, clock):                                 # noqa:
         t_3 = clock()
         ratios.append((t_1 - t_0) / (t_3 - t_2))
         differences.append(np.max(np.abs(slow - quick)))
-    return max(differences), np.median(ratios)
+    return np.max(differences), np.median(ratios)
 
 
 RATIO, LARGEST = "(between - began) / (clock() - between)", "np.max(np.abs(slow - quick))"
@@ -1438,7 +1520,8 @@ edits("10.10",
       ("limits the time to 10 s", ENDS, "min(10.0, size / rate) if rate > 0.0 else np.inf"),
       ("takes a small rate for none", "if rate > 0.0", "if rate > 1e-6"),
       ("takes large friction for infinite", "along =", "if ball.mu > 10.0: return 0.0\n    along ="),
-      ("limits finite friction to 100", "-ball.mu *", "-(ball.mu if np.isinf(ball.mu) else min(ball.mu, 100.0)) *"))
+      ("limits finite friction to 100", "cone_radius(ball.mu,",
+       "cone_radius(ball.mu if np.isinf(ball.mu) else min(ball.mu, 100.0),"))
 edits("10.11",
       ("omits a second part that is short", f"return {TWO}",
        f"return {TWO} if dt - first > 1e-5 else (x, q, v, omega)"),
@@ -1489,7 +1572,7 @@ edits("10.9",
 edits("10.10",
       ("subtracts the speed of the rim from that of the centre", "size = norm(slip)",
        "size = abs(np.hypot(v[0], v[1]) - ball.radius * np.hypot(omega[0], omega[1]))"),
-      ("limits the friction to 1", "-ball.mu *", "-min(ball.mu, 1.0) *"),
+      ("limits the friction to 1", "cone_radius(ball.mu,", "cone_radius(min(ball.mu, 1.0),"),
       ("limits the time to 1 s", ENDS, "min(1.0, size / rate) if rate > 0.0 else np.inf"))
 edits("10.11",
       ("uses infinite friction in the second part", "dt - first, ball)", "dt - first, ball._replace(mu=np.inf))"),
@@ -1531,6 +1614,81 @@ edits("10.16",
       ("rounds the ratio", MEDIAN, "np.round(np.median(ratios), 2)"))
 
 
+# 10.8 to 10.17: right unless something is 0, equal, or alone ----------------------------------------------------
+edits("10.8",
+      ("returns floor_v at the origin", "return", "if not np.any(place): return ball.floor_v.copy()\n    return"),
+      ("omits the rotation of fast floors", "ball.floor_omega, place",
+       "ball.floor_omega * (norm(ball.floor_v) < 10.0), place"))
+edits("10.9",
+      ("omits the friction of a floor at rest", SLIP,
+       f"{SLIP}\n    if not np.any({AHEAD}): pushed, turned = v, omega"),
+      ("takes a friction of 0 for 1", f"{AHEAD}, dt, ball",
+       f"{AHEAD}, dt, ball if ball.mu > 0.0 else ball._replace(mu=1.0)"),
+      ("takes the velocity of the floor at the old position while the ball slips", SLIP,
+       f"{SLIP}; free, _ = stop_slip(v, omega, {AHEAD}, dt, ball._replace(mu=np.inf)); pushed, turned = "
+       "(pushed, turned) if norm(free - pushed) < 1e-12 else stop_slip(v, omega, support_velocity(x, ball), dt, ball)"),
+      ("omits friction that changes v by less than 0.1 mm/s", SLIP,
+       f"{SLIP}\n    if norm(pushed - v) < 1e-4: pushed, turned = v, omega"))
+edits("10.10",
+      ("returns infinity where gravity does not press the ball on the floor", "if rate > 0.0",
+       "if rate > 0.0 and ball.gravity[2] < 0.0"),
+      ("lets the floor pull: uses |g_z| where gravity lifts the ball", RUBS,
+       "cone_radius(ball.mu, abs(ball.gravity[2]))"),
+      ("returns zero where v = 0", "size == 0.0", "size == 0.0 or not v.any()"),
+      ("loses the signs of the slip where v = 0", "dot(slip,", "dot(slip if v.any() else np.abs(slip),"),
+      ("returns zero where v_z is below 0", "size == 0.0", "size == 0.0 or v[2] < 0.0"))
+GOES_ON = f"if {{}}: return x + dt * v, quaternion_product(exponential(dt * omega), q), v, omega\n    first = {UNTIL}"
+edits("10.11",
+      ("lets a ball that rolls keep its velocity, also on a slope", f"first = {UNTIL}",
+       GOES_ON.format("slip_time(v, omega, ball) == 0.0")),
+      ("leaves a ball at rest where it is, also on a slope", f"first = {UNTIL}",
+       GOES_ON.format("not (v.any() or omega.any())")),
+      ("leaves a ball where it is that only spins about the vertical, also on a slope", f"first = {UNTIL}",
+       GOES_ON.format("not (v.any() or omega[:2].any())")),
+      ("leaves a ball where it is that spins with v = 0", f"first = {UNTIL}", GOES_ON.format("not v.any()")),
+      ("lets a ball slide on that does not spin", f"first = {UNTIL}", GOES_ON.format("not omega.any()")),
+      ("omits gravity along the floor where there is no friction", f"first = {UNTIL}",
+       GOES_ON.format("ball.mu == 0.0")),
+      ("omits gravity along the floor where it does not press the ball on the floor", f"first = {UNTIL}",
+       GOES_ON.format("ball.gravity[2] >= 0.0")),
+      ("takes a slip below 1 mm/s for none", UNTIL,
+       f"{UNTIL} if norm({LOWEST} * np.array([1.0, 1.0, 0.0])) > 1e-3 else 0.0"),
+      ("keeps v where friction is infinite, and changes only ω", f"first = {UNTIL}",
+       "omega = omega if ball.mu < np.inf else np.array([-v[1], v[0], ball.radius * omega[2]]) / ball.radius; "
+       f"first = {UNTIL}"))
+edits("10.12",
+      ("does not turn a body that does not turn yet", "cross_2d(r, v) / inv_mass",
+       "cross_2d(r, v) / inv_mass * (omega != 0.0)"),
+      ("changes nothing where v = 0", ANGULAR, f"if not v.any(): return v.copy(), omega\n    {ANGULAR}"),
+      ("stops the centre and keeps ω where v is along r", ANGULAR,
+       f"if abs(cross_2d(r, v)) < 1e-12: return np.zeros(2), omega\n    {ANGULAR}"),
+      ("stops v_y only where the corner is below the centre", ANGULAR,
+       f"if r[0] == 0.0: return np.array([v[0], 0.0]), omega\n    {ANGULAR}"),
+      ("changes nothing where the centre itself hits the edge", ANGULAR,
+       f"if not r.any(): return v.copy(), omega\n    {ANGULAR}"))
+edits("10.13 10.14",
+      ("omits bodies that do not move along", COUNTS, "if p.inv_mass[i] > 0.0 and v[i].any():"),
+      ("omits bodies at the origin", COUNTS, "if p.inv_mass[i] > 0.0 and x[i].any():"),
+      ("ignores the orientation where the first two moments are equal", "(q[i], omega",
+       "(q[i] if p.inv_inertia[i, 0] != p.inv_inertia[i, 1] else np.array([1.0, 0.0, 0.0, 0.0]), omega"))
+edits("10.13",
+      ("omits the height of bodies that do not turn", POTENTIAL, f"{POTENTIAL} * omega[i].any()"),
+      ("omits the height of one body alone", POTENTIAL, f"{POTENTIAL} * (len(x) > 1)"),
+      ("omits the factor ½ of the translation where a body does not turn", KINETIC,
+       "(0.5 if omega[i].any() else 1.0) * dot(v[i], v[i])"),
+      ("omits the rotation where there is no gravity", ROTATES, "if p.inv_inertia[i, 0] > 0.0 and p.gravity.any():"),
+      ("uses the first moment of inertia for all axes where q = (1, 0, 0, 0)", "p.inv_inertia[i])",
+       "(p.inv_inertia[i] if q[i, 0] != 1.0 else p.inv_inertia[i, 0] * np.ones(3)))"))
+edits("10.14",
+      ("omits the orbital part of bodies that do not turn", ORBIT, f"{ORBIT} * omega[i].any()"),
+      ("returns no momentum of one body alone", "return P, L", "return P * (len(x) > 1), L"))
+edits("10.15", ("returns zero for two times", DONE, "return gain if energies.size != 2 else 0.0"))
+edits("10.16",
+      ("returns a ratio of 1 for one round", MEDIAN, f"{MEDIAN} if runs > 1 else 1.0"),
+      ("compares the first hundred numbers only", LARGEST, "np.max(np.abs(slow - quick).ravel()[:100])"),
+      ("loses a NaN", MOST, f"max(difference, {LARGEST})"))
+
+
 # 10.17 --------------------------------------------------------------------------------------------------------------
 @right("10.17", "step by step")
 def stopping_depth(speed, gap, margin, dt):
@@ -1543,6 +1701,8 @@ def stopping_depth(speed, gap, margin, dt):
 
 edit("10.17", "lets the body stop at the surface, however fast it is", "steps * speed * dt - gap", "0.0 * gap")
 edit("10.17", "takes a step less", "np.ceil", "np.floor")
+edit("10.17", "takes a step more where a gap is exactly the margin", "np.ceil((gap - margin) / (speed * dt))",
+     "(np.floor((gap - margin) / (speed * dt)) + 1.0)")
 edit("10.17", "takes the margin off the depth", "steps * speed * dt - gap", "steps * speed * dt - gap - margin")
 edit("10.17", "looks for the contact without a margin", "(gap - margin) / (speed * dt)", "gap / (speed * dt)")
 edit("10.17", "adds the margin to the gap", "(gap - margin)", "(gap + margin)")
