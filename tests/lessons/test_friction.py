@@ -1,5 +1,7 @@
 """Lesson 3: a support only pushes, friction removes all the energy its cone allows, and a held block stays at rest."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -15,8 +17,16 @@ G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12
 
 
-def frame(draw, d):
-    """Rows n, t_1 (, t_2): a drawn unit normal and unit tangents in d dimensions, none along a coordinate axis."""
+WAYS = ((2, True), (3, True), (2, False), (3, False))     # d and turned of a frame
+
+
+def frame(draw, d, turned=True):
+    """Rows n, t_1 (, t_2): a drawn unit normal and unit tangents in d dimensions.
+
+    turned: none along a coordinate axis; False: all along one
+    """
+    if not turned:
+        return np.roll(np.eye(d), draw.whole(0, d - 1), axis=0)
     turn = draw(0.2, 1.3) + 0.5 * np.pi * draw.whole(0, 3)
     n, t_1 = np.array([-np.sin(turn), np.cos(turn)]), np.array([np.cos(turn), np.sin(turn)])
     if d == 2:
@@ -38,10 +48,11 @@ def along_surface(draw, axes, size):
 
 @exercise("3.1", points=1, hint="the part of F against n: −F · n, but never less than zero")
 def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(lesson, draw):
-    for d in (2, 3):
-        for load in (draw(1.0, 20.0), 1e-6):
-            axes = frame(draw, d)
-            n, pull = axes[0], along_surface(draw, axes, draw(1.0, 20.0))
+    for d, turned in WAYS:
+        for load, size in ((draw(1.0, 20.0), draw(1.0, 20.0)), (1e-6, draw(1.0, 20.0)), (draw(1.0, 20.0), 0.0),
+                           (0.0, 0.0)):
+            axes = frame(draw, d, turned)
+            n, pull = axes[0], along_surface(draw, axes, size)
             # The lift first: without the minus sign a formula returns the lift here, and 0 for a load.
             close("normal force when F lifts [N]", lesson.normal_force(pull + load * n, n), 0.0, 0.0,
                   given=f"lift {load} N, n = {n}")
@@ -52,8 +63,8 @@ def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(le
 @exercise("3.2", points=0.25,
           hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no tangential part")
 def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
-    for d in (2, 3):
-        axes, load, mu = frame(draw, d), draw(1.0, 20.0), draw(0.2, 1.5)
+    for d, turned in WAYS:
+        axes, load, mu = frame(draw, d, turned), draw(1.0, 20.0), draw(0.2, 1.5)
         for share, friction in (*((share, mu) for share in draw.within()), (draw(2.0, 5.0), np.inf), (0.0, mu),
                                 (0.0, 0.0)):
             pull = along_surface(draw, axes, share * mu * load)
@@ -65,8 +76,8 @@ def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
 @exercise("3.2", points=0.25,
           hint="beyond the cone its magnitude is μ_s F_N, where F_N is the normal force of F; it points against F_t")
 def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
-    for d in (2, 3):
-        axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
+    for d, turned in WAYS:
+        axes, load, mu = frame(draw, d, turned), draw(1.0, 10.0), draw(0.2, 1.0)
         for share, friction in (*((share, mu) for share in draw.beyond(3.0)), (draw(1.1, 3.0), 0.0)):
             pull = along_surface(draw, axes, share * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
@@ -86,6 +97,10 @@ def test_a_lifted_body_feels_no_friction(lesson, draw):
     for mu in (draw(0.2, 1.5), np.inf):
         close("friction on a body that is lifted [N]", lesson.static_friction(lifting, axes[0], mu), np.zeros(3), 0.0,
               given=f"F = {lifting} N, μ = {mu}")
+        for pull in (np.zeros(2), draw(1.0, 5.0) * np.array([1.0, 0.0])):
+            got = lesson.static_friction(pull, np.array([0.0, 1.0]), mu)
+            close("friction on a body that is neither pressed nor lifted [N]", got, np.zeros(2), 0.0,
+                  given=f"F = {pull} N, μ = {mu}")
 
 
 @exercise("3.2", points=0.25, hint="let cone_radius compute μ_s F_N: it refuses a negative μ")
@@ -99,8 +114,8 @@ def test_negative_friction_is_refused(lesson, draw):
 
 @exercise("3.3", points=0.5, hint="it points against the motion, not against F; its size is μ_k F_N at every speed")
 def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(lesson, draw):
-    for d in (2, 3):
-        axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
+    for d, turned in WAYS:
+        axes, load, mu = frame(draw, d, turned), draw(1.0, 10.0), draw(0.2, 1.0)
         n, F = axes[0], along_surface(draw, axes, draw(1.0, 20.0)) - load * axes[0]
         direction = along_surface(draw, axes, 1.0)
         for speed, sinking in ((1e-12, 0.0), (1e-6, 0.0), (draw(0.5, 9.0), 0.0), (draw(0.5, 9.0), draw(-2.0, 2.0))):
@@ -120,6 +135,14 @@ def test_kinetic_friction_needs_a_motion_and_a_load(lesson, draw):
               -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {pull - axes[0]} N")
     close("kinetic friction at rest [N]", lesson.kinetic_friction(F - axes[0], still, axes[0], mu), still, 0.0,
           given=f"F = {F} N")
+    close("kinetic friction where μ = 0 [N]", lesson.kinetic_friction(F - axes[0], moving, axes[0], 0.0), still, 0.0,
+          given=f"F = {F} N")
+    close("kinetic friction without any other force [N]", lesson.kinetic_friction(still, moving, axes[0], mu), still,
+          0.0, given=f"v = {moving} m/s")
+    sinks = draw(-3.0, -1.0) * np.array([0.0, 1.0])
+    close("kinetic friction on a body that moves against the support only [N]",
+          lesson.kinetic_friction(np.array([1.0, -1.0]), sinks, np.array([0.0, 1.0]), mu), 0.0 * sinks, 0.0,
+          given=f"v = {sinks} m/s")
     for friction in (mu, np.inf):
         close("kinetic friction without load [N]", lesson.kinetic_friction(F + axes[0], moving, axes[0], friction),
               still, 0.0, given=f"F = {F} N, μ = {friction}")
@@ -147,11 +170,17 @@ def test_a_block_slides_when_the_slope_is_steeper_than_the_cone_is_wide(lesson, 
 def test_a_block_holds_up_to_the_angle_whose_tangent_is_mu(lesson, draw):
     mu, g = draw(0.2, 1.5), draw(1.0, 15.0)
     edge = np.arctan(mu)
-    for theta, mu_k in ((0.0, mu), (draw(0.2, 0.9) * edge, mu), (0.999999 * edge, 0.1 * mu)):
+    for theta, mu_k in ((0.0, mu), (0.0, 0.0), (draw(0.2, 0.9) * edge, mu), (0.999999 * edge, 0.1 * mu),
+                        (draw(0.2, 0.9) * edge, 0.0)):
         close("acceleration of a block that holds [m/s²]", lesson.incline_acceleration(theta, mu, mu_k, g), 0.0, 0.0,
               given=f"θ = {theta}, μ_s = {mu}, μ_k = {mu_k}")
     between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g),
             1e-12, 2e-5 * g, given=f"μ = {mu}")
+    for mu_s in (0.0, mu):
+        steep = draw(1.1, 1.4) * np.arctan(mu_s) + 0.1
+        close("acceleration of a block that slides without friction, μ_k = 0 [m/s²]",
+              lesson.incline_acceleration(steep, mu_s, 0.0, g), g * np.sin(steep), ROUND_OFF,
+              given=f"θ = {steep}, μ_s = {mu_s}")
     close("acceleration where μ_s = ∞ [m/s²]", lesson.incline_acceleration(1.5, np.inf, mu, g), 0.0, 0.0)
     raises("a negative μ_s", BadInput, lesson.incline_acceleration, 0.3, -mu, 0.0, g)
     raises("a negative μ_k of a block that slides", BadInput, lesson.incline_acceleration, 0.3, 0.0, -mu, g)
@@ -193,7 +222,7 @@ def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
 def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(lesson, draw):
     for d in (2, 3):
         # For one vector in seven, unit vector times length differs from the vector in the last digit.
-        for v in draw(-1.0, 1.0, (40, d)):
+        for v in (*draw(-1.0, 1.0, (40, d)), *draw.sparse(-1.0, 1.0, (10, d))):
             close("remaining velocity of a body that stops [m/s]: exactly zero",
                   v + lesson.friction_impulse(v, 1.0, 10.0, 1.0), 0.0 * v, 0.0, given=f"v_t = {v}, m = 1 kg")
     v, m, j_n = draw(1.0, 3.0, 2), draw(0.5, 5.0), draw(0.1, 2.0)
@@ -202,17 +231,23 @@ def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(les
     close("impulse where μ = 0 [N s]", lesson.friction_impulse(v, m, j_n, 0.0), still, 0.0, given=f"v_t = {v}")
     close("impulse where μ = ∞ [N s]: stops the body", lesson.friction_impulse(v, m, j_n, np.inf), -m * v, ROUND_OFF,
           given=f"v_t = {v}, m = {m}")
-    close("impulse where μ = ∞, but j_n = 0 [N s]", lesson.friction_impulse(v, m, 0.0, np.inf), still, 0.0,
-          given=f"v_t = {v}")
+    for mu in (np.inf, draw(0.2, 1.0)):
+        close("impulse where j_n = 0 [N s]", lesson.friction_impulse(v, m, 0.0, mu), still, 0.0,
+              given=f"v_t = {v}, μ = {mu}")
+    along = draw(1.0, 3.0, 3) * np.eye(3)
+    for v in (*along, along[0, :2], along[0, :1]):
+        close("impulse on a body that slides along an axis [N s]",
+              lesson.friction_impulse(v, m, 0.5 * m, 0.8), -0.4 * m * (v > 0.0), ROUND_OFF, given=f"v_t = {v}, m = {m}")
     raises("a negative μ", BadInput, lesson.friction_impulse, v, m, j_n, -1.0)
 
 
 @exercise("3.6", points=1, hint="treat each tangent separately: −m v_t · t, limited to ±μ j_n")
 def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
-    for first, second in ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)),
-                          (-draw(1.1, 4.0), -draw(0.1, 0.9)), (draw(0.1, 0.9), -draw(1.1, 4.0)),
-                          (0.99, -1.01), (-draw(1.1, 4.0), draw(1.1, 4.0))):
-        n, t_1, t_2 = frame(draw, 3)
+    shares = ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)), (-draw(1.1, 4.0), -draw(0.1, 0.9)),
+              (draw(0.1, 0.9), -draw(1.1, 4.0)), (0.99, -1.01), (0.0, 0.0), (draw(1.1, 4.0), 0.0),
+              (0.0, draw(0.1, 0.9)), (-draw(1.1, 4.0), draw(1.1, 4.0)))
+    for turned, (first, second) in ((False, shares[1]), (False, shares[6]), *((True, share) for share in shares)):
+        n, t_1, t_2 = frame(draw, 3, turned)
         m, limit, mu = draw(0.5, 5.0), draw(0.5, 4.0), draw(0.2, 1.5)
         v = limit / m * (first * t_1 + second * t_2)                     # first, second: stopping impulse over limit
         J = lesson.pyramid_impulse(v, m, limit / mu, mu, t_1, t_2)
@@ -225,8 +260,9 @@ def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
         expected = [-np.sign(y) * min(abs(y), 1.0) * limit for y in (first, second)]
         close("components of the impulse along t_1, t_2 and n [N s]", np.stack([t_1, t_2, n]) @ J, [*expected, 0.0],
               ROUND_OFF, given=given)
-    close("impulse where μ = ∞, but j_n = 0 [N s]", lesson.pyramid_impulse(v, m, 0.0, np.inf, t_1, t_2), np.zeros(3),
-          0.0, given=f"v_t = {v}")
+    for load, friction in ((0.0, np.inf), (0.0, mu), (limit, 0.0)):
+        close("impulse where μ or j_n is 0 [N s]", lesson.pyramid_impulse(v, m, load, friction, t_1, t_2), np.zeros(3),
+              0.0, given=f"v_t = {v}, j_n = {load}, μ = {friction}")
     raises("a negative μ", BadInput, lesson.pyramid_impulse, v, m, limit, -mu, t_1, t_2)
     close("magnitude over μ j_n where the body slides at 45°, to the pyramid's corner", np.linalg.norm(J) / limit,
           np.sqrt(2.0), ROUND_OFF, given=given)
@@ -358,6 +394,12 @@ def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(l
         v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, lifted)[1]
         close("velocity of a block that is lifted [m/s]: no friction", v, (speed + 2.0 * dt) * along, ROUND_OFF,
               given=f"v = {speed} m/s, {lifted}")
+    for gravity, mu_k in ((0.0 * up, 0.3), (-G * up, 0.0)):
+        for v in (0.0 * up, speed * along):
+            free = block(lesson, up, 0.8, mu_k, gravity)
+            got = lesson.sliding_step(pull, 0.0, up, v, dt, free)
+            close("x and v of a block that no friction brakes", np.array(got), np.array((up + dt * v, v)), ROUND_OFF,
+                  given=f"v = {v} m/s, {free}")
     edge = block(lesson, up, 0.5, 0.1, 5.0 * along - 10.0 * up)
     close("velocity where |a_t| is μ_s a_n [m/s]: the block holds",
           lesson.sliding_step(pull, 0.0, np.zeros(2), np.zeros(2), dt, edge)[1], np.zeros(2), 0.0, given=f"{edge}")
@@ -402,11 +444,15 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     lifted = 5.0 * along + 10.0 * up
     for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up),
+                                     ("without any load: none", 0.0 * up, 0.5, 0.0 * up),
+                                     ("without friction: along the pull", 5.0 * along - 10.0 * up, 0.0, along),
                                      ("where |a_t| is μ_s a_n: none", 5.0 * along - 10.0 * up, 0.5, 0.0 * up),
                                      ("of a lifted block: along the pull", lifted, 0.9, along),
                                      ("of a lifted block with μ = ∞: along the pull", lifted, np.inf, along)):
         got = lesson.slip_direction(pull, 0.0, np.zeros(2), np.zeros(2), block(lesson, up, mu, mu, load))
         close(f"direction from rest {name} [-]", got, expected, 0.0, given=f"a = {load}, n = {up}, μ = {mu}")
+        got = lesson.slip_direction(pull, 0.0, 0.0 * up, -2.0 * along, block(lesson, up, mu, mu, load))
+        close("direction of a block that moves along an axis [-]", got, -along, 0.0, given=f"a = {load}, μ = {mu}")
     for slow in (1e-4, 1e-10):
         got = lesson.slip_direction(pull, 0.0, still, -slow * down, gentle)
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
@@ -424,6 +470,13 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
         got = lesson.stopping_time(lesson.driven_acceleration, 0.0, np.zeros(2), speed * d, dt, d, p)
         close("time to the stop [s], or the whole step if it does not stop", got,
               dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
+    for n, along in ((p.n, d), frame(draw, 3, turned=False)[:2]):
+        for brake, expected in ((0.0, stop), (speed / stop, stop), (speed / (0.3 * stop), 0.3 * stop)):
+            for gravity in (0.0 * n, -G * n):
+                ice = block(lesson, n, 0.5, 0.0, gravity - brake * along)
+                got = lesson.stopping_time(lesson.driven_acceleration, 0.0, 0.0 * n, speed * along, stop, along, ice)
+                close("time to the stop without friction [s]: by the pull, or not at all", got, expected, ROUND_OFF,
+                      given=f"v = {speed} m/s, {ice}, dt = {stop} s")
 
 
 @exercise("3.9", points=0.25,
@@ -464,6 +517,15 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
         got = lesson.breakaway_time(tethered_acceleration, t, anchor(floor), rest, dt, floor)
         close("time to the slip [s], or the whole step if it holds", got,
               dt if expected is None else expected, tolerance, given=f"{floor}, t = {t} s, dt = {dt} s")
+    for still in (level._replace(drive=rest), p._replace(drive=rest, gravity=rest)):
+        got = lesson.breakaway_time(lesson.driven_acceleration, 0.0, rest, rest, late, still)
+        close("time that a block holds without a pull [s]: the whole step", got, late, 0.0, given=f"{still}")
+    # At t = 0 a slope's pull and the drive cancel: the block slips where s (1 − cos ωt) = μ_s g.
+    s = draw(0.8, 1.5) * level.drive
+    first = np.arccos(1.0 - level.mu_s * G / np.linalg.norm(s)) / omega
+    got = lesson.breakaway_time(lesson.driven_acceleration, 0.0, rest, rest, 1.2 * first,
+                                level._replace(gravity=level.gravity + s, drive=-s))
+    close("time from t = 0 to the slip [s]", got, first, 1e-13, given=f"pull {s}, {level}")
     # a_n = g − lift cos ωt: the block slips where A |cos| = μ_s (g + lift |cos|), with A = amplitude μ_s g.
     lift = draw(0.2, 0.8) * (amplitude - 1.0) * G
     both = p._replace(drive=p.drive + lift * p.n, mu_k=0.5 * p.mu_s)
@@ -506,6 +568,12 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     stop = speed / (level.mu_k * G)
     tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin[:2], speed * along, 2.0 * stop, level)
     close("time to the stop on a level floor [s]", tau, stop, ROUND_OFF, given=f"{level}, v = {speed} m/s")
+    for ice in (level._replace(mu_k=0.0), level._replace(gravity=np.zeros(2))):
+        for v0 in (np.zeros(2), speed * along):
+            tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin[:2], v0, dt, ice)
+            close("time of a step in which no friction brakes [s]", tau, dt, 0.0, given=f"{ice}, v = {v0} m/s")
+            close("x and v after that step", np.array((x, v)), np.array((begin[:2] + dt * v0, v0)), ROUND_OFF,
+                  given=f"{ice}, v = {v0} m/s")
 
 
 @exercise("3.11", points=0.5,
@@ -535,11 +603,13 @@ def bowl(lesson, draw, axis, d=3, m=1.0, mu=0.0, e=0.0):
 
 @exercise("3.12", points=0.5, hint="radius − |r|: positive inside; n points inward, −r/|r|, and is the gradient of φ")
 def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw):
-    for d, axis in ((2, np.zeros(2)), (3, np.zeros(3)), (3, frame(draw, 3)[0])):
+    for (d, turned), trough in (*((way, 0.0) for way in WAYS), ((3, True), 1.0), ((3, False), 1.0)):
+        axes = frame(draw, d, turned)
+        axis = trough * axes[0]
         p = bowl(lesson, draw, axis, d)
-        for share in (draw(0.2, 0.9), draw(1.1, 2.0)):
-            out = along_surface(draw, frame(draw, 3), 1.0)[:d] if not axis.any() else np.cross(axis, [0.0, 0.0, 1.0])
-            out = out / np.linalg.norm(out)
+        p = p._replace(centre=p.centre * turned)
+        for share in (draw(0.2, 0.9), draw(1.1, 2.0), 1.0):
+            out = along_surface(draw, axes, 1.0) if turned else axes[draw.whole(1, d - 1)]
             x = p.centre + share * p.radius * out + 1.7 * axis
             phi, n = lesson.particle_bowl_gap(x, p)
             given = f"{p}, x = {x} m"
@@ -550,20 +620,26 @@ def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw
 
 @exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
 def test_the_normal_is_zero_at_the_centre_of_a_bowl(lesson, draw):
-    p = bowl(lesson, draw, np.zeros(3))
-    phi, n = lesson.particle_bowl_gap(p.centre, p)
-    out = frame(draw, 3)[0]
+    for d, turned in WAYS:
+        axes = frame(draw, d, turned)
+        for axis in (0.0 * axes[0], axes[0] * (d - 2)):
+            p = bowl(lesson, draw, axis, d)
+            x = p.centre if turned else p.centre + 1.7 * axis
+            phi, n = lesson.particle_bowl_gap(x, p)
+            close("gap at the centre, or on the axis [m]", phi, p.radius, ROUND_OFF, given=f"{p}")
+            close("normal at the centre, or on the axis [-]", n, np.zeros(d), 0.0, given=f"{p}")
+    out = axes[-1]
     close("normal 1 nm from the centre [-]: the position has an error of 1e-16 m",
           lesson.particle_bowl_gap(p.centre + 1e-9 * out, p)[1], -out, 1e-5, given=f"{p}")
-    close("gap at the centre [m]", phi, p.radius, ROUND_OFF, given=f"{p}")
-    close("normal at the centre [-]", n, np.zeros(3), 0.0, given=f"{p}")
 
 
 @exercise("3.13", points=1, hint="n · v⁺ = −e n · v: j_n = −(1 + e) m v · n; both impulses contain the mass")
 def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_times_what_that_took(lesson, draw):
-    for speed in (*draw.within(), *draw.beyond(3.0)):                    # over the one that friction stops
-        axes = frame(draw, 3)
-        m, e, v_n, mu = draw(0.5, 5.0), draw(0.0, 1.0), draw(0.5, 5.0), draw(0.1, 0.5)
+    shares = (*draw.within(), *draw.beyond(3.0))                         # of the one that friction stops
+    bounces = (0.0, 1.0, draw(0.0, 1.0)) * 2
+    for (d, turned), (e, speed) in itertools.product(WAYS, zip(bounces, shares, strict=True)):
+        axes = frame(draw, d, turned)
+        m, v_n, mu = draw(0.5, 5.0), draw(0.5, 5.0), draw(0.1, 0.5)
         slip = along_surface(draw, axes, speed * mu * (1.0 + e) * v_n)
         v = slip - v_n * axes[0]
         J = lesson.particle_contact_impulse(v, axes[0], m, e, mu)
@@ -576,16 +652,21 @@ def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_t
 
 @exercise("3.13", points=1, hint="v · n ≥ 0 means that the particle is leaving: the impulse is then zero")
 def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, draw):
-    for d in (2, 3):
-        axes = frame(draw, d)
+    for d, turned in WAYS:
+        axes = frame(draw, d, turned)
         m, mu, e = draw(0.5, 5.0), draw(0.1, 1.0), draw(0.0, 1.0)
+        for v in (np.zeros(d), draw(0.5, 3.0) * np.eye(d)[0]):
+            close("impulse on a particle at rest, or along the surface [N s]",
+                  lesson.particle_contact_impulse(v, np.eye(d)[-1], m, e, mu), np.zeros(d), 0.0, given=f"v = {v} m/s")
         leaving = along_surface(draw, axes, draw(0.5, 3.0)) + draw(0.1, 2.0) * axes[0]
         close("impulse on a leaving particle [N s]", lesson.particle_contact_impulse(leaving, axes[0], m, e, mu),
               np.zeros(d), 0.0, given=f"v = {leaving} m/s, n = {axes[0]}")
         v = along_surface(draw, axes, draw(0.5, 3.0)) - draw(0.5, 3.0) * axes[0]
-        after = v + np.asarray(lesson.particle_contact_impulse(v, axes[0], m, 1.0, 0.0)) / m
-        close("velocity after an elastic impact without friction [m/s]", after,
-              v - 2.0 * (v @ axes[0]) * axes[0], ROUND_OFF, given=f"v = {v} m/s, n = {axes[0]}")
+        for bounce in (1.0, e, 0.0):
+            after = v + np.asarray(lesson.particle_contact_impulse(v, axes[0], m, bounce, 0.0)) / m
+            close("velocity after an impact without friction [m/s]", after,
+                  v - (1.0 + bounce) * (v @ axes[0]) * axes[0], ROUND_OFF,
+                  given=f"v = {v} m/s, n = {axes[0]}, e = {bounce}")
         for speed in (draw(0.5, 3.0), 1e-6):
             head_on = -speed * axes[0]
             after = head_on + np.asarray(lesson.particle_contact_impulse(head_on, axes[0], m, e, mu)) / m
@@ -593,9 +674,9 @@ def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, dra
                   given=f"v = {head_on} m/s, e = {e}")
 
 
-def above(lesson, draw, mu, e, theta=0.0, d=3):
+def above(lesson, draw, mu, e, theta=0.0, d=3, turned=True):
     """(ParticleOnPlane, unit vector down): a particle of drawn mass above a plane inclined by θ against gravity."""
-    axes = frame(draw, d)
+    axes = frame(draw, d, turned)
     down = along_surface(draw, axes, 1.0)
     gravity = G * (np.sin(theta) * down - np.cos(theta) * axes[0])
     return lesson.ParticleOnPlane(draw(0.5, 5.0), mu, e, gravity, draw(-2.0, 2.0, d), axes[0]), down
@@ -614,15 +695,22 @@ def fly(lesson, step, p, x, v, dt, steps):
 @exercise("3.14", points=0.5,
           hint="update the velocity, then the position with the new velocity; evaluate the gap at the new position")
 def test_a_particle_falls_hits_and_bounces_with_its_own_restitution(lesson, draw):
-    check_fall(lesson, lesson.contact_step, draw, 0.0)
+    falls(lesson, lesson.contact_step, draw, 0.0)
 
 
-def check_fall(lesson, step, draw, grips):
+def falls(lesson, step, draw, grips):
+    """With friction or without, and with restitutions from 0 to 1."""
+    check_fall(lesson, step, draw, grips, *above(lesson, draw, draw(0.05, 0.3), draw(0.2, 0.9)))
+    for (d, turned), rough, e in zip(WAYS, (0.0, 1.0, 1.0, 0.0), (0.0, 1.0, 0.0, 1.0), strict=True):
+        mu = rough * draw(0.05, 0.3)
+        check_fall(lesson, step, draw, grips, *above(lesson, draw, mu, e, d=d, turned=turned))
+
+
+def check_fall(lesson, step, draw, grips, p, down):
     """Free flight is symplectic Euler. At the wall v_n becomes −e v_n, and the particle is put back onto the plane.
 
     grips: 1 if friction also removes μ times the depth from the tangential displacement, 0 if not.
     """
-    p, down = above(lesson, draw, draw(0.05, 0.3), draw(0.2, 0.9))
     dt = 0.01
     v = draw(3.0, 5.0) * down - draw(0.5, 1.0) * p.n
     height = draw(1.0, 2.0)
@@ -677,6 +765,12 @@ def check_just_touching(lesson, step, draw):
     e = draw(0.2, 0.9)
     begin = np.array([float(draw.whole(-3, 3)), 1.0])
     p = lesson.ParticleOnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
+    for y in (-0.5, 0.5):
+        still = np.array([1.0, y])
+        x, v_new = fly(lesson, step, p, still, 0.0 * still, 0.5, 1)
+        close("position of a particle at rest, without gravity [m]: not inside", x, [1.0, max(0.0, y)], 0.0,
+              given=f"x = {still} m")
+        close("velocity of a particle at rest, without gravity [m/s]", v_new, np.zeros(2), 0.0, given=f"x = {still} m")
     v = np.array([1.0, -2.0])
     x, v_new = fly(lesson, step, p, begin, v, 0.5, 1)
     close("position of a particle that just touches [m]", x, begin + 0.5 * v, 0.0,
@@ -709,6 +803,13 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
         expected = -s if share <= 1.0 else -s / share
         close("tangential correction [m]", got, expected, ROUND_OFF,
               given=f"s = {s} m, n = {axes[0]}, depth {depth} m, μ = {mu}")
+    for moved, depth, friction in ((np.zeros(3), 0.1, mu), (axes[1], 0.0, mu), (axes[1], 0.1, 0.0)):
+        close("tangential correction without displacement, depth or friction [m]: none",
+              lesson.friction_position_correction(moved, axes[0], depth, friction), np.zeros(3), 0.0,
+              given=f"moved by {moved} m, depth {depth} m, μ = {friction}")
+    for n, along in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0), strict=True):
+        close("tangential correction of a displacement along an axis [m]",
+              lesson.friction_position_correction(along, n, 0.1, 0.5), -0.05 * along, ROUND_OFF, given=f"n = {n}")
     straight = lesson.friction_position_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
     close("tangential correction of a displacement along −n [m]: none", straight, np.zeros(2), 0.0)
 
@@ -734,7 +835,7 @@ def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
 @exercise("3.16", points=0.5,
           hint="free flight, impact and leaving are as in contact_step; do not correct the slip of a leaving particle")
 def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
-    check_fall(lesson, lesson.position_friction_step, draw, 1.0)
+    falls(lesson, lesson.position_friction_step, draw, 1.0)
     check_way_out(lesson, lesson.position_friction_step, draw)
     check_just_touching(lesson, lesson.position_friction_step, draw)
     level = lesson.ParticleOnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
@@ -752,7 +853,7 @@ def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
 @exercise("3.17", points=1,
           hint="½mv² is used up by μ m g times the way: first by that on the strip, the rest behind it")
 def test_a_block_slides_as_far_as_the_times_on_both_materials_allow(lesson, draw):
-    for share in (*draw.within(), *draw.beyond(3.0)):                    # of the speed that just crosses the strip
+    for share in (0.0, *draw.within(), *draw.beyond(3.0)):               # of the speed that just crosses the strip
         width, near, far = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6)
         v = share * np.sqrt(2.0 * near * G * width)
         if share <= 1.0:

@@ -1,5 +1,7 @@
 """Lesson 2: forces are derivatives of an energy, internal forces sum to zero, and networks fall, hang and settle."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -26,13 +28,16 @@ def test_gravity_is_the_gradient_of_its_potential_and_gives_our_weight_on_earth(
     force = lesson.universal_gravity(foot, earth, m, 5.972e24, 6.67430e-11)
     close("weight at the Earth's surface [N]", force, [0.0, 0.0, -m * 9.8], 0.003 * m * 9.8, given=f"{m:.4g} kg")
 
-    a, m_a, m_b, G = draw(-1.0, 1.0, 3), draw(2.0, 6.0), draw(2.0, 6.0), draw(1.0, 3.0)
-    b = a + draw(0.6, 1.2, 3)
-    expected = -slope(lambda a: -G * m_a * m_b / np.sqrt(np.sum((b - a) ** 2)), a)
-    # r > 1 m: round-off of forces below 110 N
-    close("force on a: minus the gradient of −G m_a m_b/r [N]", lesson.universal_gravity(a, b, m_a, m_b, G),
-          expected, 1e-12)
-    close("force on b [N]: opposite", lesson.universal_gravity(b, a, m_b, m_a, G), -expected, 1e-12)
+    m_a, m_b, G = draw(2.0, 6.0), draw(2.0, 6.0), draw(1.0, 3.0)
+    far = draw(1.0, 1.2)
+    for a, way in ((np.zeros(1), np.array([far])), (np.zeros(2), np.array([0.0, far])),
+                   (draw.sparse(-1.0, 1.0, 3), far * np.eye(3)[0]), (draw(-1.0, 1.0, 3), draw(0.6, 1.2, 3))):
+        b = a + way
+        expected = -slope(lambda a, b=b: -G * m_a * m_b / np.sqrt(np.sum((b - a) ** 2)), a)
+        # r > 1 m: round-off of forces below 110 N
+        close("force on a: minus the gradient of −G m_a m_b/r [N]", lesson.universal_gravity(a, b, m_a, m_b, G),
+              expected, 1e-12)
+        close("force on b [N]: opposite", lesson.universal_gravity(b, a, m_b, m_a, G), -expected, 1e-12)
     raises("two bodies at the same position", BadInput, lesson.universal_gravity, a, a, m_a, m_b, G)
 
 
@@ -47,6 +52,11 @@ def test_air_pushes_resting_points_and_exerts_no_force_on_points_at_wind_speed(l
     close("force without wind [N]: against the motion", lesson.air_force(v, 0.0 * wind, k_v), -k_v * v, 1e-14, given)
     close("force on one coordinate [N]", lesson.air_force(speed, push, k_v), push - k_v * speed, 1e-14)
     close("force without viscosity [N]", lesson.air_force(speed, push, 0.0), push, 1e-14)
+    for v in (np.zeros((2, 2)), draw.sparse(-3.0, 3.0, (1, 2)), draw.sparse(-3.0, 3.0, (7, 2))):
+        for viscosity in (0.0, k_v):
+            drag = [[-viscosity * part for part in row] for row in v]
+            close("force on each of the points, without the wind [N]", lesson.air_force(v, wind, viscosity) - wind,
+                  drag, 1e-14, given)
 
 
 @exercise("2.3", points=1, hint="length minus rest, not the other way round: a stretched spring has a positive tension")
@@ -62,6 +72,10 @@ def test_a_spring_carries_a_weight_and_a_damper_a_sinking_one(lesson, draw):
           weight, 1e-13, given)
     close("tension if shorter by mg/k and shortening at 3 mg/k_d [N]",
           lesson.spring_tension(rest - weight / k, -3.0 * weight / k_d, rest, k, k_d), -4.0 * weight, 1e-13, given)
+    for stiffness, damping, size in ((0.0, k_d, 0.0), (k, 0.0, 0.0), (0.0, k_d, rest), (k, 0.0, rest)):
+        close("tension of a spring alone, or a damper alone, if longer by mg/k and lengthening at mg/k_d [N]",
+              lesson.spring_tension(size + weight / k, weight / k_d, size, stiffness, damping), weight, 1e-13,
+              given=f"rest = {size:.4g} m, k = {stiffness:.4g} N/m, k_d = {damping:.4g} N s/m, mg = {weight:.4g} N")
 
 
 @exercise("2.4", points=1, hint="the number −(k C + k_d Ċ) times the vector ∇C, which need not have length 1")
@@ -88,33 +102,42 @@ def test_a_soft_constraint_is_the_gradient_of_its_energy_and_damps_only_along_th
     close("damping force × ∇C [N]: parallel", np.cross(braked, gradient), np.zeros(3), 1e-12, given)
     slides = lesson.soft_constraint_force(0.0, gradient @ along, gradient, k, k_d)
     close("force on a point that slides along the plane [N]", slides, np.zeros(3), 1e-12, given)
+    for n in (draw(1.0, 2.0, 1), np.append(draw.sparse(1.0, 2.0, 1), draw(1.0, 2.0)), np.array([0.0, distance, 0.0])):
+        x, v = draw(-0.5, 0.5, (2, n.size))
+        for k_1, k_2 in ((k, k_d), (0.0, k_d), (k, 0.0)):
+            close("force: minus the gradients of ½kC² and ½k_dĊ² [N]",
+                  lesson.soft_constraint_force(n @ x, n @ v, n, k_1, k_2),
+                  -slope(lambda x, k=k_1, n=n: 0.5 * k * (n @ x) ** 2, x)
+                  - slope(lambda v, k=k_2, n=n: 0.5 * k * (n @ v) ** 2, v), 1e-11,
+                  given=f"∇C = {n}, k = {k_1:.4g} N/m, k_d = {k_2:.4g} N s/m")
 
 
 @exercise("2.5", points=1,
           hint="first test C < 0; then limit the whole bracket −(k C + k_d Ċ) to zero or more")
 def test_a_soft_contact_carries_a_weight_and_never_pulls(lesson, draw):
-    up = draw(1.0, 2.0, 2) * [-1.0, 1.0]
     k, k_d = draw(40.0, 60.0), draw(3.0, 6.0)
-    deep = draw(0.05, 0.15)
-    none = np.zeros(2)
-    fast = draw(1.0, 3.0)
+    deep, fast = draw(0.05, 0.15), draw(1.0, 3.0)
     slow = k * deep / k_d                                                # the damper cancels the spring
     given = f"C = ∓{deep:.4g} m, k = {k:.4g} N/m, k_d = {k_d:.4g} N s/m"
-
-    def force(C, C_rate):
-        return lesson.soft_contact_force(C, C_rate, up, k, k_d)
-
-    # round-off of forces below 60 N
-    close("force on a point inside [N]", force(-deep, 0.0), k * deep * up, 1e-13, given)
-    close("force on a point a micrometre inside [N]", force(-1e-6, 0.0), 1e-6 * k * up, 1e-13, given)
-    close("force on a point that sinks [N]: larger", force(-deep, -fast), (k * deep + k_d * fast) * up, 1e-13, given)
-    for share in draw.within():
-        close("force on a point that leaves slower than −kC/k_d [N]: smaller", force(-deep, share * slow),
-              (1.0 - share) * k * deep * up, 1e-13, given)
-    for share in draw.beyond(1.8):
-        close("force on a point that leaves faster [N]: not negative", force(-deep, share * slow), none, 0.0, given)
-    close("force exactly at the surface [N]", force(0.0, -fast), none, 0.0, given)
-    close("force above the surface, sinking [N]", force(deep, -fast), none, 0.0, given)
+    for up in (draw(1.0, 2.0, 2) * [-1.0, 1.0], draw(1.0, 2.0, 1), np.array([0.0, 0.0, draw(1.0, 2.0)])):
+        none = 0.0 * up
+        force = lambda C, C_rate, up=up: lesson.soft_contact_force(C, C_rate, up, k, k_d)
+        # round-off of forces below 60 N
+        close("force on a point inside [N]", force(-deep, 0.0), k * deep * up, 1e-13, given)
+        close("force on a point a micrometre inside [N]", force(-1e-6, 0.0), 1e-6 * k * up, 1e-13, given)
+        close("force on a point that sinks [N]: larger", force(-deep, -fast), (k * deep + k_d * fast) * up, 1e-13,
+              given)
+        for share in draw.within():
+            close("force on a point that leaves slower than −kC/k_d [N]: smaller", force(-deep, share * slow),
+                  (1.0 - share) * k * deep * up, 1e-13, given)
+        for share in draw.beyond(1.8):
+            close("force on a point that leaves faster [N]: not negative", force(-deep, share * slow), none, 0.0, given)
+        close("force exactly at the surface [N]", force(0.0, -fast), none, 0.0, given)
+        close("force above the surface, sinking [N]", force(deep, -fast), none, 0.0, given)
+        close("force of a spring alone, on a point that sinks: k_d = 0 [N]",
+              lesson.soft_contact_force(-deep, -fast, up, k, 0.0), k * deep * up, 1e-13, given)
+        close("force of a damper alone, on a point that sinks: k = 0 [N]",
+              lesson.soft_contact_force(-deep, -fast, up, 0.0, k_d), k_d * fast * up, 1e-13, given)
 
 
 def hinge(draw, theta):
@@ -148,6 +171,13 @@ def test_an_angular_spring_is_the_gradient_of_its_energy_without_net_force_or_to
         close("their torque [N m]", np.sum(points[:, 0] * force[:, 1] - points[:, 1] * force[:, 0]), 0.0, 1e-13, given)
     close("forces at rest [N]", np.array(lesson.angular_spring_forces(*hinge(draw, theta), theta, k)),
           np.zeros((3, 2)), 1e-13)
+    p, q = draw(1.0, 1.5, 2)
+    for b, c in (((0.0, -p), (0.0, q - p)), ((p, 0.0), (p, q)), ((p, 0.0), (p - q, 0.0))):
+        for rest in (0.0, 1.0, -1.0):
+            points = np.array([(0.0, 0.0), b, c])
+            close("forces on a, b, c with arms along the axes, and a at the origin [N]",
+                  np.array(lesson.angular_spring_forces(*points, rest, k)),
+                  -slope(lambda y, rest=rest: angular_energy(y, rest, k), points), 1e-12, given=f"rest = {rest}")
 
 
 @exercise("2.6", points=0.5, hint="θ − rest may be off by a full turn: arctan2(sin, cos) of it reduces it to (−π, π]")
@@ -214,6 +244,28 @@ def tetrahedron(lesson, draw, d, low=0.7, high=1.3):
     return x, v, network._replace(rest=draw(low, high, 6) * lengths(x, network))
 
 
+def staircases(lesson, draw, d):
+    """x, v and networks of 1, 2, 3 and 7 points: a stair from the origin, each spring along an axis and stretched.
+
+    Of the velocities and of the constants about half are 0; or all velocities are, or one of the constants.
+    """
+    found = []
+    for n in (1, 2, 7, 3):
+        steps = np.arange(n - 1)
+        x = np.zeros((n, d))
+        x[steps + 1, steps % d] = draw(1.6, 2.0, n - 1)
+        x, v = np.cumsum(x, axis=0), draw.sparse(-1.0, 1.0, (n, d))
+        rest, k, k_d = (draw.sparse(low, high, n - 1) for low, high in ((0.5, 1.5), (10.0, 60.0), (0.5, 4.0)))
+        network = mesh_of(lesson, draw.sparse(0.5, 3.0, n), np.column_stack([steps, steps + 1, rest, k, k_d]),
+                          draw.sparse(-10.0, 10.0, d), draw.sparse(-2.0, 2.0, d), draw(0.2, 0.5))
+        all_move = network._replace(inv_mass=draw(0.5, 3.0, n), k=draw(10.0, 60.0, n - 1),
+                                    gravity=draw(-10.0, 10.0, d), wind=draw(-2.0, 2.0, d))
+        found += [(x, v, network), (x, 0.0 * v, all_move)]
+    v, pull = draw(-1.0, 1.0, v.shape), all_move._replace(k_d=draw(0.5, 4.0, 2), rest=draw(0.5, 1.5, 2))
+    return found + [(x, v, pull._replace(**{name: 0.0 * getattr(pull, name)}))
+                    for name in ("inv_mass", "gravity", "wind", "k_v", "rest", "k", "k_d")]
+
+
 def lengths(x, network):
     return np.sqrt(np.sum((x[network.j] - x[network.i]) ** 2, axis=1))
 
@@ -222,25 +274,25 @@ def lengths(x, network):
           hint="add T r/l at point i and −T r/l at j to the forces of the other springs; each spring has its own k")
 def test_spring_forces_are_the_gradient_of_the_elastic_energy(lesson, draw):
     for d in (1, 2, 3):
-        x, v, network = tetrahedron(lesson, draw, d)
-        energy = lambda x, network=network: 0.5 * np.sum(network.k * (lengths(x, network) - network.rest) ** 2)
-        force = lesson.spring_forces(x, 0.0 * v, network)
-        # round-off of k l < 160 N, three times
-        close(f"forces of springs at rest in {d}D: minus the gradient of Σ ½k(l − rest)² [N]", force,
-              -slope(energy, x), 1e-12)
+        for x, v, network in (tetrahedron(lesson, draw, d), *staircases(lesson, draw, d)):
+            energy = lambda x, network=network: 0.5 * np.sum(network.k * (lengths(x, network) - network.rest) ** 2)
+            force = lesson.spring_forces(x, 0.0 * v, network)
+            # round-off of k l < 160 N, three times
+            close(f"forces of springs at rest in {d}D: minus the gradient of Σ ½k(l − rest)² [N]", force,
+                  -slope(energy, x), 1e-12)
 
 
 @exercise("2.7", points=0.5, hint="l̇ = r · (v_j − v_i)/l; k_d belongs to the same spring as the ends")
 def test_dampers_are_the_gradient_of_the_dissipation_and_let_a_mesh_rotate_freely(lesson, draw):
     for d in (1, 2, 3):
-        x, v, network = tetrahedron(lesson, draw, d)
-        at_rest = lesson.spring_forces(x, 0.0 * v, network)
-        # ∂l/∂x = ∂l̇/∂v: [point, coordinate, spring]
-        grow = slope(lambda x, network=network: lengths(x, network), x)
-        brake = lesson.spring_forces(x, v, network) - at_rest
-        # round-off of forces below 200 N
-        expected = -grow @ (network.k_d * np.tensordot(v, grow))
-        close(f"forces of dampers in {d}D: minus ∂/∂v of Σ ½k_d l̇² [N]", brake, expected, 1e-12)
+        for x, v, network in (*staircases(lesson, draw, d), tetrahedron(lesson, draw, d)):
+            at_rest = lesson.spring_forces(x, 0.0 * v, network)
+            # ∂l/∂x = ∂l̇/∂v: [point, coordinate, spring]
+            grow = slope(lambda x, network=network: lengths(x, network), x)
+            brake = lesson.spring_forces(x, v, network) - at_rest
+            # round-off of forces below 200 N
+            expected = -grow @ (network.k_d * np.tensordot(v, grow))
+            close(f"forces of dampers in {d}D: minus ∂/∂v of Σ ½k_d l̇² [N]", brake, expected, 1e-12)
         turn = np.triu(draw(-2.0, 2.0, (d, d)), 1)
         rigid = lesson.spring_forces(x, x @ (turn - turn.T) + draw(-2.0, 2.0, d), network)
         close(f"forces on a network that moves and rotates as a rigid body in {d}D [N]", rigid, at_rest, 1e-12)
@@ -277,6 +329,7 @@ def test_a_spring_without_length_is_refused(lesson, draw):
           hint="gravity is already an acceleration; divide the air force by the mass; a = 0 where inv_mass = 0")
 def test_points_without_springs_fall_alike_drift_with_the_wind_and_stay_where_fixed(lesson, draw):
     g, x, v = draw(-10.0, 10.0, 2), draw(-1.0, 1.0, (4, 2)), draw(-3.0, 3.0, (4, 2))
+    v[0] = 0.0
     free = [0, 1, 3]
     mass = draw(0.5, 4.0, (3, 1)) * [[0.1], [1.0], [20.0]]
     inv_mass, none = np.zeros(4), np.zeros((4, 2))
@@ -316,6 +369,11 @@ def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson, draw):
     x = np.stack([0.0 * pull, (rest / np.sqrt(pull @ pull) + 1.0 / k) * pull])
     a = lesson.spring_network_acceleration(0.0, x, np.zeros((2, 2)), hanging)
     close("accelerations of a weight at its equilibrium [m/s²]", a, np.zeros((2, 2)), 1e-12)
+    for d in (1, 2, 3):
+        for x, v, network in staircases(lesson, draw, d):
+            # round-off of k l/m < 360 m/s², twice
+            close(f"accelerations of {len(x)} points in {d}D [m/s²]",
+                  lesson.spring_network_acceleration(0.0, x, v, network), swaying(0.0, x, v, network), 1e-12)
 
 
 @exercise("2.9", points=1,
@@ -326,6 +384,12 @@ def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_ha
     weight = (m, k, k_d, k_v, draw(0.7, 0.9), draw(9.5, 10.0))
     dt = moves_on_a_spring(lesson, draw, *weight)
     comes_to_rest(lesson, draw, dt, *weight)
+    for x, v, network in (*staircases(lesson, draw, 1), *staircases(lesson, draw, 2)):
+        x_new, v_new = lesson.mass_spring_damper_step(0.0, x, v, dt, network)
+        after = v + dt * swaying(0.0, x, v, network)
+        # round-off of numbers below 20
+        close(f"v of {len(x)} points after a step [m/s]", v_new, after, 1e-13)
+        close(f"x of {len(x)} points after a step [m]", x_new, x + 0.5 * dt * (v + after), 1e-13)
 
 
 def falls_freely(lesson, draw):
@@ -405,16 +469,18 @@ def test_a_small_grid_has_its_threads_in_order_and_a_single_node_none(lesson, dr
 
 @exercise("2.10", points=0.5, hint="there is no node beyond the edge: do not wrap around to the other side")
 def test_a_large_grid_has_every_thread_diagonal_and_bend_once(lesson, draw):
-    rows, cols = draw.whole(5, 7), draw.whole(8, 11)
-    pairs = np.asarray(lesson.grid_pairs(rows, cols, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND))
-    threads, diagonals = [rows * (cols - 1), (rows - 1) * cols], 2 * [(rows - 1) * (cols - 1)]
-    counts = threads + diagonals + [rows * (cols - 2), (rows - 2) * cols]
-    close("shape: one row for each pair", pairs.shape, [sum(counts), 2], 0.0)
-    offsets = np.repeat([(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)], counts, axis=0)
-    nodes = np.stack([pairs // cols, pairs % cols], axis=2)              # [pair, end] → row, column
-    close("rows and columns from node to partner", nodes[:, 1] - nodes[:, 0], offsets, 0.0)
-    close("number of repeated pairs", len(pairs) - len({(i, j) for i, j in pairs.tolist()}), 0.0, 0.0)
-    close("number of nodes outside the grid", np.sum((pairs < 0) | (pairs >= rows * cols)), 0.0, 0.0)
+    m, n = draw.whole(5, 7), draw.whole(8, 11)
+    for rows, cols in ((m, n), (1, n), (m, 1), (2, n), (m, 2), (1, 2), (2, 1), (1, 1)):
+        given = f"{rows} rows and {cols} columns"
+        pairs = np.asarray(lesson.grid_pairs(rows, cols, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND))
+        threads, diagonals = [rows * (cols - 1), (rows - 1) * cols], 2 * [(rows - 1) * (cols - 1)]
+        counts = threads + diagonals + [rows * max(0, cols - 2), max(0, rows - 2) * cols]
+        close("shape: one row for each pair", pairs.shape, [sum(counts), 2], 0.0, given)
+        offsets = np.repeat([(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)], counts, axis=0)
+        nodes = np.stack([pairs // cols, pairs % cols], axis=2)          # [pair, end] → row, column
+        close("rows and columns from node to partner", nodes[:, 1] - nodes[:, 0], offsets, 0.0, given)
+        close("number of repeated pairs", len(pairs) - len({(i, j) for i, j in pairs.tolist()}), 0.0, 0.0, given)
+        close("number of nodes outside the grid", np.sum((pairs < 0) | (pairs >= rows * cols)), 0.0, 0.0, given)
 
 
 # ---------------------------------------------------------------------------------------------- stiff networks
@@ -422,8 +488,10 @@ def test_a_large_grid_has_every_thread_diagonal_and_bend_once(lesson, draw):
 @exercise("2.11", points=1,
           hint="n nᵀ is the outer product of r/l with itself; 1 − n nᵀ is the part perpendicular to the spring")
 def test_stiffness_of_stretched_springs_is_the_slope_of_their_forces(lesson, draw):
-    for d, low, high in ((1, 0.5, 0.7), (2, 0.5, 0.7), (3, 0.5, 0.7), (3, 0.9, 0.99), (3, 0.01, 0.05)):
-        x, _, network = tetrahedron(lesson, draw, d, low, high)
+    ordinary = [tetrahedron(lesson, draw, d, low, high) for d, low, high in (
+        (1, 0.5, 0.7), (2, 0.5, 0.7), (3, 0.5, 0.7), (3, 0.9, 0.99), (3, 0.01, 0.05))]
+    for x, _, network in (*ordinary, *(one for d in (1, 2, 3) for one in staircases(lesson, draw, d))):
+        d = x.shape[1]
         K, D = lesson.spring_stiffness(x, network)
         for s, (i, j) in enumerate(zip(network.i, network.j, strict=True)):
             r = x[j] - x[i]
@@ -436,8 +504,12 @@ def test_stiffness_of_stretched_springs_is_the_slope_of_their_forces(lesson, dra
 
 @exercise("2.11", points=1, hint="max(0.0, 1 − rest/l) is zero for a compressed spring: only k n nᵀ remains")
 def test_stiffness_of_a_compressed_spring_acts_along_it_only(lesson, draw):
-    for d, low, high in ((2, 1.3, 1.6), (3, 1.3, 1.6), (3, 1.01, 1.1)):
-        x, _, network = tetrahedron(lesson, draw, d, low, high)
+    ordinary = [tetrahedron(lesson, draw, d, low, high) for d, low, high in (
+        (2, 1.3, 1.6), (3, 1.3, 1.6), (3, 1.01, 1.1), (3, 1.0, 1.0))]
+    stairs = [(x, v, network._replace(rest=draw(1.0, 1.5) * lengths(x, network), k=draw(10.0, 60.0, network.i.size)))
+              for x, v, network in staircases(lesson, draw, 2)]
+    for x, _, network in (*ordinary, *stairs):
+        d = x.shape[1]
         K, _ = lesson.spring_stiffness(x, network)
         for s, (i, j) in enumerate(zip(network.i, network.j, strict=True)):
             r = x[j] - x[i]
@@ -455,8 +527,7 @@ def times(y, A):
           hint="sum over all entries; start with a copy of right; raise Diverged if the loop ends without convergence")
 def test_conjugate_gradients_solve_positive_systems_and_raise_diverged_for_others(lesson, draw):
     n = draw.whole(16, 24)
-    # a chain of springs with both ends held
-    chain = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    chain = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)           # of springs, with both ends held
     load = np.ones((n, 1)) * draw(0.5, 1.5, 2)
     place = np.arange(1.0, n + 1.0)[:, None]
     sag = 0.5 * load * place * (n + 1.0 - place)                         # a parabola
@@ -489,11 +560,25 @@ def test_conjugate_gradients_solve_positive_systems_and_raise_diverged_for_other
 
     y = lesson.conjugate_gradients(times, chain, np.zeros((n, 2)))
     close("solution for a right-hand side of zeros", y, np.zeros((n, 2)), 0.0)
+    solves_small_and_sparse_systems(lesson, draw)
     # not symmetric: the residuals grow
     turning = np.eye(2) + draw(8.0, 12.0) * np.array([[0.0, 1.0], [-1.0, 0.0]])
     raises("a matrix that is not symmetric", Diverged,
            lesson.conjugate_gradients, times, turning, draw(0.5, 1.5, (2, 1)),
            thing="conjugate gradients did not converge: |r|²")
+
+
+def solves_small_and_sparse_systems(lesson, draw):
+    for n, columns in ((1, 1), (1, 2), (2, 1), (3, 2), (8, 1)):
+        factor = draw.sparse(-1.0, 1.0, (n, n))
+        A = np.eye(n) + factor @ factor.T
+        one = np.zeros((n, columns))
+        one[-1, -1] = draw(0.5, 1.5)
+        for right in (one, draw.sparse(0.5, 1.5, (n, columns))):
+            y = lesson.conjugate_gradients(times, A, right.copy())
+            # the residual is below 1e-10 · |right| < 5e-10
+            close("product of a matrix with the solution", A @ y, right, 5e-10,
+                  given=f"right of shape ({n}, {columns})")
 
 
 @pytest.mark.counts_calls
@@ -548,16 +633,26 @@ def test_the_implicit_step_is_linearly_implicit_euler(lesson, draw):
         close("input x and v after the call: return new arrays", np.array(before), kept, 0.0)
 
     x, v, network = tetrahedron(lesson, draw, 2, 0.5, 0.7)
-    network = network._replace(k_d=0.0 * network.k_d, k_v=k_v, gravity=np.array([wind, g]))
+    agrees_with_a_dense_solver(lesson, t, x, v, dt, network._replace(k_v=k_v, gravity=np.array([wind, g])))
+    for x, v, network in staircases(lesson, draw, 2):
+        agrees_with_a_dense_solver(lesson, t, x, v, dt, network)
+
+
+def agrees_with_a_dense_solver(lesson, t, x, v, dt, network):
+    """A step of a stretched network; its dampers are left out where it moves: their ∂F/∂x has no block."""
+    if v.any():
+        network = network._replace(k_d=0.0 * network.k_d)
     x_new, v_new = lesson.implicit_spring_network_step(swaying, t, x, v, dt, network)
-    by_x = slope(lambda x: swaying(t, x, v + 0.0j, network), x).reshape(8, 8).T
-    by_v = slope(lambda v: swaying(t, x + 0.0j, v, network), v).reshape(8, 8).T
+    by_x = slope(lambda x: swaying(t, x, v + 0.0j, network), x).reshape(x.size, x.size).T
+    by_v = slope(lambda v: swaying(t, x + 0.0j, v, network), v).reshape(x.size, x.size).T
     right = dt * (swaying(t, x, v, network).ravel() + dt * by_x @ v.ravel())
-    jump = np.linalg.solve(np.eye(8) - dt * by_v - dt * dt * by_x, right).reshape(4, 2)
+    jump = np.linalg.solve(np.eye(x.size) - dt * by_v - dt * dt * by_x, right).reshape(x.shape)
     # Conjugate gradients leave 1e-10 of dt F, with a total F < 500 N, over the lightest mass, 1/3 kg.
-    close("v of a stretched network, compared with a dense solver [m/s]", v_new, v + jump, 2e-8)
-    close("x of a stretched network [m]", x_new, x + dt * v_new, 1e-14)
-    close("v of its fixed point, which keeps its velocity [m/s]", v_new[1], v[1], 0.0)
+    given = f"{len(x)} points and {network.i.size} springs"
+    close("v of a stretched network, compared with a dense solver [m/s]", v_new, v + jump, 2e-8, given)
+    close("x of a stretched network [m]", x_new, x + dt * v_new, 1e-14, given)
+    fixed = network.inv_mass == 0.0
+    close("v of its fixed points, which keep their velocity [m/s]", v_new[fixed], v[fixed], 0.0, given)
 
 
 @exercise("2.13", points=0.5,
@@ -627,9 +722,14 @@ def reference(t, x, v, network):
 
 @exercise("2.14", points=0.5, hint="put v⁺ = v + dt F/m and x⁺ = x + dt v⁺ into the law, and solve for F")
 def test_the_force_of_the_hand_obeys_its_law_at_the_end_of_the_step(lesson, draw):
-    for d in (1, 2, 3):
-        x, v, target = draw(-1.0, 1.0, d), draw(-2.0, 2.0, d), draw(-1.0, 1.0, d)
-        k, c, m, dt = draw(50.0, 200.0), draw(2.0, 8.0), draw(0.3, 3.0), draw(0.02, 0.08)
+    drawn = [(draw(-1.0, 1.0, d), draw(-2.0, 2.0, d), draw(-1.0, 1.0, d)) for d in (1, 2, 3)]
+    sparse = [tuple(draw.sparse(-1.0, 1.0, (3, d))) for d in (1, 2, 3)]
+    at_rest = [(x, 0.0 * v, target) for x, v, target in drawn]
+    there = [(target, v, target) for x, v, target in drawn]
+    shares = ((1.0, 1.0), (0.0, 1.0), (1.0, 0.0))
+    for (x, v, target), (of_k, of_c) in itertools.product(drawn + sparse + at_rest + there, shares):
+        d, k, c = x.size, of_k * draw(50.0, 200.0), of_c * draw(2.0, 8.0)
+        m, dt = draw(0.3, 3.0), draw(0.02, 0.08)
         kept = np.array((x, v, target))
         F = lesson.hand_force(x, v, target, k, c, m, dt)
         after = v + dt * F / m

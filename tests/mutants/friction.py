@@ -36,6 +36,7 @@ edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @
 HOLDS_WHAT_LIFTS = edit("3.1", "returns the size of the normal part, whatever its direction",
                         "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)")
 edit("3.1", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
+edit("3.1", "leaves out a force straight into the support", "-(F @ n))", "-(F @ n)) * np.any(tangential(F, n))")
 
 
 # 3.2 ------------------------------------------------------------------------------------------------------------
@@ -74,6 +75,7 @@ edit("3.2", "compares the squared force with the limit", "np.sqrt(F_t @ F_t)", "
 edit("3.2", "compares the squared force with the limit", "size <= limit", "size * size <= limit")
 edit("3.2", "compares the size of F, not that of its tangential part, with the limit", "size <= limit",
      "np.sqrt(F @ F) <= limit")
+edit("3.2", "holds a body that nothing presses", "size <= limit", "size <= limit or F @ n == 0.0")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -105,6 +107,7 @@ edit("3.3", "limits the friction to the force along the surface, as at rest", "c
      "min(cone_radius(mu_k, normal_force(F, n)), np.sqrt(tangential(F, n) @ tangential(F, n)))")
 edit("3.3", "divides by the speed of the whole motion, not by that along the surface", "-limit / speed",
      "-limit / np.sqrt(v @ v)")
+edit("3.3", "divides by zero where the whole motion is along n", "speed > 0.0", "np.any(v)")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -174,6 +177,7 @@ edit("3.5", "exchanges the two cases", "m * speed <= limit", "m * speed > limit"
 edit("3.5", "returns a change of velocity, not an impulse, when it stops the body", "return -m * v_t", "return -v_t")
 edit("3.5", "divides by the mass", "return -m * v_t", "return -v_t / m")
 edit("3.5", "forgets the mass in the minimum", "np.minimum(limit, m * speed)", "np.minimum(limit, speed)")
+edit("3.5", "stops whatever slides along an axis", "m * speed <= limit", "m * speed <= limit or np.any(v_t == 0.0)")
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
@@ -219,6 +223,8 @@ edit("3.6", "shortens both parts by one factor, where each has its own limit", "
      "return -min(1.0, limit / max(most, 1e-300)) * m * v_t")
 edit("3.6", "shortens the impulse of the pyramid to the radius of the cone", "return -first * t_1 - second * t_2",
      "return -min(1.0, limit / max(np.hypot(first, second), 1e-300)) * (first * t_1 + second * t_2)")
+edit("3.6", "leaves out a body that slides along one of the tangents", "return -first * t_1 - second * t_2",
+     "return (-first * t_1 - second * t_2) * (first * second != 0.0)")
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
@@ -274,6 +280,8 @@ edit("3.7", "computes the friction of the velocity before the forces act", "fric
 edit("3.7", "tests whether static friction holds a moving block, too", "not np.any(v) and ", "")
 edit("3.7", "exchanges place and velocity in the call of the acceleration", "acceleration(t, x, v, p)",
      "acceleration(t, v, x, p)")
+edit("3.7", "returns the state unchanged where there is no load", "if not np.any(v) and",
+     "if not np.any(a) or not np.any(v) and")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -314,6 +322,7 @@ edit("3.8", "exchanges place and velocity in the call of the acceleration", "acc
      "acceleration(t, v, x, p)")
 GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
 edit("3.8", "lets the block slip exactly on the edge of the cone", "pull > cone", "pull >= cone")
+edit("3.8", "does not break away where there is no friction", "pull > cone", "p.mu_s > 0.0 and pull > cone")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -351,6 +360,7 @@ edit("3.9", "returns the rest of the step, after the stop", "return stopped", "r
 edit("3.9", "returns zero for a block that goes on", "return dt", "return 0.0")
 edit("3.9", "interpolates the speed along a straight line between the ends of the step", "return stopped",
      "return dt * (v @ d) / ((v - kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1]) @ d)")
+edit("3.9", "does not stop where there is no friction", "return stopped", "return stopped if p.mu_k > 0.0 else dt")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -387,6 +397,7 @@ edit("3.10", "returns zero if the block still holds", "return dt", "return 0.0")
 edit("3.10", "returns infinity if the block still holds", "return dt", "return np.inf")
 edit("3.10", "takes a slip along an axis for rest", "if np.any(slip", "if np.all(slip")
 edit("3.10", "exchanges place and velocity", "t + middle, x, v, p", "t + middle, v, x, p")
+edit("3.10", "holds for the whole step if it begins at t = 0", "return slips", "return slips if t > 0.0 else dt")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -419,6 +430,7 @@ edit("3.11", "returns the whole step as the time",
 edit("3.11", "returns the rest of the step as the time", "return tau, x, v if", "return dt - tau, x, v if")
 edit("3.11", "exchanges the two cases", "if not np.any(d)", "if np.any(d)")
 edit("3.11", "stops the block that goes on, and lets the other one go on", "tau == dt", "tau != dt")
+edit("3.11", "stops a block without friction", "v if tau == dt", "v if tau == dt and p.mu_k > 0.0")
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
@@ -452,6 +464,7 @@ edit("3.12", "takes the part along the axis in place of the rest",
 edit("3.12", "compares the squared distance with the radius", "distance = np.sqrt(r @ r)", "distance = r @ r")
 edit("3.12", "divides the normal of a trough by the distance from its centre, not from its axis", "-r / distance if",
      "-r / np.sqrt((x - p.centre) @ (x - p.centre)) if")
+edit("3.12", "divides by zero on the axis of a trough", "distance > 0.0", "np.any(x != p.centre)")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
@@ -491,6 +504,7 @@ edit("3.13", "returns a velocity: divides by the mass",
      "j_n * n + friction_impulse(tangential(v, n), m, j_n, mu)",
      "(j_n * n + friction_impulse(tangential(v, n), m, j_n, mu)) / m")
 edit("3.13", "returns the velocity after the impact", "return j_n * n + f", "return v + j_n * n + f")
+edit("3.13", "stops a particle that does not bounce", "return j_n * n", "return -m * v if e == 0.0 else j_n * n")
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
@@ -553,6 +567,8 @@ edit("3.16", "takes the velocity for the displacement",
      "friction_position_correction(moved", "friction_position_correction(v")
 edit("3.16", "returns the velocity before the impulse",
      "v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m", "pass")
+edit("3.14", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
+edit("3.16", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
@@ -577,6 +593,8 @@ edit("3.15", "reverses the depth", "depth, mu)", "-depth, mu)")
 edit("3.15", "returns the whole displacement along the surface",
      "friction_impulse(tangential(moved, n), 1.0, depth, mu)", "tangential(moved, n)")
 edit("3.15", "takes the normal part of the displacement for the depth", "1.0, depth", "1.0, max(0.0, -(moved @ n))")
+edit("3.15", "takes back everything where there is no depth", "return friction_impulse",
+     "return -tangential(moved, n) if depth == 0.0 else friction_impulse")
 
 
 # 3.17 -----------------------------------------------------------------------------------------------------------
@@ -600,6 +618,8 @@ edit("3.17", "subtracts μ g s from the speed, not 2 μ g s from its square", "0
      "0.5 * (v - mu_near * g * width) * abs(v - mu_near * g * width)")
 edit("3.17", "divides by the mean of both frictions behind the strip", "left / (mu_far",
      "left / (0.5 * (mu_near + mu_far)")
+edit("3.17", "slides over the whole strip from rest", "return 0.5 * v * v / (mu_near * g)",
+     "return 0.5 * v * v / (mu_near * g) if v > 0.0 else width")
 
 
 # 3.18 -----------------------------------------------------------------------------------------------------------

@@ -34,6 +34,9 @@ edit("2.1", "returns no force for bodies at the same place", 'check_positive("di
      "distance = distance or np.inf")
 edit("2.1", "adds the masses in place of multiplying them", "m_a * m_b", "(m_a + m_b)")
 edit("2.1", "divides by one power of the distance too many", "distance**3", "distance**4")
+edit("2.1", "returns no force on a body at the origin", "return G * m_a * m_b / distance**3 * r",
+     "return G * m_a * m_b / distance**3 * r * np.any(x_a)")
+edit("2.1", "counts on three coordinates", "np.sum(r * r)", "r[0] * r[0] + r[1] * r[1] + r[2] * r[2]")
 
 
 # 2.2 ------------------------------------------------------------------------------------------------------------
@@ -56,6 +59,7 @@ edit("2.2", "normalises the velocity", "k_v * v", "k_v * v / (np.sqrt(np.sum(v *
 edit("2.2", "adds up the forces on all points", "return wind - k_v * v", "return np.sum(wind - k_v * v, axis=0)")
 edit("2.2", "changes its input", "return wind - k_v * v", "v *= -k_v; return wind + v")
 edit("2.2", "reverses both forces", "wind - k_v * v", "k_v * v - wind")
+edit("2.2", "leaves out points at rest", "return wind - k_v * v", "return (wind - k_v * v) * np.any(v)")
 
 
 # 2.3 ------------------------------------------------------------------------------------------------------------
@@ -84,6 +88,7 @@ edit("2.3", "lets the damper depend on the extension", "k_d * rate", "k_d * rate
 edit("2.3", "makes the damping grow with the square of the rate", "k_d * rate", "k_d * rate * abs(rate)")
 edit("2.3", "multiplies the damper by k, too", "k * (length - rest) + k_d * rate", "k * (length - rest + k_d * rate)")
 edit("2.3", "adds the rest length", "length - rest", "length + rest")
+edit("2.3", "leaves out the damper where there is no spring", "+ k_d * rate", "+ k_d * rate * (k > 0.0)")
 
 
 # 2.4 ------------------------------------------------------------------------------------------------------------
@@ -113,6 +118,8 @@ edit("2.4", "halves the stiffness", "k * C +", "0.5 * k * C +")
 edit("2.4", "applies the force only where C is negative", "* gradient", "* gradient * (C < 0.0)")
 edit("2.4", "multiplies the damper by C, too", "(k * C + k_d * C_rate)", "(k + k_d * C_rate) * C")
 edit("2.4", "omits the spring", "k * C +", "")
+edit("2.4", "leaves out the damper where there is no spring", "k_d * C_rate", "k_d * C_rate * (k > 0.0)")
+edit("2.4", "leaves out a gradient along an axis", "* gradient", "* gradient * np.all(gradient)")
 
 
 # 2.5 ------------------------------------------------------------------------------------------------------------
@@ -148,6 +155,8 @@ edit("2.5", "normalises the gradient", "k_d * C_rate)) * gradient",
      "k_d * C_rate)) * gradient / np.sqrt(gradient @ gradient)")
 edit("2.5", "returns the gradient above the surface", "return 0.0 * gradient", "return gradient")
 edit("2.5", "reverses the force", "return np.maximum(0.0", "return -np.maximum(0.0")
+edit("2.5", "leaves out the spring where there is no damper", "-(k * C +", "-(k * C * (k_d > 0.0) +")
+edit("2.5", "counts on two coordinates", "return np.maximum(0.0", "return (gradient.size == 2) * np.maximum(0.0")
 
 
 # 2.6 ------------------------------------------------------------------------------------------------------------
@@ -213,6 +222,7 @@ edit("2.6", "halves the force on a", "push_a, push_c = k * turn", "push_a, push_
 edit("2.6", "pushes a along its arm", "np.array([-push_a * r_a[1], push_a * r_a[0]])", "push_a * r_a")
 edit("2.6", "names another length in the error", 'angular spring [m]", 0.0', 'angular spring [m]", 1.0')
 edit("2.6", "uses degrees in place of radians", "turn = theta - rest", "turn = np.degrees(theta - rest)")
+edit("2.6", "leaves out arms that lie on each other", "turn = theta - rest", "turn = (theta - rest) * (theta != 0.0)")
 
 
 # 2.7 ------------------------------------------------------------------------------------------------------------
@@ -280,6 +290,12 @@ edit("2.7", "never pushes, as a rope", "move_apart(force", "T = max(T, 0.0); mov
 edit("2.7", "divides by the mass", "return force", "return force * network.inv_mass[:, None]")
 edit("2.7", "uses the velocity of one end for the rate", "product_between(x, v, i, j)", "np.sum((x[j] - x[i]) * v[j])")
 edit("2.7", "exchanges length and rate", "length, rate, network.rest[s]", "rate, length, network.rest[s]")
+edit("2.7", "leaves out springs without a damper", "-T / length, -T / length, x)",
+     "-T / length * (network.k_d[s] > 0.0), -T / length * (network.k_d[s] > 0.0), x)")
+edit("2.7", "leaves out a spring between fixed points", "for s in range(network.i.size):",
+     "for s in np.flatnonzero(network.inv_mass[network.i] + network.inv_mass[network.j]):")
+edit("2.7", "leaves out a single spring", "for s in range(network.i.size):",
+     "for s in range(network.i.size * (network.i.size > 1)):")
 
 
 # 2.8 ------------------------------------------------------------------------------------------------------------
@@ -318,6 +334,9 @@ edit("2.8", "uses g near the ground, not the gravity of the network", "network.g
      "(-9.81 if c == x.shape[1] - 1 else 0.0)")
 edit("2.8", "forgets the mass in all forces", ") * network.inv_mass[n]", ")")
 edit("2.8", "omits the springs", "(force[n, c] + air)", "air")
+edit("2.8", "leaves out points on which no wind blows", "if network.inv_mass[n] > 0.0:",
+     "if network.inv_mass[n] > 0.0 and np.any(network.wind):")
+edit("2.8", "loses a dimension of a single point", "return a", "return a if len(a) > 1 else a[0]")
 
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
@@ -362,6 +381,10 @@ edit("2.9", "takes two half steps", "return " + AVERAGE, "x, v = " + AVERAGE.rep
 edit("2.9", "lets all points fall freely", "return " + AVERAGE,
      "return x + dt * v + 0.5 * dt**2 * network.gravity, v + dt * network.gravity")
 edit("2.9", "exchanges x and v", "t, x, v, dt, network)", "t, v, x, dt, network)")
+edit("2.9", "returns the state unchanged where nothing can move",
+     "return average", "return (x, v) if not np.any(network.inv_mass) else average")
+edit("2.9", "leaves out all forces without gravity", "return average",
+     "return (x + dt * v, v) if not np.any(network.gravity) else average")
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
@@ -417,6 +440,8 @@ edit("2.10", "puts the smaller number first", "return np.array(pairs, dtype=np.i
 edit("2.10", "returns the transpose", ".reshape(-1, 2)", ".reshape(-1, 2).T")
 edit("2.10", "loops over the columns first",
      "for r in range(rows) for c in range(cols)", "for c in range(cols) for r in range(rows)")
+edit("2.10", "finds no pairs in a single row", "for r in range(rows)", "for r in range(rows * (rows > 1))")
+edit("2.10", "finds no pairs in a single column", "for c in range(cols)", "for c in range(cols * (cols > 1))")
 
 
 # 2.11 -----------------------------------------------------------------------------------------------------------
@@ -474,6 +499,11 @@ edit("2.11", "gives a compressed spring no stiffness", "return K, D",
      "K[np.sqrt(np.sum((x[network.j] - x[network.i])**2, axis=1)) < network.rest] = 0.0; return K, D")
 edit("2.11", "exchanges the directions along and across",
      "(network.k[s] - across) * nn", "(across - network.k[s]) * nn")
+edit("2.11", "leaves out springs along an axis", "for s in range(network.i.size):",
+     "for s in np.flatnonzero(np.all(x[network.i] != x[network.j], axis=1)):")
+edit("2.11", "leaves out springs of no natural length", "for s in range(network.i.size):",
+     "for s in np.flatnonzero(network.rest):")
+edit("2.11", "loses a dimension of a single spring", "return K, D", "return (K, D) if len(K) != 1 else (K[0], D[0])")
 
 
 # 2.12 -----------------------------------------------------------------------------------------------------------
@@ -536,6 +566,8 @@ edit("2.12", "uses the ratio of the lengths, not of their squares",
      "squared / before * p", "np.sqrt(squared / before) * p")
 edit("2.12", "divides the old square by the new one, not the new one by the old",
      "squared / before", "before / squared")
+edit("2.12", "returns zeros where the right-hand side has a zero", "return y", "return y * np.all(right)")
+edit("2.12", "does not divide where there is one unknown", "return y", "return y if right.size > 1 else right")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------
@@ -604,6 +636,10 @@ edit("2.13", "adds the dampers to ∂F/∂x v", "apply_blocks(v, network.i, netw
 edit("2.13", "returns v first", "return x + dt * v, v", "return v, x + dt * v")
 edit("2.13", "changes its input", "v = v + conj", "v += conj")
 edit("2.13", "omits dt beside the pull", "- dt * pull", "- pull")
+edit("2.13", "returns the state unchanged where everything is at rest", "return x + dt * v, v",
+     "return (x + dt * v, v) if np.any(v - conjugate_gradients(apply_step_matrix, A, right)) else (x, 0.0 * v)")
+edit("2.13", "leaves out the loads where there are no springs",
+     "v = v + conj", "v = v + (network.i.size > 0) * conj")
 
 
 # 2.14 -----------------------------------------------------------------------------------------------------------
@@ -632,6 +668,8 @@ edit("2.14", "returns the impulse in place of the force", HELD, "dt * " + HELD)
 edit("2.14", "forgets the damper of the moving point", "+ c * v)", ")")
 edit("2.14", "pulls to the origin, not to the target", "x - target + dt", "x + dt")
 edit("2.14", "forgets that the force itself changes v⁺ and x⁺", " / (1.0 + dt * (c + dt * k) / m)", "")
+edit("2.14", "returns no force on a point at its target", HELD, HELD + " * np.any(x - target)")
+edit("2.14", "leaves out the damper where there is no spring", "+ c * v)", "+ c * v * (k > 0.0))")
 
 
 # 2.15 -----------------------------------------------------------------------------------------------------------
