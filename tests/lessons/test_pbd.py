@@ -87,6 +87,10 @@ def chain(lesson, draw, links, d=2, held=True, **more):
     return x, network(lesson, inv_mass, pairs, draw(0.9, 1.1, links), d, **more)
 
 
+def without_links(p):
+    return p._replace(i=p.i[:0], j=p.j[:0], rest=p.rest[:0], alpha=p.alpha[:0], stiffness=p.stiffness[:0])
+
+
 def lengths(x, p):
     return np.linalg.norm(x[p.i] - x[p.j], axis=1)
 
@@ -103,12 +107,13 @@ def a_new_array(quantity, got, given):
 def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw):
     for d in (2, 3):
         for n in (direction(draw, d), *np.eye(d), *-np.eye(d)):
-            x_j = draw(-2.0, 2.0, d)
             length, rest = draw(0.5, 3.0), draw(0.5, 3.0)
-            C, gradient = lesson.distance_constraint(x_j + length * n, x_j, rest)
-            given = f"x_i = {x_j + length * n} m, x_j = {x_j} m, rest = {rest} m"
-            close("constraint C [m]", C, length - rest, ROUND_OFF, given=given)
-            close("gradient of C with respect to x_i [-]", gradient, n, ROUND_OFF, given=given)
+            for x_j in (draw(-2.0, 2.0, d), draw.sparse(-2.0, 2.0, d), np.zeros(d), 0.0 - length * n):
+                x_i = x_j + length * n
+                C, gradient = lesson.distance_constraint(x_i, x_j, rest)
+                given = f"x_i = {x_i} m, x_j = {x_j} m, rest = {rest} m"
+                close("constraint C [m]", C, length - rest, ROUND_OFF, given=given)
+                close("gradient of C with respect to x_i [-]", gradient, n, ROUND_OFF, given=given)
     # In whole numbers C is 0.
     x_j, turn = np.array([float(draw.whole(-3, 3)), float(draw.whole(-3, 3))]), float(2 * draw.whole(0, 1) - 1)
     C, gradient = lesson.distance_constraint(x_j + turn * np.array([3.0, 4.0]), x_j, 5.0)
@@ -208,12 +213,20 @@ def test_free_points_are_predicted_with_and_immovable_ones_without_acceleration(
         x, v = draw(-1.0, 1.0, (4, d)), draw(-1.0, 1.0, (4, d))
         t, dt = draw(0.5, 2.0), draw(0.05, 0.5)
         p = network(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7), 10.0 ** draw(-15.0, -9.0)], [(0, 1)], 1.0, d)
-        before = x.copy()
-        free = np.array([[1.0], [0.0], [1.0], [1.0]])
-        given = f"1/m = {p.inv_mass} /kg, x = {x.tolist()}, v = {v.tolist()}, t = {t} s, dt = {dt} s"
-        close("predicted positions [m]", lesson.predict(swirl, t, x, v, dt, p),
-              x + dt * v + dt * dt * swirl(t, x, v, p) * free, ROUND_OFF, given=given)
-        close("input x after the call: return a new array", x, before, 0.0)
+        free, still = np.array([[1.0], [0.0], [1.0], [1.0]]), np.zeros((4, d))
+        cases = [(t, *draw.sparse(-1.0, 1.0, (2, 4, d))), (0.0, x, v), (0.0, still, still), (t, still, v)]
+        cases += [(t, x, still), (t, x, v)]
+        for t, x, v in cases:
+            before = x.copy()
+            given = f"1/m = {p.inv_mass} /kg, x = {x.tolist()}, v = {v.tolist()}, t = {t} s, dt = {dt} s"
+            expected = x + dt * v + dt * dt * swirl(t, x, v, p) * free
+            close("predicted positions [m]", lesson.predict(swirl, t, x, v, dt, p), expected, ROUND_OFF, given=given)
+            close("input x after the call: return a new array", x, before, 0.0)
+        for k in (0, 1):
+            one = slice(k, k + 1)
+            alone = without_links(p)._replace(inv_mass=p.inv_mass[one])
+            close("predicted position of one point alone [m]", lesson.predict(swirl, t, x[one], v[one], dt, alone),
+                  expected[one], ROUND_OFF, given=f"point {k} of {given}")
         expected = x + dt * v + dt * dt * v * free
         close("predicted positions where the acceleration returns v itself [m]",
               lesson.predict(growing, t, x, v, dt, p), expected, ROUND_OFF, given=given)
@@ -235,9 +248,9 @@ def equations(x, lam, goal, dt, p):
                "beside 1, and the unknown is the new λ itself")
 def test_a_newton_iteration_solves_the_equations_linearised_at_its_guess(lesson, draw):
     """Check f + f'·(Δx, Δλ) = 0, with f' along that direction from a complex step."""
-    for d, held in ((2, True), (3, False)):
+    for d, held, lam in ((2, True, draw(-5.0, 5.0, 3)), (3, False, draw(-5.0, 5.0, 3)), (2, True, np.zeros(3)),
+                         (3, False, draw.sparse(-5.0, 5.0, 3))):
         x, p = chain(lesson, draw, 3, d, held)
-        lam = draw(-5.0, 5.0, 3)
         goal = x + draw(-0.1, 0.1, x.shape)
         dt = draw(0.1, 0.3)
         change, new = lesson.newton_correction(x, lam, goal, dt, p)
@@ -335,10 +348,16 @@ def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gra
     close("velocity [m/s]: displacement over dt", v_new, (new - x) / dt, 1e-11, given=given)
     close("momentum after a step [kg m/s]: changed only by gravity", m @ v_new, m @ v + dt * m.sum() * p.gravity, 1e-11,
           given=given)
+    for free, rest in ((x, 0.0 * v), (x, v), (x[:1], v[:1])):
+        new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, free, rest, dt,
+                                                   without_links(p)._replace(inv_mass=p.inv_mass[:len(free)]))
+        close("positions of points without links after a step [m]", new, free + dt * rest + dt * dt * p.gravity,
+              ROUND_OFF, given=f"x = {free.tolist()} m, v = {rest.tolist()} m/s, dt = {dt} s, g = {p.gravity} m/s²")
     length = draw(0.5, 2.0)
     x = np.array([[0.0, 0.0], [0.0, -length]])
-    p = network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
-    carried_along(lesson.constraint_projection_step, lesson, draw, x, dt, p, 0.0)
+    for g in (G, 0.0):
+        p = network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, g=g)
+        carried_along(lesson.constraint_projection_step, lesson, draw, x, dt, p, 0.0)
 
 
 @exercise("8.5", points=0.25,
@@ -427,9 +446,12 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
 @exercise("8.6", points=1,
           hint="each end moves by its w over w_i + w_j, both times the stiffness; the centre of mass stays")
 def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(lesson, draw):
-    for d in (2, 3):
-        s, w = draw(0.2, 0.9), draw(0.3, 2.0, 2)
-        x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
+    begins = [np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))) for d in (2, 3)]
+    # Along an axis, from the origin, where the other coordinates of the ends are equal.
+    begins += [np.stack((np.zeros(d), sign * draw(2.0, 3.0) * axis)) for d in (2, 3) for sign in (1.0, -1.0)
+               for axis in np.eye(d)]
+    for x in begins:
+        d, s, w = x.shape[1], draw(0.2, 0.9), draw(0.3, 2.0, 2)
         almost = np.linalg.norm(x[0] - x[1]) * (1.0 + 1e-8 * draw(0.5, 2.0))
         for share, rest in ((1.0, draw(0.3, 0.8)), (s, draw(0.3, 0.8)), (s, draw(8.0, 9.0)), (s, almost)):
             # A visit is a visit, whatever the number of sweeps and the compliance.
@@ -472,8 +494,9 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
 
 @exercise("8.7", points=1, hint="predict, then network.sweeps sweeps, then the velocity from the displacement")
 def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
-    for sweeps in (1, draw.whole(2, 5), draw.whole(8, 12), draw.whole(60, 80)):
-        s, dt, length = draw(0.2, 0.8), draw(0.01, 0.1), draw(0.5, 2.0)
+    for sweeps, s in ((1, draw(0.2, 0.8)), (draw.whole(2, 5), draw(0.2, 0.8)), (draw.whole(8, 12), draw(0.2, 0.8)),
+                      (draw.whole(60, 80), draw(0.2, 0.8)), (1, 1.0), (draw.whole(2, 5), 1.0)):
+        dt, length = draw(0.01, 0.1), draw(0.5, 2.0)
         S = (1.0 - s) ** sweeps
         sag = G * dt * dt * S / (1.0 - S)
         x = np.array([[0.0, 0.0], [0.0, -length - sag]])
@@ -491,6 +514,7 @@ def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
         close("thrown weight, velocity after a step [m/s]: displacement over dt", np.asarray(v)[1, 1],
               (expected - x[1, 1]) / dt, ROUND_OFF / dt, given=given)
         carried_along(lesson.pbd_step, lesson, draw, x, dt, p, S)
+        carried_along(lesson.pbd_step, lesson, draw, x, dt, p._replace(gravity=np.zeros(2)), S)
     sweeps_of_a_chain(lesson.pbd_step, lesson, draw, soft=False)
 
 
@@ -633,8 +657,8 @@ def test_folds_with_acute_and_obtuse_wings_have_the_slope_of_their_angle_at_any_
 def test_the_gap_of_a_ball_is_the_distance_to_its_surface(lesson, draw):
     for d in (2, 3):
         ball = lesson.Obstacle(draw(-2.0, 2.0, d), draw(0.5, 2.0), np.zeros(d), np.eye(d)[0])
-        for distance in (draw(0.1, 0.4), draw(2.5, 4.0)):
-            n = direction(draw, d)
+        cases = [(draw(0.1, 0.4), direction(draw, d)), (draw(2.5, 4.0), direction(draw, d))]
+        for distance, n in cases + [(draw(0.1, 4.0), sign * axis) for axis in np.eye(d) for sign in (1.0, -1.0)]:
             phi, normal = lesson.ball_gap(ball.centre + distance * n, ball)
             close("gap of a ball [m]", phi, distance - ball.radius, ROUND_OFF, given=f"{ball}, {distance} m along {n}")
             close("normal of a ball [-]", normal, n, ROUND_OFF, given=f"{ball}, {distance} m along {n}")
@@ -702,6 +726,13 @@ def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw
           lesson.keep_outside(balloon, x, np.ones(len(shares)), ball),
           ball.centre + out * np.maximum(distances, 2.0 * ball.radius)[:, None], ROUND_OFF * 10.0,
           given=f"x = {x.tolist()} m, {ball}")
+    # A level floor through the origin, and points of which some coordinates are 0, alone and together.
+    level, low = floor._replace(point=np.zeros(3), n=np.eye(3)[2]), draw.sparse(-1.0, 1.0, (6, 3))
+    for x, w in ((low, np.ones(6)), (low, np.zeros(6)), (np.zeros((2, 3)), np.ones(2)),
+                 (low[:1] - 2.0 * level.n, np.ones(1))):
+        close("points on, above and below a level floor [m]", lesson.keep_outside(lesson.floor_gap, x, w, level),
+              np.where((x < 0.0) & (level.n > 0.0) & (w[:, None] > 0.0), 0.0, x), ROUND_OFF,
+              given=f"x = {x.tolist()} m, w = {w}, {level}")
     x = ball.centre + np.outer((0.0, 0.5 * ball.radius), n)
     close("a point at the centre of a ball, where n = 0, and one beside it [m]",
           lesson.keep_outside(lesson.ball_gap, x, np.ones(2), ball),
@@ -759,10 +790,12 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
 @exercise("8.13", points=0.5,
           hint="Λ of each link continues from its old value; add w ΔΛ n to i and subtract it from j")
 def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(lesson, draw):
-    for d, alpha, rest in ((2, draw(0.001, 0.1), draw(0.5, 1.0)), (3, draw(0.001, 0.1), draw(8.0, 9.0)),
-                           (2, 0.0, draw(0.5, 1.0)), (3, 0.0, draw(8.0, 9.0)),       # α = 0 pulls and pushes, too
-                           (2, draw(0.001, 0.1), None)):                 # at its rest length its old Λ acts alone
-        x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
+    axes = [(d, draw(0.001, 0.1), draw(0.5, 1.0), np.stack((np.zeros(d), sign * draw(2.0, 3.0) * axis)))
+            for d in (2, 3) for axis in np.eye(d) for sign in (1.0, -1.0)]               # from the origin along an axis
+    for d, alpha, rest, *x in ((2, draw(0.001, 0.1), draw(0.5, 1.0)), (3, draw(0.001, 0.1), draw(8.0, 9.0)),
+                               (2, 0.0, draw(0.5, 1.0)), (3, 0.0, draw(8.0, 9.0)),   # α = 0 pulls and pushes, too
+                               (2, draw(0.001, 0.1), None), *axes):      # at its rest length its old Λ acts alone
+        x = x[0] if x else np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
         rest = np.linalg.norm(x[0] - x[1]) if rest is None else rest
         w = draw(0.3, 2.0, 2)
         p = network(lesson, w, [(0, 1)], rest, d, 0.4, alpha, draw.whole(2, 5))
@@ -807,8 +840,7 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
         small, _ = lesson.compliant_sweep(size * x, np.zeros(2), dt, p._replace(rest=size * p.rest))
         close("positions of a tiny network, over its size [-]", np.asarray(small) / size, np.asarray(new, dtype=float),
               1e-11, given=f"size {size} m")
-    none = p._replace(i=p.i[:0], j=p.j[:0], rest=p.rest[:0], alpha=p.alpha[:0], stiffness=p.stiffness[:0])
-    swept = lesson.compliant_sweep(x, np.zeros(0), dt, none)
+    swept = lesson.compliant_sweep(x, np.zeros(0), dt, without_links(p))
     for name, got, given in zip(("x", "Λ"), swept, (x, np.zeros(0)), strict=True):
         a_new_array(f"{name} of a network without links", got, given)
     for invalid in (-draw(0.001, 0.1), np.nan):
@@ -844,7 +876,8 @@ def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, d
         new, _ = lesson.xpbd_step(lesson.network_gravity, 0.0, hanging, 0.0 * v, dt, p)
         close("position of a weight at its equilibrium after a step [m]: m g/k lower", new, hanging, 1e-11, given=given)
         soft = 1.0 / (k * dt * dt)
-        carried_along(lesson.xpbd_step, lesson, draw, x, dt, p, soft / (1.0 / m + soft))
+        for gravity in (p.gravity, np.zeros(2)):
+            carried_along(lesson.xpbd_step, lesson, draw, x, dt, p._replace(gravity=gravity), soft / (1.0 / m + soft))
         # Three parallel springs: more links than points, each with its own Λ.
         soft = soft * draw(0.5, 2.0, 3)
         side_by_side = network(lesson, [0.0, 1.0 / m], [(0, 1)] * 3, rest, 2, 1.0, soft * dt * dt)
@@ -868,9 +901,14 @@ def body(draw):
 def test_the_generalised_inverse_mass_is_the_response_to_a_unit_impulse(lesson, draw):
     """An impulse n at r gives v = n/m and ω = I⁻¹(r × n), so the point moves along n with n·(v + ω × r)."""
     q, R, mass, I_body = body(draw)
-    for r, m in ((draw(-1.0, 1.0, 3), mass), (np.zeros(3), mass), (draw(-1.0, 1.0, 3), 0.1 * mass),
-                 (draw(-1.0, 1.0, 3), 10.0 * mass)):
-        n = direction(draw, 3)
+    cases = [(q, R, r, direction(draw, 3), m, I_body) for r, m in (
+        (draw(-1.0, 1.0, 3), mass), (np.zeros(3), mass), (draw(-1.0, 1.0, 3), 0.1 * mass),
+        (draw(-1.0, 1.0, 3), 10.0 * mass))]
+    for at in ((q, R), (np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3))):
+        for moments in (I_body, I_body[[0, 0, 1]], I_body[[0, 0, 0]]):   # a top, and a ball
+            cases += [(*at, draw(-1.0, 1.0, 3), direction(draw, 3), mass, moments),
+                      (*at, draw.sparse(-1.0, 1.0, 3), np.eye(3)[draw.whole(0, 2)], mass, moments)]
+    for q, R, r, n, m, I_body in cases:
         omega = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, n)
         close("generalised inverse mass [1/kg]", lesson.effective_inverse_mass_at(q, r, n, m, I_body),
               n @ (n / m + np.cross(omega, r)), ROUND_OFF,
@@ -895,14 +933,18 @@ def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
         close("centre of mass of a body with another mass [m]",
               lesson.apply_positional_impulse(x, q, r, p, other, I_body)[0],
               x + p / other, ROUND_OFF * 10.0, given=f"p = {p} kg m, m = {other} kg")
-    for arm in (np.zeros(3), 0.25 * np.round(4.0 * p)):
-        push = p if not arm.any() else np.round(4.0 * p)                 # r × p is exactly 0
+    for arm, push in ((np.zeros(3), p), (0.25 * np.round(4.0 * p), np.round(4.0 * p)), (r, np.zeros(3))):  # r × p is 0
         new, turned = lesson.apply_positional_impulse(x, q, arm, push, m, I_body)
         close("centre of mass after a central push [m]", new, x + push / m, ROUND_OFF * 10.0,
               given=f"r = {arm} m, p = {push} kg m, m = {m} kg")
         close("orientation after a central push [-]", turned, q, ROUND_OFF, given=f"r = {arm} m, p = {push} kg m")
     for share in (1.0, 1e-7):
         check_push(lesson, q, R, x, r, share * p, m, I_body)
+    axes = np.roll(np.eye(3), draw.whole(0, 2), axis=0)
+    for moments in (I_body, I_body[[0, 0, 1]], I_body[[0, 0, 0]]):       # also of a top and of a ball
+        for at in ((q, R), (np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3))):
+            check_push(lesson, *at, np.zeros(3), r, p, m, moments)
+            check_push(lesson, *at, x, draw(0.1, 1.0) * axes[0], draw(0.1, 1.0) * axes[1], m, moments)
 
 
 def check_push(lesson, q, R, x, r, p, m, I_body):
@@ -928,8 +970,12 @@ def test_a_turn_has_the_rate_that_leads_from_one_orientation_to_the_other(lesson
     for still in (q, np.array([1.0, 0.0, 0.0, 0.0])):
         close("angular velocity of a body that does not turn [rad/s]", lesson.turning_rate(still, still.copy(), dt),
               np.zeros(3), ROUND_OFF, given=f"q = {still}, dt = {dt} s")
-    # In the first and the last the scalar part is 1 or −1: only its sign matters.
-    for angle in (1e-4 * draw(0.5, 1.0), draw(0.1, 2.0), draw(2.9, 3.1), 1e-7 * draw(1.0, 5.0)):
+    # In the first and the fourth the scalar part is 1 or −1: only its sign matters.  The others begin at
+    # (1, 0, 0, 0).
+    angles = 1e-4 * draw(0.5, 1.0), draw(0.1, 2.0), draw(2.9, 3.1), 1e-7 * draw(1.0, 5.0)
+    cases = [(q, axis, angle) for angle in angles]
+    cases += [(still, about, draw(0.1, 3.0)) for about in (axis, *np.eye(3))]
+    for q, axis, angle in cases:
         half, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
         a, v = q[0], q[1:]
         turned = np.append(half * a - s * axis @ v, half * v + a * s * axis + s * np.cross(axis, v))
@@ -951,20 +997,22 @@ def test_a_closed_surface_has_the_right_volume_and_volume_gradient(lesson, draw)
     """A box spanned by u, v and w has the volume |u · (v × w)|. The volume is linear in each corner."""
     u, v, w = (np.eye(3)[k] * draw(1.0, 2.0) + draw(-0.3, 0.3, 3) for k in range(3))
     corners = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)])
-    x = np.append(draw(-2.0, 2.0, 3) + corners @ np.stack((u, v, w)), draw(-2.0, 2.0, (1, 3)), axis=0)
-    V, gradient = lesson.volume_gradient(x, CUBE)
-    close("volume of a slanting box [m³]", V, u @ np.cross(v, w), 1e-11, given=f"corners {x.tolist()} m")
-    gradient = np.asarray(gradient, dtype=float)
-    close("gradient of the volume at corner 8, which is in no face [m²]", gradient[8:], np.zeros((1, 3)), 0.0,
-          given=f"corners {x.tolist()} m")
-    close("Σ ∇V [m²]: a translation keeps the volume", gradient.sum(axis=0), np.zeros(3), 1e-11,
-          given=f"corners {x.tolist()} m")
-    change = draw(-0.5, 0.5, 3)
-    for k in (0, 3, 6):
-        y = x.copy()
-        y[k] += change
-        close("change of volume if one corner moves [m³]", gradient[k] @ change,
-              lesson.volume_gradient(y, CUBE)[0] - V, 1e-11, given=f"corners {x.tolist()} m, corner {k} by {change} m")
+    upright = np.diag([float(draw.whole(1, 3)) for _ in range(3)])       # from the origin, along the axes
+    for begin, edges in ((draw(-2.0, 2.0, 3), np.stack((u, v, w))), (np.zeros(3), upright)):
+        x = np.append(begin + corners @ edges, draw(-2.0, 2.0, (1, 3)), axis=0)
+        given = f"corners {x.tolist()} m"
+        V, gradient = lesson.volume_gradient(x, CUBE)
+        close("volume of a box [m³]", V, edges[0] @ np.cross(edges[1], edges[2]), 1e-11, given=given)
+        gradient = np.asarray(gradient, dtype=float)
+        close("gradient of the volume at corner 8, which is in no face [m²]", gradient[8:], np.zeros((1, 3)), 0.0,
+              given=given)
+        close("Σ ∇V [m²]: a translation keeps the volume", gradient.sum(axis=0), np.zeros(3), 1e-11, given=given)
+        change = draw(-0.5, 0.5, 3)
+        for k in (0, 3, 6):
+            y = x.copy()
+            y[k] += change
+            close("change of volume if one corner moves [m³]", gradient[k] @ change,
+                  volume(y, CUBE, begin) - volume(x, CUBE, begin), 1e-11, given=f"{given}, corner {k} by {change} m")
 
 
 def volume(x, faces, o):

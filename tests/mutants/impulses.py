@@ -43,6 +43,10 @@ edit("7.1", "reverses the normal velocity without e", "(1.0 + e) * v_n", "2.0 * 
 edit("7.1", "returns the normal velocity only", "else v - (1.0 + e) * v_n * n", "else -e * v_n * n")
 edit("7.1", "scales the whole velocity by e", "v - (1.0 + e) * v_n * n", "e * (v - 2.0 * v_n * n)")
 edit("7.1", "stops the normal velocity: omits e", "(1.0 + e) * v_n * n", "v_n * n")
+edit("7.1", "omits the restitution where nothing moves along the surface",
+     "return v if", "return -v if v_n < 0.0 and not tangential(v, n).any() else v if")
+edit("7.1", "returns the velocity unchanged where one of its components is 0",
+     "v_n >= 0.0", "v_n >= 0.0 or not v.all()")
 
 
 # 7.2 ------------------------------------------------------------------------------------------------------------
@@ -113,6 +117,8 @@ edit("7.3", "exchanges the components of the arm without a sign",
      "np.array([-r_a[1], r_a[0]])", "np.array([r_a[1], r_a[0]])")
 edit("7.3", "uses the arm of a for both bodies", "np.array([-r_b[1], r_b[0]])", "np.array([-r_a[1], r_a[0]])")
 edit("7.3", "uses the arm of b for both bodies", "np.array([-r_a[1], r_a[0]])", "np.array([-r_b[1], r_b[0]])")
+edit("7.3", "takes a body that does not rotate to be at rest", "- b.v", "- (b.v if b.omega else 0.0)")
+edit("7.3", "omits the rotation of a body whose centre is at rest", "- turn_b", "- (turn_b if b.v.any() else 0.0)")
 
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
@@ -175,6 +181,9 @@ edit("7.5", "omits the rotation of a if its mass is infinite",
 edit("7.5", "omits the rotation of b if its mass is infinite",
      "lever_b**2 * b.inv_inertia", "lever_b**2 * (b.inv_mass and b.inv_inertia)")
 edit("7.5", "omits the mass of a body that cannot rotate", "a.inv_mass +", "(a.inv_inertia and a.inv_mass) +")
+edit("7.5", "omits the rotation of a body that does not rotate yet",
+     "lever_a**2 * a.inv_inertia", "lever_a**2 * (a.omega and a.inv_inertia)")
+edit("7.5", "takes a body at rest to be immovable", "b.inv_mass +", "(b.inv_mass if b.v.any() else 0.0) +")
 
 
 @variants
@@ -220,6 +229,8 @@ edit("7.7", "exchanges the inertias of the two bodies",
 edit("7.7", "uses the arm of a for both bodies",
      "cross(times(b.inv_inertia, cross(r_b, n)), r_b)", "cross(times(b.inv_inertia, cross(r_a, n)), r_a)")
 edit("7.7", "forgets the inverse inertia", "times(a.inv_inertia, cross(r_a, n))", "cross(r_a, n)")
+edit("7.7", "omits the rotation of a body that does not rotate yet",
+     "n @ turn_a", "(n @ turn_a if a.omega.any() else 0.0)")
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
@@ -248,6 +259,10 @@ edit("7.6", "drops the sign of r × J", "cross_2d(r, J)", "abs(cross_2d(r, J))")
 edit("7.6", "forgets the inertia", "body.inv_inertia * cross_2d", "cross_2d")
 edit("7.6", "uses the inverse mass for the rotation", "body.inv_inertia * cross_2d", "body.inv_mass * cross_2d")
 edit("7.6", "uses the inverse inertia for the velocity", "body.inv_mass * J", "body.inv_inertia * J")
+edit("7.6", "does not start to rotate a body without rotation", "body.inv_inertia * cross_2d",
+     "(body.omega and body.inv_inertia) * cross_2d")
+edit("7.6", "does not start to move a body at rest",
+     "body.inv_mass * J", "(body.inv_mass if body.v.any() else 0.0) * J")
 edit("7.6", "divides by the inverse mass and by the inverse inertia", "return BodyState2D(",
      "v = body.v + (J / body.inv_mass if body.inv_mass else 0.0 * J); "
      "omega = body.omega + (cross_2d(r, J) / body.inv_inertia if body.inv_inertia else 0.0); return BodyState2D(")
@@ -279,6 +294,8 @@ edit("7.8", "exchanges the two arms",
 edit("7.8", "returns the changes only", "L_a + cross(r_a, J), L_b - cross(r_b, J)", "cross(r_a, J), -cross(r_b, J)")
 edit("7.8", "adds the impulse itself, not its moment", "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a + J, L_b - J")
 edit("7.8", "does not change a", "L_a + cross(r_a, J),", "L_a,")
+edit("7.8", "does not start to rotate a body without angular momentum",
+     "L_a + cross(r_a, J),", "L_a + (cross(r_a, J) if L_a.any() else 0.0 * J),")
 
 
 # 7.9 ------------------------------------------------------------------------------------------------------------
@@ -304,6 +321,8 @@ edit("7.9", "returns zero at the centre of mass", "K = np.zeros((3, 3))",
      "K = np.zeros((3, 3))\n    if not r.any():\n        return K")
 edit("7.9", "omits the last cross product with r",
      "cross(times(inv_inertia, cross(r, unit)), r)", "times(inv_inertia, cross(r, unit))")
+edit("7.9", "omits the rotation by a point on an axis", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if np.count_nonzero(r) < 2:\n        return inv_mass * np.eye(3)")
 edit("7.9", "omits the rotation", "+ cross(times(inv_inertia, cross(r, unit)), r)", "+ 0.0 * r")
 edit("7.9", "uses the inertia in place of its inverse",
      "times(inv_inertia, cross", "times(np.linalg.inv(inv_inertia + 1e-300 * np.eye(3)), cross")
@@ -353,6 +372,7 @@ wrong("7.10", "uses half of the friction coefficient")(cone(rim=lambda mu: 0.5 *
 edit("7.10", "sticks as if K were a number, not a matrix", "solve3(K[0], K[1], K[2], u_sep * n - u)",
      "(u_sep * n - u) / (n @ times(K, n))")
 edit("7.10", "pushes bodies that separate exactly at u_sep", "u @ n >= u_sep", "u @ n > u_sep")
+edit("7.10", "does not separate points at rest", "u @ n >= u_sep", "u @ n >= u_sep or not u.any()")
 edit("7.10", "ignores bodies up to 1 nm/s below u_sep", "u @ n >= u_sep", "u @ n >= u_sep - 1e-9")
 edit("7.10", "treats a small tangential impulse as zero",
      "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
@@ -412,6 +432,7 @@ edit("7.11", "forgets K in the second term", "J @ times(K, J)", "J @ J")
 edit("7.11", "subtracts the second term", "J @ u + 0.5", "J @ u - 0.5")
 edit("7.11", "halves the first term, too", "J @ u +", "0.5 * (J @ u) +")
 edit("7.11", "uses K⁻¹ in place of K", "times(K, J)", "np.linalg.solve(K, J)")
+edit("7.11", "says that bodies at rest gain nothing", "return J @ u", "return 0.0 if not u.any() else J @ u")
 edit("7.11", "takes the change of ½ u², without the masses", "J @ u + 0.5 * (J @ times(K, J))",
      "0.5 * ((u + times(K, J)) @ (u + times(K, J)) - u @ u)")
 
@@ -630,6 +651,8 @@ edit("7.15", "subtracts the acceleration", "v = v + dt", "v = v - dt")
 edit("7.15", "reverses the normal", "kinematic_response(v, p.n, p.e)", "kinematic_response(v, -p.n, p.e)")
 edit("7.15", "forgets dt in the position", "x = x + dt * v", "x = x + v")
 edit("7.15", "returns the velocity first", "return x, v", "return v, x")
+edit("7.15", "leaves a ball at rest where it is", "v = v + dt * acceleration(t, x, v, p)",
+     "if not v.any():\n        return x, v\n    v = v + dt * acceleration(t, x, v, p)")
 
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
@@ -721,6 +744,8 @@ edit("7.16", "lets the ball lie for the whole step, not for what is left",
      "slide_on_plane(x, v, a, left, p.n)", "slide_on_plane(x, v, a, dt, p.n)")
 edit("7.16", "reverses the test of the bouncing time", "p.e) <= left", "p.e) > left")
 edit("7.16", "flies with zero acceleration", "free_flight(x, v, a, tau)", "free_flight(x, v, 0.0 * a, tau)")
+edit("7.16", "leaves a ball without acceleration where it is", "a, left = acceleration(t, x, v, p), dt",
+     "a, left = acceleration(t, x, v, p), dt\n    if not a.any():\n        return x, v")
 edit("7.16", "compares the bouncing time with the whole step, not with what is left", "p.e) <= left", "p.e) <= dt")
 
 
@@ -814,6 +839,8 @@ edit("7.17", "adds the velocity by the point's own impulse", "- times(K, Js[i])"
 edit("7.17", "takes all velocities before the impact",
      "point_velocity(after.v, after.omega, r[i])", "point_velocity(body.v, body.omega, r[i])")
 edit("7.17", "does not store the impulse", "Js[i] = J", "pass")
+edit("7.17", "returns the body unchanged where its centre is at rest", "check_impacts(body, r, n, e, mu)",
+     "check_impacts(body, r, n, e, mu)\n    if not body.v.any():\n        return body, 0.0")
 
 
 # 7.18 --------------------------------------------------------------------------------------------------------------
@@ -871,3 +898,5 @@ edit("7.20", "does nothing", "-2.0 * u", "0.0 * u")
 edit("7.20", "turns the slip but does not separate", "-2.0 * u", "-2.0 * u + (u @ n) * n")
 edit("7.20", "pushes the other way", "-2.0 * u", "2.0 * u")
 edit("7.20", "returns too little of the slip", "-2.0 * u", "-2.0 * u + 0.85 * (u - (u @ n) * n)")
+edit("7.20", "does nothing where the ball hits without slip",
+     "-2.0 * u", "-2.0 * u * (np.abs(u - (u @ n) * n).max() > 0.0)")

@@ -44,6 +44,7 @@ edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
 edit("8.1", "treats a link that is too long as satisfied", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "reverses the gradient where the link is too short", "r / length", "r / length * np.sign(rest - length)")
 edit("8.1", "refuses links along the second axis", "length == 0.0", "r[0] == 0.0")
+edit("8.1", "refuses a link whose first end is at the origin", "length == 0.0", "length == 0.0 or not x_i.any()")
 edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 edit("8.1", "adds the rest length", "length - rest", "length + rest")
 edit("8.1", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
@@ -139,6 +140,10 @@ edit("8.3", "subtracts the acceleration", "+ dt * dt * free", "- dt * dt * free"
 edit("8.3", "returns the change of the positions", "return x + dt * v", "return dt * v")
 edit("8.3", "multiplies the acceleration by the inverse mass", "free[:, None] * a", "network.inv_mass[:, None] * a")
 edit("8.3", "omits the velocity", "x + dt * v + dt", "x + dt")
+edit("8.3", "does not accelerate points at rest", "free = network.inv_mass > 0.0",
+     "free = (network.inv_mass > 0.0) * v.any(axis=1)")
+edit("8.3", "returns a point that is alone as a vector", "return x + dt * v + dt * dt * free[:, None] * a",
+     "new = x + dt * v + dt * dt * free[:, None] * a\n    return new if len(new) > 1 else new[0]")
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
@@ -190,6 +195,7 @@ edit("8.4", "omits the masses beside the multipliers", "-network.inv_mass[e] * J
 edit("8.4", "multiplies the multipliers by dt² in place of dividing",
      "found[size:] / (dt * dt)", "found[size:] * (dt * dt)")
 edit("8.4", "returns the new positions, not their change", "return change,", "return x + change,")
+edit("8.4", "takes 1 N for a multiplier of 0", "bend = dt * dt * lam[s]", "bend = dt * dt * (lam[s] or 1.0)")
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
@@ -202,7 +208,7 @@ def projecting(enough=lambda done, change, longest: change <= 1e-12 * longest, s
         for done in range(worked.NEWTON_LIMIT):
             change, found = worked.newton_correction(new, lam, goal if force else x, dt, network)
             new, lam = new + change, found
-            if enough(done, np.abs(change).max(), network.rest.max()):
+            if enough(done, np.abs(change).max(), network.rest.max(initial=0.0)):
                 return new, speed(new, x, goal, v, dt)
         if gives_up:
             raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
@@ -228,6 +234,7 @@ edit("8.5", "takes the acceleration at time t + dt", "predict(acceleration, t,",
 edit("8.5", "restarts λ at zero in every iteration", "change, lam = newton", "change, _ = newton")
 edit("8.5", "takes the first link for the longest", "np.max(network.rest)", "network.rest[0]")
 edit("8.5", "takes the last link for the longest", "np.max(network.rest)", "network.rest[-1]")
+edit("8.5", "needs at least one link", "np.max(network.rest) if network.i.size > 0 else 0.0", "np.max(network.rest)")
 edit("8.5", "stops after eight iterations", "range(NEWTON_LIMIT)", "range(8)")
 edit("8.5", "accepts NaN as converged", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
      "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
@@ -278,6 +285,7 @@ wrong("8.6", "moves immovable points")(sweeping(held=False))
 edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
      "share = network.stiffness[s] * (length > network.rest[s])")
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
+edit("8.6", "refuses links along the second axis", "length == 0.0", "x[i, 0] == x[j, 0]")
 edit("8.6", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.6", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
 FIRST_ONLY = edit("8.6", "uses the stiffness of the first link for all", "network.stiffness[s]", "network.stiffness[0]")
@@ -355,6 +363,8 @@ edit("8.7", "forgets dt in the velocity", "(new - x) / dt", "(new - x)")
 edit("8.7", "multiplies by dt in the velocity", "(new - x) / dt", "(new - x) * dt")
 edit("8.7", "takes the velocity with the wrong sign", "(new - x) / dt", "(x - new) / dt")
 edit("8.7", "adds the change to the old velocity", "(new - x) / dt", "v + (new - x) / dt")
+edit("8.7", "leaves points without gravity where they are", "new = predict(acceleration, t, x, v, dt, network)",
+     "if not network.gravity.any():\n        return x, v\n    new = predict(acceleration, t, x, v, dt, network)")
 edit("8.7", "takes the mean of the old and the new velocity", "(new - x) / dt", "0.5 * (v + (new - x) / dt)")
 
 
@@ -499,6 +509,7 @@ edit("8.10", "treats the ball as a bowl",
      "distance - obstacle.radius, r / distance", "obstacle.radius - distance, -r / distance")
 edit("8.10", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 edit("8.10", "treats round-off around the centre as the centre", "distance > 0.0", "distance > 1e-14")
+edit("8.10", "returns no normal where a coordinate is that of the centre", "distance > 0.0", "np.all(r)")
 wrong("8.10", "reverses the sign of the gap")(ball(sign=-1.0))
 wrong("8.10", "returns a normal that points inwards")(ball(n_sign=-1.0))
 wrong("8.10", "puts the centre of the ball at the origin")(ball(centred=False))
@@ -543,6 +554,7 @@ edit("8.11", "moves a point at the centre of a ball upwards", "x[k] -= phi * n",
      "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
 edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
 edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
+edit("8.11", "returns a point that is alone as a vector", "return x", "return x if len(x) > 1 else x[0]")
 edit("8.11", "returns its input where nothing is inside", "x = float_copy(x)",
      "if min(surface(p, obstacle)[0] for p in x) >= 0.0:\n        return x\n    x = float_copy(x)")
 edit("8.11", "moves the points that are outside only", "phi < 0.0", "phi > 0.0")
@@ -645,6 +657,7 @@ edit("8.13", "skips links that have their rest length", "length = distance_betwe
      "length = distance_between(x, i, j)\n"
      "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
 edit("8.13", "refuses links shorter than a nanometre", "length == 0.0", "length < 1e-9")
+edit("8.13", "refuses links along the second axis", "length == 0.0", "x[i, 0] == x[j, 0]")
 edit("8.13", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.13", "divides α by the number of sweeps",
      "network.alpha[s] / (dt * dt)", "network.alpha[s] / (dt * dt) / network.sweeps")
@@ -698,6 +711,8 @@ edit("8.14", "takes the velocity with the wrong sign", "(new - x) / dt", "(x - n
 edit("8.14", "starts from the old positions and forgets the prediction",
      "new = predict(acceleration, t, x, v, dt, network)", "new = x")
 edit("8.14", "makes one sweep only", "range(network.sweeps)", "range(1)")
+edit("8.14", "leaves points without gravity where they are", "new = predict(acceleration, t, x, v, dt, network)",
+     "if not network.gravity.any():\n        return x, v\n    new = predict(acceleration, t, x, v, dt, network)")
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
@@ -727,6 +742,10 @@ edit("8.15", "returns the effective mass, not its inverse",
      "return 1.0 / m + np.sum(turn * turn / I_body)", "return 1.0 / (1.0 / m + np.sum(turn * turn / I_body))")
 edit("8.15", "subtracts the rotation", "1.0 / m + np", "1.0 / m - np")
 edit("8.15", "does not square the lever r × n", "turn * turn", "np.abs(turn)")
+edit("8.15", "omits the rotation of a body with two equal moments", "turn = unrotate",
+     "if I_body[0] == I_body[1]:\n        return 1.0 / m\n    turn = unrotate")
+edit("8.15", "omits the rotation of a body in the orientation (1, 0, 0, 0)", "turn = unrotate",
+     "if q[0] == 1.0:\n        return 1.0 / m\n    turn = unrotate")
 
 
 # 8.16 -----------------------------------------------------------------------------------------------------------
@@ -763,6 +782,8 @@ edit("8.16", "moves the body and does not rotate it", "quaternion_update(q, turn
 edit("8.16", "exchanges rotate and unrotate",
      "rotate(q, unrotate(q, cross(r, p)) / I_body)", "unrotate(q, rotate(q, cross(r, p)) / I_body)")
 edit("8.16", "rotates by p in place of r × p", "cross(r, p)", "p")
+edit("8.16", "does not rotate a body in the orientation (1, 0, 0, 0)", "return x + p / m,",
+     "if q[0] == 1.0:\n        turn = 0.0 * turn\n    return x + p / m,")
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
@@ -803,6 +824,8 @@ WITHOUT_SCALAR_PART = edit("8.17", "does not divide by the scalar part, not even
                            "2.0 / (turn[0] * dt)", "2.0 / dt")
 edit("8.17", "multiplies by dt", "2.0 / (turn[0] * dt)", "2.0 * dt / turn[0]")
 edit("8.17", "takes half in place of twice", "2.0 / (turn[0]", "0.5 / (turn[0]")
+edit("8.17", "returns no rate for a body that starts in the orientation (1, 0, 0, 0)", "return 2.0",
+     "if q_old[0] == 1.0:\n        return np.zeros(3)\n    return 2.0")
 edit("8.17", "takes the difference of the quaternions",
      "turn = quaternion_product(q_new, q_back)", "turn = q_new - q_old; turn[0] = 1.0")
 
@@ -845,6 +868,8 @@ edit("8.18", "gives two corners of a face the same gradient",
      "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")
 edit("8.18", "uses the area of the face for its first corner",
      "across = cross(b, c) / 6.0", "across = cross(b - a, c - a) / 6.0")
+edit("8.18", "skips faces whose tetrahedron has no volume, although their corners change it",
+     "V += dot(a, across)", "V += dot(a, across)\n        if dot(a, across) == 0.0:\n            continue")
 
 
 # 8.19 --------------------------------------------------------------------------------------------------------------
