@@ -147,7 +147,8 @@ def solve_lcp(A, b):
 
     Guess which contacts push, at first none.  Then repeat, at most MAX_PIVOTS m times:
         Find λ with (A λ + b)_k = 0 for the contacts that push and λ_k = 0 for the others.  Use solve of lesson 1, with
-        rows of the identity matrix for the others.
+        rows and columns of the identity matrix for the others: their λ_k must be exactly 0.  With 1e-17 there, a
+        contact that neither pushes nor separates could be wrong in every round.
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
         If none is wrong, return λ.  Otherwise change the guess for one contact only: the wrong one of least index.

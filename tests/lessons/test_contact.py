@@ -448,8 +448,22 @@ def test_contacts_of_any_size_are_solved_side_by_side(lesson, draw):
               given=f"A = {both}, b = {b} and −1e16")
 
 
+def beside_open_ones(draw):
+    """(A, b) of seven contacts in any order: two push, and they open the next two, the only neighbours of the others.
+
+    b of the other three is 0, and so are their velocities.
+    """
+    A = np.diag(np.append(draw(3.0, 4.0, 2), np.append(draw(8.0, 12.0, 2), draw(2.0, 4.0, 3))))
+    A[2:4, :2], A[2:4, 4:] = draw(1.0, 2.0, (2, 2)), draw(-1.0, 1.0, (2, 3))
+    A[:2, 2:4], A[4:, 2:4] = A[2:4, :2].T, A[2:4, 4:].T
+    b = np.concatenate((-draw(5.0, 9.0, 2), -draw(0.2, 1.0, 2), np.zeros(3)))
+    order = np.argsort(draw(0.0, 1.0, 7))
+    return A[np.ix_(order, order)], b[order]
+
+
 @exercise("9.8", points=0.125,
-          hint="ε_k has both parts, Σ_l |A_kl λ_l| and |b_k|: with less, round-off changes the guess for ever")
+          hint="ε_k has both parts, Σ_l |A_kl λ_l| and |b_k|; λ of contacts that do not push must be exactly 0: else "
+               "round-off changes the guess for ever")
 def test_contacts_that_neither_push_nor_separate_do_not_keep_the_solver_busy(lesson, draw):
     for _ in range(40):
         A, lam = positive_definite(draw, 5), np.maximum(0.0, draw(-1.0, 1.0, 5))
@@ -461,6 +475,12 @@ def test_contacts_that_neither_push_nor_separate_do_not_keep_the_solver_busy(les
         A[2, 2] += np.sum(A[2, :2] ** 2) * 4.0                           # stays positive definite
         b = np.append(-A[:2, :2] @ lam[:2], 0.0)
         close("λ where the impulses of two contacts cancel at a third [N s]", lesson.solve_lcp(A, b), lam, SOLVED,
+              given=f"A = {A}, b = {b}")
+    for k in range(40):
+        m = 2 + k % 5
+        A, b = beside_open_ones(draw) if k % 2 else (positive_definite(draw, m), draw(-3.0, 3.0, m))
+        b = b * (draw(0.0, 1.0, len(b)) < 0.5) if k % 4 == 0 else b
+        close("λ where b is 0 at some contacts [N s]", lesson.solve_lcp(A, b), enumerated(A, b), SOLVED,
               given=f"A = {A}, b = {b}")
 
 

@@ -794,8 +794,8 @@ wrong("9.8", "lets all wrong contacts change sides at once")(murty(everything=Tr
 wrong("9.8", "uses the round-off of the largest row for all rows")(murty(size=np.max))
 wrong("9.8", "uses an absolute round-off of 1e-13 m/s")(murty(size=np.ones_like))
 wrong("9.8", "measures round-off as a velocity, not as an impulse")(murty(diagonal=lambda A: np.ones(len(A))))
-edit("9.8", "solves for the impulses of all contacts", "if pushes[k]:", "if True:")
-edit("9.8", "reverses the sign of b", "A[k], -b[k]", "A[k], b[k]")
+edit("9.8", "solves for the impulses of all contacts", "solve(matrix, right)", "solve(A, -b)")
+edit("9.8", "reverses the sign of b", "0.0), -b[k]", "0.0), b[k]")
 edit("9.8", "checks the matrix only", "check_independent(A, b)", "check_independent(A, np.ones_like(b))")
 edit("9.8", "returns velocities", "return lam", "return u")
 edit("9.8", "solves for the absolute value: never sees a pull",
@@ -814,11 +814,11 @@ edits("9.8", {
                                                             "pushes[0] = not pushes[0]"),
     "lets all other contacts go when one is added": ("pushes[wrong] = not pushes[wrong]",
                                                      "pushes[:] = np.arange(m) == wrong"),
-    "writes columns in place of rows of A, and of the identity": ("matrix[k], right[k] = A[k], -b[k]",
-                                                                  "matrix[:, k], right[k] = A[:, k], -b[k]"),
+    "writes columns in place of rows of A, and of the identity":
+        ("matrix[k], right[k] = np.where(pushes, A[k], 0.0), -b[k]", "matrix[:, k], right[k] = A[:, k], -b[k]"),
     "gives all contacts −b on the right": ("np.eye(m), np.zeros(m)", "np.eye(m), -b"),
     "has rows of zeros for contacts that do not push": ("np.eye(m), np.zeros(m)", "1e-9 * np.eye(m), np.zeros(m) + b"),
-    "keeps only the diagonal for the contacts that push": ("A[k], -b[k]", "np.eye(m)[k] * A[k, k], -b[k]"),
+    "keeps only the diagonal for the contacts that push": ("np.where(pushes, A[k], 0.0)", "np.eye(m)[k] * A[k, k]"),
     "limits λ to zero or more after solving": ("solve(matrix, right)", "np.maximum(0.0, solve(matrix, right))"),
     "stops after MAX_PIVOTS rounds in all": ("range(MAX_PIVOTS * m)", "range(MAX_PIVOTS)"),
     "stops after m rounds": ("range(MAX_PIVOTS * m)", "range(m)"),
@@ -847,7 +847,7 @@ edits("9.8", {
 for old, new in (
         ("if pushes[k] else (u[k]", "if not pushes[k] else (u[k]"),
         ("(lam[k] < -epsilon[k] / A[k, k]) if pushes[k] else (u[k] < -epsilon[k])", "lam[k] < -epsilon[k] / A[k, k]"),
-        ("matrix[k], right[k] = A[k], -b[k]", "matrix[k] = A[k]"),
+        (", right[k] = np.where(pushes, A[k], 0.0), -b[k]", " = np.where(pushes, A[k], 0.0)"),
         ("    if wrong < 0:", "    if True:"),
         ("A @ lam + b, CONVERGED", "A @ lam, CONVERGED")):
     edit("9.8", "ends with all λ at 0, whatever b is", old, new)
@@ -878,6 +878,8 @@ right("9.8", "by twice as many rounds")(murty(rounds=2 * worked.MAX_PIVOTS))
 
 edits("9.8", {
     "takes a contact for wrong that separates by round-off": ("u[k] < -epsilon[k]", "u[k] < epsilon[k]"),
+    "leaves the impulses of contacts that do not push at the round-off of solve":
+        ("np.where(pushes, A[k], 0.0)", "A[k]"),
     "names the residual without impulses when it gives up": ("complementarity_residual(A, b, lam)",
                                                              "complementarity_residual(A, b, 0.0 * lam)"),
     "names the largest impulse when it gives up": ("complementarity_residual(A, b, lam)", "np.max(np.abs(lam))"),
