@@ -159,7 +159,7 @@ def best_relaxation(rho):
     """
     ### BEGIN SOLUTION 9.7
     omega = 2.0 / (1.0 + np.sqrt(1.0 - rho))
-    return omega, omega - 1.0
+    return omega, 0.25 * omega * omega * rho         # = ω − 1, which loses the digits of a small ρ
     ### END SOLUTION
 
 
@@ -168,7 +168,8 @@ def solve_lcp(A, b):
 
     Guess which contacts push, at first none.  Then repeat, at most MAX_PIVOTS m times:
         Find λ with (A λ + b)_k = 0 for the contacts that push and λ_k = 0 for the others.  Use solve of lesson 1, with
-        rows of the identity matrix for the others.
+        rows and columns of the identity matrix for the others: their λ_k must be exactly 0.  With 1e-17 there, a
+        contact that neither pushes nor separates could be wrong in every round.
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
         If none is wrong, return λ.  Otherwise change the guess for one contact only: the wrong one of least index.
@@ -187,7 +188,7 @@ def solve_lcp(A, b):
         matrix, right = np.eye(m), np.zeros(m)
         for k in range(m):
             if pushes[k]:
-                matrix[k], right[k] = A[k], -b[k]
+                matrix[k], right[k] = np.where(pushes, A[k], 0.0), -b[k]
         lam = solve(matrix, right)
         u, epsilon, wrong = A @ lam + b, CONVERGED * (np.abs(A) @ np.abs(lam) + np.abs(b)), -1
         for k in range(m - 1, -1, -1):
@@ -271,7 +272,8 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
     At rest the laws hold for forces and accelerations as they do for impulses and velocities: solve_contacts(A, b, μ)
     gives F from  b = G M⁻¹ load,  and then  a = M⁻¹ (load + Gᵀ F).  inverse_masses(inv_mass, inv_inertia) is M⁻¹ (3n,).
 
-    x (n, 2), inv_mass (n,), inv_inertia (n,), load (n, 3) [N, N, N m] force and torque on each body, mu (m,).
+    x (n, 2), inv_mass (n,), inv_inertia (n,), load (n, 3) [N, N, N m] force and torque on each body, mu (m,), ∞ too.
+    A body with an inverse mass of 0 may still turn.
     A scene stays at rest where a = 0.  A contact is released when its F_n reaches 0.
     Raises what check_scene(x, inv_mass, inv_inertia, contacts, load, mu) raises; call it first.
     *Left out:* the choice among several possible F where supports are redundant; sums and moments are right.
@@ -451,7 +453,8 @@ def fischer_burmeister(x, y):
 
     φ is the sum of the legs x and y of a right triangle less its hypotenuse.  φ = 0 exactly if  0 ≤ x ⊥ y ≥ 0.
     *Find* its derivatives, and a form of φ that loses no digits where x and y are above zero, however different they
-    are.  At (0, 0) there is no derivative; return 1 − 1/√2 for both, which is their value along x = y.
+    are.  Elsewhere x + y − h is good enough.  At (0, 0) there is no derivative; return 1 − 1/√2 for both, which is
+    their value along x = y.
     *Source:* Fischer 1992.
     """
     ### BEGIN SOLUTION 9.18

@@ -181,6 +181,13 @@ edits("9.1", {
 })
 
 
+edits("9.1", {
+    "leaves out a second contact of the same two bodies":
+        ("n_x, n_y = contacts", "if k and contacts.a[k] == contacts.a[k - 1] and contacts.b[k] == contacts.b[k - 1]: "
+         "continue\n        n_x, n_y = contacts"),
+})
+
+
 # 9.2 ------------------------------------------------------------------------------------------------------------
 @variants
 def delassus(masses=same, turned=True, diagonal=False, left=lambda G, w: G @ np.diag(w), result=same):
@@ -268,6 +275,15 @@ def delassus_matrix_2(G, w):
 wrongs("9.2", delassus, {
     "leaves out the last one of an odd number of rows":
         {"result": lambda A: A * (np.arange(len(A)) < len(A) // 2 * 2)},
+})
+
+
+wrongs("9.2", delassus, {
+    "has 1 on the diagonal where no body can be moved": {"result": lambda A: A + np.diag(1.0 * (np.diag(A) == 0.0))},
+    "takes a body for fixed that is a million times heavier than the lightest one":
+        {"masses": lambda w: np.where(w < 1e-6 * np.max(w), 0.0, w)},
+    "does not turn a body with an inverse mass of 0":
+        {"masses": lambda w: np.where(np.repeat(w[::3], 3) > 0.0, w, 0.0)},
 })
 
 
@@ -380,6 +396,11 @@ def complementarity_residual_2(A, b, lam):
         if size > worst:
             worst = size
     return worst
+
+
+edits("9.3", {
+    "returns 0 where no contact has an impulse": ("return np.max", "return 0.0 if not np.any(lam) else np.max"),
+})
 
 
 # 9.4 ------------------------------------------------------------------------------------------------------------
@@ -523,6 +544,16 @@ edits("9.4", {
 })
 
 
+edits("9.4", {
+    "makes a visit without relaxation where the relaxed one would pull":
+        ("lam[k] = np.maximum(0.0, lam[k] - omega", "free = lam[k] - omega * (A[k] @ lam + b[k]) / A[k, k]\n        "
+         "lam[k] = np.maximum(0.0, lam[k] - (omega if free >= 0.0 else 1.0)"),
+    "ends the sweep at the first contact that is right already":
+        ("lam[k] = np.maximum",
+         "if k and A[k] @ lam + b[k] == 0.0 and lam[k] > 0.0: break\n        lam[k] = np.maximum"),
+})
+
+
 # 9.5 to 9.7 -----------------------------------------------------------------------------------------------------
 @variants
 def stack(power=2, half=2.0, shift=0, of=np.cos):
@@ -594,9 +625,9 @@ edit("9.6", "squares the factor", "return r / (1.0 + r)", "return (r / (1.0 + r)
 edit("9.7", "forgets the 1 in the denominator", "(1.0 + np.sqrt(1.0 - rho))", "np.sqrt(1.0 - rho)")
 edit("9.7", "adds ρ under the root", "1.0 - rho)", "1.0 + rho)")
 edit("9.7", "subtracts the root", "1.0 + np.sqrt", "1.0 - np.sqrt")
-edit("9.7", "returns 1 − ω for the factor", "omega - 1.0", "1.0 - omega")
-edit("9.7", "returns the factor first", "return omega, omega - 1.0", "return omega - 1.0, omega")
-edit("9.7", "returns ρ for the factor", "omega - 1.0", "rho")
+edit("9.7", "returns 1 − ω for the factor", "0.25 * omega * omega * rho", "1.0 - omega")
+edit("9.7", "returns the factor first", "return omega, 0.25 * omega * omega * rho", "return omega - 1.0, omega")
+edit("9.7", "returns ρ for the factor", "0.25 * omega * omega * rho", "rho")
 wrongs("9.5", stack_rho, {story: {"formula": formula} for story, formula in {
     "divides the cosine, not the angle, by n": lambda n: (np.cos(0.5 * np.pi) / n) ** 2,
     "squares the angle, not the cosine": lambda n: np.cos((0.5 * np.pi / n) ** 2),
@@ -708,15 +739,15 @@ wrongs("9.7", relaxation, {
     "returns the number of sweeps for the factor": {"factor": lambda omega: -1.0 / np.log(max(omega - 1.0, 1e-300))},
 })
 edits("9.7", {
-    "returns ω only": ("return omega, omega - 1.0", "return omega"),
-    "returns the factor only": ("return omega, omega - 1.0", "return omega - 1.0"),
-    "returns ω (1 − ρ) for the factor": ("omega - 1.0", "omega * (1.0 - rho)"),
-    "returns ω ρ for the factor": ("omega - 1.0", "omega * rho"),
-    "returns ρ (ω − 1) for the factor": ("omega - 1.0", "rho * (omega - 1.0)"),
-    "returns ρ² for the factor": ("omega - 1.0", "rho * rho"),
-    "returns the root of ρ for the factor": ("omega - 1.0", "np.sqrt(rho)"),
-    "returns 1 − ρ for the factor": ("omega - 1.0", "1.0 - rho"),
-    "returns √(1 − ρ) for the factor": ("omega - 1.0", "np.sqrt(1.0 - rho)"),
+    "returns ω only": ("return omega, 0.25 * omega * omega * rho", "return omega"),
+    "returns the factor only": ("return omega, 0.25 * omega * omega * rho", "return omega - 1.0"),
+    "returns ω (1 − ρ) for the factor": ("0.25 * omega * omega * rho", "omega * (1.0 - rho)"),
+    "returns ω ρ for the factor": ("0.25 * omega * omega * rho", "omega * rho"),
+    "returns ρ (ω − 1) for the factor": ("0.25 * omega * omega * rho", "rho * (omega - 1.0)"),
+    "returns ρ² for the factor": ("0.25 * omega * omega * rho", "rho * rho"),
+    "returns the root of ρ for the factor": ("0.25 * omega * omega * rho", "np.sqrt(rho)"),
+    "returns 1 − ρ for the factor": ("0.25 * omega * omega * rho", "1.0 - rho"),
+    "returns √(1 − ρ) for the factor": ("0.25 * omega * omega * rho", "np.sqrt(1.0 - rho)"),
     "adds the root outside the fraction": ("2.0 / (1.0 + np.sqrt(1.0 - rho))", "2.0 / 1.0 + np.sqrt(1.0 - rho)"),
     "turns the fraction round": ("2.0 / (1.0 + np.sqrt(1.0 - rho))", "(1.0 + np.sqrt(1.0 - rho)) / 2.0"),
     "takes the root of the whole denominator": ("(1.0 + np.sqrt(1.0 - rho))", "np.sqrt(1.0 + 1.0 - rho)"),
@@ -742,6 +773,11 @@ edit("9.5", "returns 1 from a thousand bodies on", "np.cos(0.5 * np.pi / n) ** 2
 edit("9.6", "returns r where that is small", "r / (1.0 + r)", "(r / (1.0 + r) if r > 0.01 else r)")
 edit("9.7", "returns ω = 1 where ρ is small", "2.0 / (1.0 + np.sqrt(1.0 - rho))",
      "(2.0 / (1.0 + np.sqrt(1.0 - rho)) if rho > 1e-3 else 1.0)")
+
+
+edit("9.6", "takes a ratio above a million for a million", "r / (1.0 + r)", "min(r, 1e6) / (1.0 + min(r, 1e6))")
+edit("9.7", "divides a difference of nearly equal numbers by a small ρ", "2.0 / (1.0 + np.sqrt(1.0 - rho))",
+     "2.0 * (1.0 - np.sqrt(1.0 - rho)) / rho if rho > 0.0 else 1.0")
 
 
 # 9.8 ------------------------------------------------------------------------------------------------------------
@@ -794,8 +830,8 @@ wrong("9.8", "lets all wrong contacts change sides at once")(murty(everything=Tr
 wrong("9.8", "uses the round-off of the largest row for all rows")(murty(size=np.max))
 wrong("9.8", "uses an absolute round-off of 1e-13 m/s")(murty(size=np.ones_like))
 wrong("9.8", "measures round-off as a velocity, not as an impulse")(murty(diagonal=lambda A: np.ones(len(A))))
-edit("9.8", "solves for the impulses of all contacts", "if pushes[k]:", "if True:")
-edit("9.8", "reverses the sign of b", "A[k], -b[k]", "A[k], b[k]")
+edit("9.8", "solves for the impulses of all contacts", "solve(matrix, right)", "solve(A, -b)")
+edit("9.8", "reverses the sign of b", "0.0), -b[k]", "0.0), b[k]")
 edit("9.8", "checks the matrix only", "check_independent(A, b)", "check_independent(A, np.ones_like(b))")
 edit("9.8", "returns velocities", "return lam", "return u")
 edit("9.8", "solves for the absolute value: never sees a pull",
@@ -814,11 +850,11 @@ edits("9.8", {
                                                             "pushes[0] = not pushes[0]"),
     "lets all other contacts go when one is added": ("pushes[wrong] = not pushes[wrong]",
                                                      "pushes[:] = np.arange(m) == wrong"),
-    "writes columns in place of rows of A, and of the identity": ("matrix[k], right[k] = A[k], -b[k]",
-                                                                  "matrix[:, k], right[k] = A[:, k], -b[k]"),
+    "writes columns in place of rows of A, and of the identity":
+        ("matrix[k], right[k] = np.where(pushes, A[k], 0.0), -b[k]", "matrix[:, k], right[k] = A[:, k], -b[k]"),
     "gives all contacts −b on the right": ("np.eye(m), np.zeros(m)", "np.eye(m), -b"),
     "has rows of zeros for contacts that do not push": ("np.eye(m), np.zeros(m)", "1e-9 * np.eye(m), np.zeros(m) + b"),
-    "keeps only the diagonal for the contacts that push": ("A[k], -b[k]", "np.eye(m)[k] * A[k, k], -b[k]"),
+    "keeps only the diagonal for the contacts that push": ("np.where(pushes, A[k], 0.0)", "np.eye(m)[k] * A[k, k]"),
     "limits λ to zero or more after solving": ("solve(matrix, right)", "np.maximum(0.0, solve(matrix, right))"),
     "stops after MAX_PIVOTS rounds in all": ("range(MAX_PIVOTS * m)", "range(MAX_PIVOTS)"),
     "stops after m rounds": ("range(MAX_PIVOTS * m)", "range(m)"),
@@ -836,7 +872,7 @@ edits("9.8", {
                                        "np.abs(A) @ np.abs(lam) + np.abs(b)), -1; epsilon[:] = 1e-9"),
     "raises an error where no set fits after m rounds": ("for _ in range(MAX_PIVOTS * m):", "for _ in range(m + 1):"),
     "names the largest velocity when it gives up": ("complementarity_residual(A, b, lam), \"use",
-                                                    "0.0 * np.max(np.abs(u)), \"use"),
+                                                    "np.max(np.abs(A @ lam + b)), \"use"),
     "raises ValueError in place of Diverged": ("raise Diverged(", "raise ValueError("),
     "names another thing when it gives up": ("\"complementarity residual [m/s]\"", "\"residual\""),
     "changes b":
@@ -847,7 +883,7 @@ edits("9.8", {
 for old, new in (
         ("if pushes[k] else (u[k]", "if not pushes[k] else (u[k]"),
         ("(lam[k] < -epsilon[k] / A[k, k]) if pushes[k] else (u[k] < -epsilon[k])", "lam[k] < -epsilon[k] / A[k, k]"),
-        ("matrix[k], right[k] = A[k], -b[k]", "matrix[k] = A[k]"),
+        (", right[k] = np.where(pushes, A[k], 0.0), -b[k]", " = np.where(pushes, A[k], 0.0)"),
         ("    if wrong < 0:", "    if True:"),
         ("A @ lam + b, CONVERGED", "A @ lam, CONVERGED")):
     edit("9.8", "ends with all λ at 0, whatever b is", old, new)
@@ -878,9 +914,20 @@ right("9.8", "by twice as many rounds")(murty(rounds=2 * worked.MAX_PIVOTS))
 
 edits("9.8", {
     "takes a contact for wrong that separates by round-off": ("u[k] < -epsilon[k]", "u[k] < epsilon[k]"),
+    "leaves the impulses of contacts that do not push at the round-off of solve":
+        ("np.where(pushes, A[k], 0.0)", "A[k]"),
     "names the residual without impulses when it gives up": ("complementarity_residual(A, b, lam)",
                                                              "complementarity_residual(A, b, 0.0 * lam)"),
     "names the largest impulse when it gives up": ("complementarity_residual(A, b, lam)", "np.max(np.abs(lam))"),
+})
+
+
+edits("9.8", {
+    "changes the contact with the least of all A_kk λ_k and u_k, which may go round in circles":
+        ("        if wrong < 0:", "        worst = np.minimum(np.where(pushes, np.diag(A) * lam, u) + epsilon, 0.0)\n"
+         "        wrong = int(np.argmin(worst)) if np.min(worst) < 0.0 else -1\n        if wrong < 0:"),
+    "returns 0 where no contact approaches, before it checks the matrix":
+        ("check_independent(A, b)", "if np.all(b >= 0.0): return np.zeros(b.size)\n    check_independent(A, b)"),
 })
 
 
@@ -1230,6 +1277,13 @@ edits("9.10", {
 })
 
 
+edits("9.10", {
+    "cuts off pulls before the sweep": ("J = float_copy(J)", "J = float_copy(J); J[::2] = np.maximum(0.0, J[::2])"),
+    "leaves the friction of a contact that has the right normal impulse":
+        ("t = n + 1", "t = n + 1\n        if A[n] @ J + b[n] == 0.0 and J[n] > 0.0: continue"),
+})
+
+
 # 9.11 -----------------------------------------------------------------------------------------------------------
 @variants
 def forces(check=worked.check_scene, bias=1.0, loaded=1.0, push=1.0, weigh=True, pulled=lambda load: load,
@@ -1387,6 +1441,20 @@ edits("9.11", {
     "does not accelerate bodies without a contact":
         ("a.reshape(-1, 3)", "a.reshape(-1, 3) * np.isin(np.arange(len(x)), np.append(contacts.a, contacts.b))"
                              "[:, None]"),
+})
+
+
+wrongs("9.11", forces, {
+    "uses μ = 1000 for infinite friction": {"friction": lambda mu: np.minimum(mu, 1e3)},
+    "returns zero for forces below a thousandth of the largest one":
+        {"told": lambda F: np.where(np.abs(F) < 1e-3 * np.max(np.abs(F)), 0.0, F)},
+})
+edits("9.11", {
+    "does not turn a body with an inverse mass of 0":
+        ("inverse_masses(inv_mass, inv_inertia)", "inverse_masses(inv_mass, inv_inertia * (inv_mass > 0.0))"),
+    "returns zeros without a load, before it checks the scene":
+        ("check_scene(x,", "if not np.any(load): return np.zeros((contacts.a.size, 2)), np.zeros(load.shape)\n    "
+         "check_scene(x,"),
 })
 
 
@@ -1819,6 +1887,15 @@ edits("9.14", {
 })
 
 
+edits("9.14", {
+    "takes all planes for the same body":
+        (SAME_B, "last = old.first.size - 1\n            if min(old.b[s], last) == min(contacts.b[k], last):"),
+    "squares the places before it subtracts them":
+        ("(contacts.p[k, c] - old.p[s, c]) ** 2",
+         "contacts.p[k, c] ** 2 - 2.0 * contacts.p[k, c] * old.p[s, c] + old.p[s, c] ** 2"),
+})
+
+
 # 9.15 -----------------------------------------------------------------------------------------------------------
 @variants
 def leaves(low_side=True, high_side=True, bodies=slice(None), axes=slice(None), all_of=False, nan=True, nan_high=True,
@@ -2190,6 +2267,16 @@ right("9.16", "with arrays that are not contiguous")(
     lambda *given: tuple(np.repeat(part, 2, axis=0)[::2] for part in worked.velocity_sweep_2d(*given)))
 
 
+edits("9.16", {
+    "returns the given arrays themselves where there are no contacts":
+        ("v, omega, J = float_copy(v), float_copy(omega), float_copy(J)",
+         "v, omega, J = (v, omega, J) if J.size == 0 else (float_copy(v), float_copy(omega), float_copy(J))"),
+    "does not turn a body with an inverse mass of 0":
+        ("inv_mass, inv_inertia = pile.inv_mass, pile.inv_inertia",
+         "inv_mass, inv_inertia = pile.inv_mass, pile.inv_inertia * (pile.inv_mass > 0.0)"),
+})
+
+
 # 9.17 -----------------------------------------------------------------------------------------------------------
 edits("9.17", {
     "uses 1/A_kk for the normal, whatever r is": ("J[n] - r[n] * (A[n] @ J + b[n])",
@@ -2213,6 +2300,10 @@ edits("9.17", {
     "visits the contacts from the last to the first": ("range(0, J.size, 2)", "range(0, J.size, 2)[::-1]"),
     "makes two sweeps": ("range(0, J.size, 2)", "[*range(0, J.size, 2)] * 2"),
     "leaves out the last contact": ("range(0, J.size, 2)", "range(0, J.size - 2, 2)"),
+    "multiplies an infinite μ by a normal impulse of zero": (" if J[n] > 0.0 else 0.0", ""),
+    "sticks without a normal impulse where μ is infinite":
+        ("if J[n] > 0.0 else 0.0", "if J[n] > 0.0 else np.inf if mu[n // 2] == np.inf else 0.0"),
+    "limits μ to 1000": ("mu[n // 2] * J[n]", "min(mu[n // 2], 1e3) * J[n]"),
     "rubs without a limit": ("if J[n] > 0.0 else 0.0", "if J[n] > 0.0 else np.inf"),
 })
 
@@ -2234,6 +2325,10 @@ edits("9.18", {
     "loses the digits of a small leg": ("if x > 0.0 and y > 0.0 else", "if False else"),
     "forgets the factor 2": ("2.0 * x * (y / (x + y + h))", "x * (y / (x + y + h))"),
     "uses the form with the product everywhere": (" if x > 0.0 and y > 0.0 else x + y - h", ""),
+    "uses the form with the product where one of both is above zero": ("x > 0.0 and y > 0.0", "x > 0.0 or y > 0.0"),
+    "returns the smaller one where the other one is a million times larger":
+        ("phi = 2.0 * x * (y / (x + y + h)) if", "phi = min(x, y) if 0.0 < min(x, y) < 1e-6 * max(x, y) else "
+         "2.0 * x * (y / (x + y + h)) if"),
     "adds the hypotenuse": ("else x + y - h", "else x + y + h"),
     "has the slopes of the hypotenuse": ("1.0 - x / h, 1.0 - y / h", "x / h, y / h"),
     "exchanges the slopes": ("1.0 - x / h, 1.0 - y / h", "1.0 - y / h, 1.0 - x / h"),
@@ -2313,6 +2408,7 @@ edits("9.20", {
     "takes the sine of the angle of friction for its tangent": ("mu * np.abs(v) * dt",
                                                                 "mu * np.abs(v) * dt / np.sqrt(1.0 + mu * mu)"),
     "squares the friction": ("mu * np.abs(v) * dt", "mu * mu * np.abs(v) * dt"),
+    "limits μ to 1": ("mu * np.abs(v) * dt", "min(mu, 1.0) * np.abs(v) * dt"),
     "doubles it": ("mu * np.abs(v) * dt", "2.0 * mu * np.abs(v) * dt"),
 })
 right("9.20", "by the slope of the cone's edge")(lambda mu, v, dt: np.tan(np.arctan(mu)) * dt * max(v, -v))
@@ -2339,6 +2435,10 @@ edits("9.22", {
     "makes ten times as many sweeps as it may": ("range(calls - 1)", "range(10 * calls)"),
     "makes one sweep only": ("range(calls - 1)", "range(0)"),
     "divides by zero where a sweep changes nothing": ("if 0.0 < size < before:", "if size <= before:"),
+    "ends where the squared change is below 1e-12":
+        ("if 0.0 < size < before:", "if size < 1e-12: return swept\n        if 0.0 < size < before:"),
+    "ends where the change is below 1e-8 N s": ("size = change @ change", "size = change @ change\n        "
+                                               "if np.allclose(swept, J): return swept"),
     "goes back along the direction": ("swept + size", "swept - size"),
     "forgets the change in the direction": ("size / before * p + change", "size / before * p"),
     "goes on as if the changes were zero": ("before = size", "before = np.inf"),
