@@ -351,6 +351,7 @@ NOT_SCALED = {
     "my_scene": "it takes a number of boxes, whose sizes are its own, in metres",
     "my_body": "its size and its stiffness are its own",
     "my_thrown_body": "its mass and its size are its own",
+    "my_rule": "its distances and its pace are those of people, in metres and seconds",
     "joint_impulses_2d": "it needs a step of joint_contact_step_2d, which is in the table",
 }
 
