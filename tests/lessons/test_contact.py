@@ -1456,14 +1456,14 @@ def test_the_proximal_map_leaves_lawful_impulses_alone_for_every_factor(lesson, 
 
 @exercise("9.17", points=0.25, hint="μ = ∞ is no limit where J_n > 0, and J_t is 0 where J_n = 0; ∞ · 0 is NaN")
 def test_a_proximal_sweep_with_much_friction_holds_what_pushes_and_nothing_else(lesson, draw):
-    for mu, (what, u_n) in itertools.product((np.inf, draw(2e3, 3e3)),
-                                             (("pushes", -draw(0.01, 0.02)), ("separates", draw(0.01, 0.02)))):
-        r, u_t = draw(0.5, 2.0, 2), draw(1e3, 1e4)
+    for (mu, fast), (what, u_n) in itertools.product(((np.inf, 1e3), (np.inf, 1e12), (draw(2e3, 3e3), 1e3)),
+                                                     (("pushes", -draw(0.01, 0.02)), ("separates", draw(0.01, 0.02)))):
+        r, u_t = draw(0.5, 2.0, 2), fast * draw(1.0, 10.0)
         J_n = max(0.0, -r[0] * u_n)
         J_t = -min(r[1] * u_t, mu * J_n) if J_n > 0.0 else 0.0
-        close(f"(J_n, J_t) of a contact that {what} [N s]",
-              lesson.proximal_sweep(np.diag(draw(0.5, 2.0, 2)), np.array([u_n, u_t]), np.zeros(2), np.array([mu]), r),
-              (J_n, J_t), 1e-10, given=f"μ = {mu}, u = ({u_n}, {u_t}) m/s, r = {r} kg")
+        J = lesson.proximal_sweep(np.diag(draw(0.5, 2.0, 2)), np.array([u_n, u_t]), np.zeros(2), np.array([mu]), r)
+        close(f"(J_n, J_t) of a contact that {what}, J_t over the size of u_t [N s]", np.asarray(J) / [1.0, fast],
+              (J_n, J_t / fast), 1e-10, given=f"μ = {mu}, u = ({u_n}, {u_t}) m/s, r = {r} kg")
 
 
 @exercise("9.17", points=0.25, hint="with r = 1/A_kk for every row it is cone_sweep: −r u takes the place of −u/k")
@@ -1478,44 +1478,51 @@ def test_the_cone_sweep_is_a_proximal_map_with_one_over_the_diagonal(lesson, dra
 
 @exercise("9.17", points=0.25, hint="row k has r[k]; each u from the newest J; the limit is μ times the new J_n")
 def test_every_impulse_of_a_proximal_sweep_has_its_own_factor(lesson, draw):
-    for _ in range(10):
-        A, b, J, mu = positive_definite(draw, 8), draw(-3.0, 3.0, 8), draw(-1.0, 2.0, 8), draw(0.1, 2.0, 4)
-        r = draw(0.02, 1.0, 8)
+    for m, some in itertools.product((4, 4, 30), (draw, draw.sparse)):   # sparse: half of the contacts do not push yet
+        A, b, J, mu = positive_definite(draw, 2 * m), draw(-3.0, 3.0, 2 * m), some(-1.0, 2.0, 2 * m), draw(0.1, 2.0, m)
+        r = draw(0.05, 1.9, 2 * m) / np.diag(A)
         close("J after a sweep with other factors [N s]", lesson.proximal_sweep(A, b, J, mu, r),
               proximal(A, b, J, mu, r), 1e-10, given=f"A = {A}, b = {b}, J = {J}, μ = {mu}, r = {r}")
+    J, u, r = draw(2.0, 4.0, 6), np.zeros(6), draw(0.5, 1.0, 6)
+    J[1::2], u[1::2] = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
+    close("J of three contacts that neither approach nor separate, but slip [N s]",
+          lesson.proximal_sweep(2.0 * np.eye(6), u - 2.0 * J, J, np.ones(3), r), J - r * u, ROUND_OFF,
+          given=f"J = {J} N s, u = {u} m/s, r = {r} kg")
 
 
 @exercise("9.18", points=0.25, hint="h² = x² + y²; the derivative of h by x is x/h, so ∂φ/∂x = 1 − x/h")
 def test_the_function_of_fischer_and_burmeister_and_its_slopes(lesson, draw):
-    for size, quarter in itertools.product(SIZES, range(4)):
-        angle = 0.5 * np.pi * quarter + draw(0.1, 1.4)
+    for size, quarter, apart in itertools.product(SIZES, range(4), (draw(0.1, 1.4), -1e-5 * draw(1.0, 9.0),
+                                                                    1e-5 * draw(1.0, 9.0))):
+        angle = 0.5 * np.pi * quarter + apart
         c, s = np.cos(angle), np.sin(angle)
         got = lesson.fischer_burmeister(size * c, size * s)
         close("(φ over the size of x and y, ∂φ/∂x, ∂φ/∂y) [-]", (got[0] / size, got[1], got[2]),
               (c + s - 1.0, 1.0 - c, 1.0 - s), ROUND_OFF, given=f"x = {size * c}, y = {size * s}")
-    for x in (draw(0.5, 2.0), -draw(0.5, 2.0)):
-        close("(φ, ∂φ/∂x, ∂φ/∂y) where y = 0 [-]", lesson.fischer_burmeister(x, 0.0),
-              (x - abs(x), 1.0 - np.sign(x), 1.0), ROUND_OFF, given=f"x = {x}, y = 0")
-    for y in 10.0 ** draw(-17.0, -4.0, 4):
-        for pair in ((-1.0, y), (y, -1.0)):                              # φ = −1 + y − √(1 + y²)
-            close("φ where a small number is above zero, and the other one is below [-]",
-                  lesson.fischer_burmeister(*pair)[0], y - 0.5 * y**2 - 2.0, ROUND_OFF, given=f"(x, y) = {pair}")
+    for i, j in itertools.product((-1.0, 0.0, 1.0), repeat=2):           # on the axes, and where both are equally large
+        size, h = draw(0.5, 2.0), np.sqrt(abs(i) + abs(j))
+        if h > 0.0:
+            close("(φ, ∂φ/∂x, ∂φ/∂y) [-]", lesson.fischer_burmeister(size * i, size * j),
+                  (size * (i + j - h), 1.0 - i / h, 1.0 - j / h), ROUND_OFF, given=f"x = {size * i}, y = {size * j}")
+    for y, sign in itertools.product(10.0 ** draw(-17.0, -4.0, 4), (-1.0, 1.0)):
+        for pair in ((-1.0, sign * y), (sign * y, -1.0)):                # φ = −1 ± y − √(1 + y²)
+            close("φ where one number is small, and the other one is below zero [-]",
+                  lesson.fischer_burmeister(*pair)[0], sign * y - 0.5 * y**2 - 2.0, ROUND_OFF, given=f"(x, y) = {pair}")
 
 
 @exercise("9.18", points=0.25,
           hint="x + y − h = 2xy/(x + y + h), since (x + y)² − h² = 2xy; at (0, 0) both slopes are 1 − 1/√2")
 def test_no_digit_of_a_small_complementarity_is_lost(lesson, draw):
     # In the first pair the smaller number vanishes in x + y, and still it is as large as the slopes.
-    for little, size in ((draw(1e-19, 1e-18), 1e18), (draw(0.1, 1.0), 1.0), (draw(1e-7, 9e-7), 1.0),
-                         (draw(1e-13, 1e-11), 1.0), (draw(1e-21, 1e-19), 1.0)):
-        large = size * draw(0.5, 2.0)
+    for k, size in ((19, 1e18), *((k, 1.0) for k in range(1, 22))):
+        little, large = 10.0**-k * draw(1.0, 10.0), size * draw(0.5, 2.0)
         with localcontext(prec=80):
             x, y = Decimal(large), Decimal(large * little)
             expected = float((x + y - (x * x + y * y).sqrt()) / y)
         for first in (True, False):
             pair = (large, large * little) if first else (large * little, large)
             close("φ over the smaller of x and y [-]", lesson.fischer_burmeister(*pair)[0] / (large * little),
-                  expected, 1e-9, given=f"(x, y) = {pair}")
+                  expected, 1e-14, given=f"(x, y) = {pair}")
     close("(φ, ∂φ/∂x, ∂φ/∂y) at (0, 0) [-]", lesson.fischer_burmeister(0.0, 0.0),
           (0.0, 1.0 - 0.5**0.5, 1.0 - 0.5**0.5), ROUND_OFF)
 
@@ -1528,6 +1535,9 @@ def test_a_newton_step_from_the_right_set_of_contacts_gives_the_answer(lesson, d
     close("λ of one contact that opens [N s]",
           lesson.minimum_map_step(np.array([[2.0]]), np.array([3.0]), np.array([0.5])), [0.0], ROUND_OFF,
           given="A = 2, b = 3, λ = 0.5")
+    A, b = np.array([[1.0, -3.0], [-3.0, 16.0]]), np.array([-draw(1.0, 2.0), draw(0.1, 0.5)])
+    close("λ of a contact that approaches and one that does not yet, but then approaches faster [N s]",
+          lesson.minimum_map_step(A, b, np.zeros(2)), [-b[0], 0.0], ROUND_OFF, given=f"A = {A}, b = {b}, λ = 0")
     for m in (5, 8, 3):
         A, push = positive_definite(draw, m), np.arange(m) % 2 == 0
         lam = np.where(push, draw(0.5, 2.0, m), 0.0)
@@ -1537,9 +1547,8 @@ def test_a_newton_step_from_the_right_set_of_contacts_gives_the_answer(lesson, d
               given=f"A = {A}, b = {b}, λ = {near}")
 
 
-def solved_for(A, b, lam):
-    """λ after a step of the minimum map: solve for the contacts that count as pushing, alone."""
-    on = A @ lam + b < np.diag(A) * lam
+def solved_for(A, b, on):
+    """λ where u = 0 at the contacts `on`, and λ = 0 at all others: solve for these contacts alone."""
     new = np.zeros(len(b))
     new[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
     return new
@@ -1547,13 +1556,27 @@ def solved_for(A, b, lam):
 
 @exercise("9.19", points=0.25, hint="compare u_k with A_kk λ_k, both in m/s; the result may pull: cut nothing off")
 def test_a_newton_step_from_anywhere_solves_for_the_contacts_that_seem_to_push(lesson, draw):
-    for size, m in itertools.product(SIZES, (6, 4)):
-        A, b, lam = positive_definite(draw, m), draw(-3.0, 3.0, m), draw(-1.0, 2.0, m)
-        scale = draw(0.2, 5.0, m)
+    for m, (low, high) in itertools.product((6, 4, 20, 1, 0), ((-1.0, 2.0), (0.0, 0.0), (-2.0, -0.5), (-9.0, 9.0))):
+        A, b, lam = positive_definite(draw, m), draw(-3.0, 3.0, m), draw(low, high, m)
+        scale = 10.0 ** draw(-1.5, 1.5, m)
+        expected = solved_for(A, b, A @ lam + b < np.diag(A) * lam) / scale
         A, b, lam = A * np.outer(scale, scale), b * scale, lam / scale
-        got = np.asarray(lesson.minimum_map_step(A, size * b, size * lam)) / size
-        close("λ after one step, over its size [-]", got, solved_for(A, b, lam), 1e-8,
-              given=f"A = {A}, b = {size * b}, λ = {size * lam}")
+        for size in SIZES:                                               # the same contacts push, with another b
+            got = np.asarray(lesson.minimum_map_step(A, size * b, size * lam)) / size
+            close("λ after one step, over its size [-]", got * scale, expected * scale, 1e-8,
+                  given=f"A = {A}, b = {size * b}, λ = {size * lam}")
+    for off in (-1e-9, 0.0, 1e-9):                                       # whole numbers: what is equal has no round-off
+        A = 2.0 * np.eye(4) - np.eye(4, k=1) - np.eye(4, k=-1)
+        lam, tied = np.array([draw.whole(1, 9) for _ in range(4)], float), draw.whole(0, 3)
+        b = np.diag(A) * lam - A @ lam + [(-1.0) ** k * draw.whole(1, 9) for k in range(4)]
+        b[tied] = A[tied, tied] * lam[tied] - A[tied] @ lam + off
+        on = A @ lam + b < np.diag(A) * lam
+        either = [solved_for(A, b, np.where(np.arange(4) == tied, way, on)) for way in (True, False)
+                  if off == 0.0 or way == (off < 0.0)]
+        got = np.asarray(lesson.minimum_map_step(A, b, lam), dtype=float)
+        close(f"λ after one step, where u_k − A_kk λ_k of contact {tied} is {off} m/s [N s]", got,
+              min(either, key=lambda one, got=got: np.max(np.abs(one - got))), 1e-11,
+              given=f"A = {A}, b = {b}, λ = {lam}")
 
 
 def slid(mu, v, dt):
@@ -1589,8 +1612,11 @@ def test_a_block_that_slides_either_way_is_lifted_and_one_on_ice_is_not(lesson, 
         close("gap of a block that slides the other way, over that of this one [-]",
               lesson.relaxed_gap(mu, -size * v, dt) / lesson.relaxed_gap(mu, size * v, dt), 1.0, ROUND_OFF,
               given=f"μ = {mu}, v = ±{size * v} m/s, dt = {dt} s")
-    close("gap with half of the step, over that with all of it [-]",
-          lesson.relaxed_gap(mu, v, 0.5 * dt) / lesson.relaxed_gap(mu, v, dt), 0.5, ROUND_OFF)
+    for factor, k in itertools.product((0.5, 1e-6, 1e4), range(3)):
+        one = np.where(np.arange(3) == k, factor, 1.0) * (mu, v, dt)
+        close(f"gap with a factor of {factor} for {('μ', 'v', 'dt')[k]}, over that without it and over this factor [-]",
+              lesson.relaxed_gap(*one) / lesson.relaxed_gap(mu, v, dt) / factor, 1.0, ROUND_OFF,
+              given=f"(μ, v, dt) = {one}")
     close("gap of a block at rest [m]", lesson.relaxed_gap(mu, 0.0, dt), 0.0, 0.0)
     close("gap on ice [m]", lesson.relaxed_gap(0.0, v, dt), 0.0, 0.0)
     gap, slip = slid(mu, v, dt)
@@ -1629,24 +1655,25 @@ def of_normals(A, b):
     return sweep, left, len(b)
 
 
-def left_by(lesson, sweep, residual, size, calls):
+def left_by(lesson, sweep, residual, J, calls):
     """(residual of the method, J, what the sweep returned) after so many calls of the sweep, and no more."""
     counting, returned = counted(sweep)
-    got = lesson.fewer_sweeps(counting, np.zeros(size), calls)
-    close("shape of J [-]", np.shape(got), (size,), 0.0)
+    got = lesson.fewer_sweeps(counting, J, calls)
+    close("shape of J [-]", np.shape(got), J.shape, 0.0)
     between("number of sweeps that it calls", len(returned), 1, calls)
     J = np.asarray(got, dtype=float)
     return residual(J), J, returned
 
 
-def beaten(lesson, name, sweep, residual, size):
-    """Require a hundred calls to leave at most a tenth of the residual that a hundred sweeps leave."""
-    plain = np.zeros(size)
-    for _ in range(100):
+def beaten(lesson, name, sweep, residual, size, calls=100, most=0.1, J=None):
+    """Require so many calls to leave at most this share of the residual that as many sweeps leave, from J or 0."""
+    J = np.zeros(size) if J is None else J
+    plain = J.copy()
+    for _ in range(calls):
         plain = sweep(plain)
-    mine, *_ = left_by(lesson, sweep, residual, size, 100)
-    between(f"residual after a hundred calls for {name}, over that of a hundred sweeps [-]", mine / residual(plain),
-            0.0, 0.1)
+    mine, *_ = left_by(lesson, sweep, residual, J, calls)
+    between(f"residual after {calls} calls for {name}, over that of {calls} sweeps [-]", mine / residual(plain),
+            0.0, most, given="" if not J.any() else f"J = {J}")
 
 
 def judge_problems(draw, size=1.0):
@@ -1662,6 +1689,9 @@ def judge_problems(draw, size=1.0):
 def test_a_method_of_ones_own_needs_far_fewer_sweeps(lesson, draw):
     for kind, size in itertools.product((0, 1), (*SIZES, 1e-9, 1e-6)):
         beaten(lesson, *judge_problems(draw, size)[kind])
+    for n, calls, most in ((4, 100, 0.1), (40, 600, 0.1), (20, 15, 0.95)):
+        beaten(lesson, f"a stack of {n}", *of_normals(*chain(draw(0.7, 1.4, n))[:2]), calls, most)
+    beaten(lesson, "a stack of 12", *of_normals(*chain(draw(0.7, 1.4, 12))[:2]), J=draw(-20.0, 20.0, 12))
 
 
 @pytest.mark.counts_calls
@@ -1673,7 +1703,7 @@ def test_a_method_of_ones_own_obeys_the_cone_of_friction(lesson, draw):
     thrown = draw(-0.6, 0.6, 2)
     b = G_rows @ np.array([(0.0, 0.0, 0.0), (thrown[0], -1.0, 0.0), (thrown[1], -1.0, 0.0)]).ravel()
     A = (G_rows * w) @ G_rows.T
-    left, J, _ = left_by(lesson, lambda J: swept(A, b, J, mu), lambda J: judged(A, b, J, mu), 8, 100)
+    left, J, _ = left_by(lesson, lambda J: swept(A, b, J, mu), lambda J: judged(A, b, J, mu), np.zeros(8), 100)
     between("residual after a hundred calls with friction, over that without impulses [-]",
             left / judged(A, b, np.zeros(8), mu), 0.0, 1e-3, given=f"two boxes, thrown at {thrown} m/s")
     close("impulses that pull, or are outside their cone [-]",
@@ -1692,10 +1722,18 @@ def test_a_method_of_ones_own_stays_at_the_answer_and_returns_what_a_sweep_retur
         for calls in (1, 2, 3, 4, 5, 6, 30):
             close("J from the answer [N s]", lesson.fewer_sweeps(counted(sweep)[0], lam, calls), lam, SOLVED,
                   given=f"calls = {calls}, J = {lam}")
-            _, J, returned = left_by(lesson, sweep, residual, size, calls)
+            pulling = np.where(lam > 0.0, lam, -1e-8)
+            close("J from the answer with a little pull [N s]", lesson.fewer_sweeps(counted(sweep)[0], pulling, calls),
+                  lam, 1e-6, given=f"calls = {calls}, J = {pulling}")
+            _, J, returned = left_by(lesson, sweep, residual, np.zeros(size), calls)
             nearest = min(returned, key=lambda one, J=J: np.max(np.abs(one - J)))
             close("J, beside the most similar J that a sweep returned [N s]", J, nearest, ROUND_OFF,
                   given=f"calls = {calls}")
     zero = np.zeros(3)
     close("J where no impulses are needed [N s]", lesson.fewer_sweeps(counted(lambda J: 0.0 * J)[0], zero, 5), zero,
           0.0)
+    sweep, *_ = of_normals(np.array([[1.0, -0.9], [-0.9, 1.0]]), draw(0.3, 0.5, 2))
+    for calls in range(1, 31):
+        J = np.asarray(lesson.fewer_sweeps(counted(sweep)[0], np.full(2, draw(1.0, 2.0)), calls))
+        close("part that pulls of J of two contacts that separate [N s]", np.minimum(J, 0.0), np.zeros(2), 0.0,
+              given=f"calls = {calls}")

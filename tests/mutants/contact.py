@@ -2305,6 +2305,13 @@ edits("9.17", {
         ("if J[n] > 0.0 else 0.0", "if J[n] > 0.0 else np.inf if mu[n // 2] == np.inf else 0.0"),
     "limits μ to 1000": ("mu[n // 2] * J[n]", "min(mu[n // 2], 1e3) * J[n]"),
     "rubs without a limit": ("if J[n] > 0.0 else 0.0", "if J[n] > 0.0 else np.inf"),
+    "leaves a contact alone that separates before the sweep and does not push":
+        ("for n in range(0, J.size, 2):", "u = A @ J + b\n    for n in range(0, J.size, 2):\n"
+         "        if u[n] > 0.0 and J[n] == 0.0:\n            J[n + 1] = 0.0\n            continue"),
+    "visits twenty contacts at most": ("range(0, J.size, 2)", "range(0, min(J.size, 40), 2)"),
+    "keeps the friction of a contact that pushes and neither approaches nor separates":
+        ("t = n + 1", "t = n + 1\n        if J[n] > 0.0 == A[n] @ J + b[n]: continue"),
+    "takes an infinite μ for 1e6": ("mu[n // 2] * J[n]", "min(mu[n // 2], 1e6) * J[n]"),
 })
 
 
@@ -2323,12 +2330,11 @@ def proximal_sweep(A, b, J, mu, r):
 edits("9.18", {
     "subtracts the legs from the hypotenuse": ("else x + y - h", "else h - x - y"),
     "loses the digits of a small leg": ("if x > 0.0 and y > 0.0 else", "if False else"),
-    "forgets the factor 2": ("2.0 * x * (y / (x + y + h))", "x * (y / (x + y + h))"),
+    "forgets the factor 2": ("2.0 * min(x, y)", "min(x, y)"),
     "uses the form with the product everywhere": (" if x > 0.0 and y > 0.0 else x + y - h", ""),
     "uses the form with the product where one of both is above zero": ("x > 0.0 and y > 0.0", "x > 0.0 or y > 0.0"),
     "returns the smaller one where the other one is a million times larger":
-        ("phi = 2.0 * x * (y / (x + y + h)) if", "phi = min(x, y) if 0.0 < min(x, y) < 1e-6 * max(x, y) else "
-         "2.0 * x * (y / (x + y + h)) if"),
+        ("phi = 2.0", "phi = min(x, y) if 0.0 < min(x, y) < 1e-6 * max(x, y) else 2.0"),
     "adds the hypotenuse": ("else x + y - h", "else x + y + h"),
     "has the slopes of the hypotenuse": ("1.0 - x / h, 1.0 - y / h", "x / h, y / h"),
     "exchanges the slopes": ("1.0 - x / h, 1.0 - y / h", "1.0 - y / h, 1.0 - x / h"),
@@ -2343,6 +2349,20 @@ edits("9.18", {
     "takes the square of the hypotenuse": ("h = np.hypot(x, y)", "h = x * x + y * y"),
     "takes the sum of the legs for the hypotenuse": ("h = np.hypot(x, y)", "h = abs(x) + abs(y)"),
     "takes small numbers for zero": ("if h == 0.0:", "if h < 1e-12:"),
+    "takes x = 0 for the kink": ("if h == 0.0:", "if x == 0.0 and y >= 0.0:"),
+    "takes x = 0 with y below zero for the kink": ("if h == 0.0:", "if h == 0.0 or x == 0.0 and y < 0.0:"),
+    "takes x + y = 0 for the kink": ("if h == 0.0:", "if x + y == 0.0:"),
+    "has the slopes of (0, 0) wherever x = y":
+        ("return phi, 1.0 - x / h, 1.0 - y / h",
+         "return (phi, 1.0 - x / h, 1.0 - y / h) if x != y else (phi, 1.0 - np.sqrt(0.5), 1.0 - np.sqrt(0.5))"),
+    "uses the form with the product where both have the same sign": ("x > 0.0 and y > 0.0", "x * y > 0.0"),
+    "adds the small leg to the difference of the large one and the hypotenuse":
+        ("2.0 * min(x, y) * (max(x, y) / (x + y + h))", "min(x, y) + (max(x, y) - h)"),
+    "takes two terms of a series where one number is a thousand times larger":
+        ("phi = 2.0", "phi = min(x, y) * (1.0 - 0.5 * min(x, y) / max(x, y)) if 0.0 < min(x, y) < 1e-3 * max(x, y) "
+         "else 2.0"),
+    "has slopes of 2 where both are below zero and one is a thousand times larger":
+        ("return phi, 1.0", "return (phi, 2.0, 2.0) if x < 0.0 and y < 0.0 and max(x / y, y / x) > 1e3 else phi, 1.0"),
 })
 
 
@@ -2375,6 +2395,30 @@ edits("9.19", {
     "omits b in the velocities": ("u, matrix, right = A @ lam + b,", "u, matrix, right = A @ lam,"),
     "leaves the impulses of the others as they are": ("np.zeros(b.size)", "float_copy(lam)"),
     "leaves out the last contact": ("range(b.size)", "range(b.size - 1)"),
+    "takes half of each row where both are equal":
+        ("matrix[k], right[k] = A[k], -b[k]", "matrix[k], right[k] = A[k], -b[k]\n"
+         "        elif u[k] == A[k, k] * lam[k]:\n"
+         "            matrix[k], right[k] = 0.5 * (A[k] + matrix[k]), -0.5 * b[k]"),
+    "keeps the impulse where both are equal":
+        ("matrix[k], right[k] = A[k], -b[k]", "matrix[k], right[k] = A[k], -b[k]\n"
+         "        elif u[k] == A[k, k] * lam[k]:\n            right[k] = A[k, k] * lam[k]"),
+    "takes almost equal for equal": ("u[k] < A[k, k] * lam[k]", "u[k] < A[k, k] * lam[k] - 1e-6 * abs(u[k])"),
+    "goes half of the way where the largest minimum grows":
+        ("return solve(matrix, right)",
+         "new, d = solve(matrix, right), np.diag(A)\n    return new if b.size == 0 or np.max(np.abs(np.minimum("
+         "d * new, A @ new + b))) <= np.max(np.abs(np.minimum(d * lam, u))) else 0.5 * (lam + new)"),
+    "looks at ten contacts at most": ("range(b.size)", "range(min(b.size, 10))"),
+    "returns no impulses where all pull":
+        ("return solve(matrix, right)",
+         "return solve(matrix, right) if b.size == 0 or np.any(lam >= 0.0) else np.zeros(b.size)"),
+    "solves for all contacts where no impulse is given":
+        ("u[k] < A[k, k] * lam[k]", "u[k] < A[k, k] * lam[k] or not np.any(lam)"),
+    "lets each contact push alone where no impulse is given":
+        ("return solve(matrix, right)",
+         "return solve(matrix, right) if np.any(lam) else np.maximum(0.0, -b / np.diag(A))"),
+    "leaves out small parts of the solution, as if contacts were redundant":
+        ("return solve(matrix, right)", "return np.linalg.pinv(matrix, 1e-3) @ right"),
+    "looks for the least velocity, also of no contact": ("u, matrix", "(A @ lam + b).min(); u, matrix"),
 })
 
 
@@ -2410,6 +2454,12 @@ edits("9.20", {
     "squares the friction": ("mu * np.abs(v) * dt", "mu * mu * np.abs(v) * dt"),
     "limits μ to 1": ("mu * np.abs(v) * dt", "min(mu, 1.0) * np.abs(v) * dt"),
     "doubles it": ("mu * np.abs(v) * dt", "2.0 * mu * np.abs(v) * dt"),
+    "limits μ to 2": ("mu * np.abs(v)", "min(mu, 2.0) * np.abs(v)"),
+    "takes a μ below 0.01 for ice": ("mu * np.abs(v)", "(mu >= 0.01) * mu * np.abs(v)"),
+    "limits v to 100 m/s": ("np.abs(v)", "min(np.abs(v), 100.0)"),
+    "limits the step to 1/20 s": ("* dt", "* min(dt, 0.05)"),
+    "has steps of 0.1 ms at least": ("* dt", "* max(dt, 1e-4)"),
+    "floats below a metre only": ("mu * np.abs(v) * dt", "min(1.0, mu * np.abs(v) * dt)"),
 })
 right("9.20", "by the slope of the cone's edge")(lambda mu, v, dt: np.tan(np.arctan(mu)) * dt * max(v, -v))
 
@@ -2447,6 +2497,23 @@ edits("9.22", {
     "ends with an extrapolation, not with a sweep": ("return sweep(J)", "return J"),
     "goes beyond the last sweep": ("return sweep(J)", "return J + 1.5 * (sweep(J) - J)"),
     "returns the mean of the last two guesses": ("return sweep(J)", "return 0.5 * (J + sweep(J))"),
+    "makes plain sweeps of more than 30 impulses":
+        ("if 0.0 < size < before:", "if 0.0 < size < before and J.size < 30:"),
+    "keeps the direction of the first 20 impulses only":
+        ("change = swept - J", "change = swept - J; change[20:] = 0.0"),
+    "ends where the change is a millionth of the impulses":
+        ("if 0.0 < size", "if size <= 1e-12 * (swept @ swept): return swept\n        if 0.0 < size"),
+    "makes plain sweeps unless it begins without impulses":
+        ("J, p, before = float", "for _ in range(calls - 1 if np.any(J) else 0): J = sweep(J)\n"
+         "    calls = 1 if np.any(J) else calls\n    J, p, before = float"),
+    "makes plain sweeps where more than 500 calls are allowed":
+        ("if 0.0 < size < before:", "if 0.0 < size < before and calls <= 500:"),
+    "makes plain sweeps where fewer than 20 calls are allowed":
+        ("if 0.0 < size < before:", "if 0.0 < size < before and calls >= 20:"),
+    "begins without impulses where a given one pulls":
+        ("float_copy(J), np.zeros", "float_copy(J) * (np.min(J, initial=0.0) >= 0.0), np.zeros"),
+    "returns an extrapolation in which all contacts pull":
+        ("before = size", "before = size\n        if J.max() < 0.0: return J"),
 })
 
 
