@@ -218,6 +218,11 @@ def euler(q, omega, tau, I):
 
 # ---------------------------------------------------------------------------------------------- without contact
 
+def pushed(before, load, inverse, dt):
+    """Velocities of bodies after their loads have acted for dt, body by body."""
+    return before + dt * np.array([share * one for share, one in zip(inverse, load, strict=True)])
+
+
 @exercise("10.1", points=0.5, hint="F, τ = load(t, x, q, v, omega, p); v + dt F/m and ω + dt τ/I, with inverse masses")
 def test_loads_change_velocities_of_what_they_can_move(lesson, draw):
     ordinary = [moving_2d(draw, lesson, planes) for planes in (2, 0)]
@@ -225,8 +230,8 @@ def test_loads_change_velocities_of_what_they_can_move(lesson, draw):
         for load in (swirl_2d, own_motion, lesson.weight):
             F, tau = load(t, x, q, v, omega, p)
             got = lesson.new_velocities_2d(load, t, x, q, v, omega, dt, p)
-            row_by_row("v after the loads [m/s]", got[0], v + dt * p.inv_mass[:, None] * F, ROUND_OFF, p)
-            row_by_row("ω after the loads [rad/s]", got[1], omega + dt * p.inv_inertia * tau, ROUND_OFF, p)
+            row_by_row("v after the loads [m/s]", got[0], pushed(v, F, p.inv_mass, dt), ROUND_OFF, p)
+            row_by_row("ω after the loads [rad/s]", got[1], pushed(omega, tau, p.inv_inertia, dt), ROUND_OFF, p)
             new_arrays("new_velocities_2d", got, x, q, v, omega, *p[:2])
 
 
@@ -260,14 +265,14 @@ def test_every_body_in_space_obeys_euler(lesson, draw):
         for load in (swirl, own_motion, lesson.weight):
             F, tau = load(t, x, q, v, omega, p)
             got = lesson.new_velocities(load, t, x, q, v, omega, dt, p)
-            row_by_row("v after the loads [m/s]", got[0], v + dt * p.inv_mass[:, None] * F, ROUND_OFF, p)
+            row_by_row("v after the loads [m/s]", got[0], pushed(v, F, p.inv_mass, dt), ROUND_OFF, p)
             row_by_row("ω after the loads [rad/s]", got[1], spins_after(q, omega, tau, dt, p), ROUND_OFF, p)
             new_arrays("new_velocities", got, x, q, v, omega, *p[:2])
     for size, load in itertools.product((1e-4, 1e-9), (swirl, lesson.weight)):
         heavy = p._replace(inv_mass=size * p.inv_mass, inv_inertia=size * p.inv_inertia)
         F, tau = load(t, x, q, v, omega, heavy)
         got = lesson.new_velocities(load, t, x, q, v, omega, dt, heavy)
-        row_by_row("v of ships after the loads [m/s]", got[0], v + dt * heavy.inv_mass[:, None] * F, ROUND_OFF, p)
+        row_by_row("v of ships after the loads [m/s]", got[0], pushed(v, F, heavy.inv_mass, dt), ROUND_OFF, p)
         row_by_row("ω of ships after the loads [rad/s]", got[1], spins_after(q, omega, tau, dt, heavy), ROUND_OFF, p)
     fast = 300.0 * omega
     _, tau = swirl(t, x, q, v, fast, p)
@@ -300,7 +305,7 @@ def test_a_step_in_the_plane_is_velocities_first(lesson, draw):
     for t, x, q, v, omega, dt, p in (*ordinary, *special(draw, lesson, 2)):
         for load in (swirl_2d, lesson.weight):
             F, tau = load(t, x, q, v, omega, p)
-            new_v, new_omega = v + dt * p.inv_mass[:, None] * F, omega + dt * p.inv_inertia * tau
+            new_v, new_omega = pushed(v, F, p.inv_mass, dt), pushed(omega, tau, p.inv_inertia, dt)
             got = lesson.free_step_2d(load, t, x, q, v, omega, dt, p)
             for name, is_, should in zip(("x [m]", "q [rad]", "v [m/s]", "ω [rad/s]"), got,
                                          (x + dt * new_v, q + dt * new_omega, new_v, new_omega), strict=True):
@@ -327,7 +332,7 @@ def test_a_step_in_space_is_velocities_first(lesson, draw):
     for t, x, q, v, omega, dt, p in (*ordinary, *special(draw, lesson, 3)):
         for load in (swirl, lesson.weight):
             F, tau = load(t, x, q, v, omega, p)
-            new_v, new_omega = v + dt * p.inv_mass[:, None] * F, spins_after(q, omega, tau, dt, p)
+            new_v, new_omega = pushed(v, F, p.inv_mass, dt), spins_after(q, omega, tau, dt, p)
             got = lesson.free_step(load, t, x, q, v, omega, dt, p)
             row_by_row("x after a step [m]", got[0], x + dt * new_v, ROUND_OFF, p)
             row_by_row("v after a step [m/s]", got[2], new_v, ROUND_OFF, p)
