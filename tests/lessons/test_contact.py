@@ -232,14 +232,15 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
 @exercise("9.4", points=0.5,
           hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; the solution does not change")
 def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
-    for omega in (1.0, *draw(0.5, 0.9, 2), *draw(1.1, 1.9, 6)):
+    for n, omega in enumerate((1.0, *draw(0.5, 0.9, 2), *draw(1.1, 1.9, 6))):
         A, b = positive_definite(draw, 4), draw(-3.0, 3.0, 4)
         lam = enumerated(A, b)
         close("λ after a sweep from the answer [N s]", lesson.gauss_seidel_sweep(A, b, lam, omega), lam, 1e-11,
               given=f"ω = {omega}")
         lam, others = draw(-1.0, 2.0, 4), [0, 2, 3]
-        A[1, others] = A[others, 1] = 0.0                                # a contact that is right already, exactly
-        A[1, 1], lam[1], b[1] = 2.0, 0.5, -1.0
+        if n % 2:                                                        # a contact that is right already, exactly
+            A[1, others] = A[others, 1] = 0.0
+            A[1, 1], lam[1], b[1] = 2.0, 0.5, -1.0
         u, expected = A @ lam + b, lam.copy()
         for k in range(4):
             change = max(-expected[k], -omega * u[k] / A[k, k])
