@@ -222,8 +222,8 @@ def slip_time(v, omega, ball):
 
     *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
         u = v + ω × r,      r = (0, 0, −radius)
-    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.  I =
-    I_body[0] is the same about all axes.
+    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.
+    I = I_body[0] is the same about all axes.
     Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     All numbers are finite, but μ may be ∞; advance_rigid_body has checked that.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
@@ -237,8 +237,8 @@ def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
     """Return (x, q, v, ω) of a RollingBall after dt, exact for every dt.
 
     *Find* how.  average_rolling_step is exact while the accelerations are constant.  They change once, when the slip
-    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.  As there, gravity
-    along the floor is zero or parallel to the slip; where nothing slips it may have any direction.
+    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.
+    Gravity along the floor is zero or parallel to the slip, as in slip_time.  Without slip it may have any direction.
 
     *Source:* event-driven integration; stick and slip of lesson 3.
     """

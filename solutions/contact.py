@@ -168,8 +168,8 @@ def solve_lcp(A, b):
 
     Guess which contacts push, at first none.  Then repeat, at most MAX_PIVOTS m times:
         Find λ with (A λ + b)_k = 0 for the contacts that push and λ_k = 0 for the others.  Use solve of lesson 1, with
-        rows and columns of the identity matrix for the others: their λ_k must be exactly 0.  With 1e-17 there, a
-        contact that neither pushes nor separates could be wrong in every round.
+        rows and columns of the identity matrix for the others: their λ_k must be exactly 0.  If one is
+        1e-17, round-off may change the guess for ever.
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
         If none is wrong, return λ.  Otherwise change the guess for one contact only: the wrong one of least index.
@@ -521,9 +521,9 @@ def fewer_sweeps(sweep, J, calls):
 
     *Make it*: a method of your own.  sweep(J) returns the impulses after one sweep of some solver, such as projected
     Gauss–Seidel, from J; you learn nothing else of the problem.  From any J, in a stack of at most 14 bodies and
-    under a heavy body, 100 calls must leave at most a tenth of the residual that as many sweeps leave; in a stack of 40
-    bodies, 600 calls must.  With friction, for two boxes that are thrown, it must be at most a thousandth of what it is
-    without impulses.
+    under a heavy body, 100 calls must leave at most a tenth of the residual that as many sweeps leave.  In a stack of
+    40 bodies the same holds for 600 calls.  With friction, for two boxes that are thrown, the residual must be at most
+    a thousandth of what it is without impulses.
     Impulses that a sweep does not change are the answer; return them.  No contact may pull.  A sweep cuts a pull off,
     and an extrapolation may bring one back.  So return impulses that one of your calls of sweep has returned.
     calls is at least 1; do not change J.

@@ -265,15 +265,16 @@ def slip_time(v, omega, ball):
 
     *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
         u = v + ω × r,      r = (0, 0, −radius)
-    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.  I =
-    I_body[0] is the same about all axes.
+    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.
+    I = I_body[0] is the same about all axes.
     Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     All numbers are finite, but μ may be ∞; advance_rigid_body has checked that.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     ### BEGIN SOLUTION 10.10
-    # u̇ = −f (1 + m radius²/I) u/|u| + g_t,  f = μ max(0, −g_z),  so |u| decreases by  f (1 + m radius²/I) − u · g_t/|u|
+    # u̇ = −f (1 + m radius²/I) u/|u| + g_t  with f = μ max(0, −g_z).
+    # So |u| decreases by  f (1 + m radius²/I) − u · g_t/|u|  in a second.
     slip = point_velocity(v, omega, np.array([0.0, 0.0, -ball.radius]))
     slip[2] = 0.0
     size = norm(slip)
@@ -289,8 +290,8 @@ def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
     """Return (x, q, v, ω) of a RollingBall after dt, exact for every dt.
 
     *Find* how.  average_rolling_step is exact while the accelerations are constant.  They change once, when the slip
-    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.  As there, gravity
-    along the floor is zero or parallel to the slip; where nothing slips it may have any direction.
+    ends:  slip_time(v, omega, ball) says after how long.  That may be longer than dt, or infinite.
+    Gravity along the floor is zero or parallel to the slip, as in slip_time.  Without slip it may have any direction.
 
     *Source:* event-driven integration; stick and slip of lesson 3.
     """

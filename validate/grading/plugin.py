@@ -275,7 +275,7 @@ class Draw:
 
         A short cut for what is at rest, or points along an axis, shows only there.
         """
-        return self(low, high, shape) * self.rng.integers(0, 2, shape) + 0.0         # without −0
+        return self(low, high, shape) * self.rng.integers(0, 2, shape) + 0.0         # −0 becomes 0
 
     def whole(self, low, high):
         """Return an integer from low to high, both included."""
@@ -321,10 +321,11 @@ class Pure:
         def call(*arguments):
             given, earlier = wire.Contents(arguments), wire.Contents(list(self.returned[name]))
             result = value(*(getattr(a, "unwatched", a) for a in arguments))
-            if given.changed() or earlier.changed():
-                if watched and given.changed():
+            inputs, results = given.changed(), earlier.changed()
+            if inputs or results:
+                if watched and inputs:
                     self.trace.changed_input()
-                what = "the input arrays" if given.changed() else "the results of earlier calls"
+                what = "the input arrays" if inputs else "the results of earlier calls"
                 culprit = f"{name}, or a function that it calls," if self.trace and not watched else name
                 raise NotYet(what, "unchanged: return new arrays", f"{culprit} has changed one in place", "",
                              "changed in place")

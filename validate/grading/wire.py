@@ -248,7 +248,8 @@ class Peer:
             answer = "error", *self.describe(e)
         try:
             frame = pack(answer, self.name_of)
-            self.returned[name].extend(answer[1:2] if answer[0] == "value" else ())
+            if answer[0] == "value":
+                self.returned[name].append(answer[1])
         except Exception as e:  # WireError, RecursionError, an int of too many digits …
             frame = pack(("error", ["TypeError"], f"the result is not plain data: {str(e)[:200]}", ""))
         self.send(frame)
