@@ -92,7 +92,7 @@ def small_wheel(name):
         for path, text in (*zip(paths, paths, strict=True),
                            ("x.dist-info/RECORD", "".join(f"{path},,\n" for path in paths))):
             archive.writestr(zipfile.ZipInfo(path, pyodide.DATE), text)     # the time of day would change the bytes
-    return packed.getvalue() if name.endswith(".whl") or name.startswith("openblas") else name.encode()
+    return packed.getvalue() if name.endswith((".whl", ".zip")) else name.encode()
 
 
 def test_the_lock_of_what_is_taken_names_its_files_and_their_digests(tmp_path, monkeypatch):
@@ -115,6 +115,17 @@ def test_the_lock_of_what_is_taken_names_its_files_and_their_digests(tmp_path, m
                 assert len(record) == (7 if name in pyodide.UNUSED else 8) and "kept/x.py" in record, name
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         *wanted["files"], "pyodide-lock.json", *(one["file_name"] for one in lock["packages"].values())}
+
+
+def test_the_standard_library_in_the_browser_has_what_a_page_can_use(tmp_path):
+    """Not the modules of mail, servers, processes and old alphabets, which would be loaded in vain."""
+    unused = "imaplib.py", "encodings/cp1250.py", "multiprocessing/pool.py", "asyncio/windows_utils.py"
+    used = "image.py", "encodings/cp1252.py", "multiprocessing/__init__.py", "asyncio/events.py"
+    with zipfile.ZipFile(tmp_path / "library.zip", "w") as archive:
+        for path in (*unused, *used):
+            archive.writestr(path, "")
+    assert {*pyodide.kept(tmp_path / "library.zip", pyodide.LIBRARY)} == {*used}
+    assert {*pyodide.kept(tmp_path / "library.zip", "numpy")} == {*used, *unused}
 
 
 MODULE = b'''"""Text."""

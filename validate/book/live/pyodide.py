@@ -23,6 +23,7 @@ from solutions.checks import BadInput
 
 WANTED = json.loads((Path(__file__).parent / "pyodide.json").read_text(encoding="utf-8"))
 VERSION = WANTED["info"]["version"]
+LIBRARY = "python_stdlib.zip"
 UNUSED = {                   # {package: files of its wheel that no lesson loads}; half of what a first visit would load
     "scipy": r"scipy/(misc|stats|interpolate|signal|io|cluster|ndimage|odr|fftpack|datasets|optimize/cython_optimize)/"
              r"|scipy/special/cython_special\.|.*/_test\w*\.cpython",
@@ -35,13 +36,22 @@ UNUSED = {                   # {package: files of its wheel that no lesson loads
     "pillow": r"PIL/_(imaging\w+|webp)\.|PIL/(?!Bmp|Gif|Jpeg|Png|Ppm|Tiff)\w+(ImagePlugin|StubPlugin|FontFile)\.",
     "python-dateutil": r"dateutil/zoneinfo/",
     "pygments": r"pygments/lexers/(?!__init__|_mapping|python|diff|special|shell|console)",
+    LIBRARY: r"encodings/(cp(?!437|850|1252)|mac_|iso8859_(?!1\.|15)|iso2022|koi8|kz1048|tis_620|ptcp154|hp_roman8"
+             r"|big5|gb|hz|euc_|johab|shift_ji|palmos)"
+             r"|asyncio/(windows|proactor)|ctypes/macholib/|concurrent/futures/process\."
+             r"|multiprocessing/(?!__init__|connection|context|process|reduction|util)"
+             r"|wsgiref/|xmlrpc/|xml/sax/|http/(server|cookies|cookiejar)\."
+             r"|(mailbox|imaplib|poplib|smtplib|ftplib|nntplib|telnetlib|cgi|cgitb|mailcap|sndhdr|aifc|sunau|chunk"
+             r"|pickletools|_pyio|_pydatetime|crypt|pipes|nturl2path|webbrowser|_osx_support|_aix_support|optparse"
+             r"|modulefinder|trace|zipapp|pyclbr|tabnanny|symtable|imghdr|xdrlib|plistlib|netrc)\.",
 }
 FOR_COMPILERS = re.compile(r".*\.(pyx|pxd|pxi|pyi|h|a)$|.*/meson\.build$")     # a browser has none
-DOCUMENTED = "numpy", "ipython"       # students ask for `np.cross?`; the docstrings of the others are 1.4 MB
+DOCUMENTED = "numpy",                 # students ask for `np.cross?`; the docstrings of the others are some 2 MB
 ABSENT = "jedi", "ssl"                # the kernel asks for them, and does without: they are empty packages here
 INSTALLED = "comm",                   # the kernel asks for it; pure Python, taken from this environment
 OWN = "workbook_live"
 PYTHON = WANTED["info"]["python"].rpartition(".")[0]
+ZIPPED = f"python{PYTHON.replace('.', '')}.zip"             # the browser's name of the standard library
 PACKAGES = f"/lib/python{PYTHON}/site-packages"       # where they lie in the browser: it stands in tracebacks
 # loaded together when a kernel starts
 FIRST = ("micropip", "numpy", "scipy", "matplotlib", "ipython", "sqlite3", *INSTALLED, *ABSENT, OWN.replace("_", "-"))
@@ -106,7 +116,10 @@ def take(place, out, python=None):
     with opened(place) as folder:
         refuse_others(folder)
         for name in WANTED["files"]:
-            (out / name).write_bytes((folder / name).read_bytes())
+            if name == LIBRARY:
+                pack(out / name, compiled(kept(folder / name, name), python, documented=False, place=f"/lib/{ZIPPED}"))
+            else:
+                (out / name).write_bytes((folder / name).read_bytes())
         packages = {name: taken(folder, out, name, facts, python) for name, facts in WANTED["packages"].items()}
     for name in ABSENT:
         packages[name] = wheel(out, name, "0", {})
@@ -120,16 +133,20 @@ def take(place, out, python=None):
 
 def taken(folder, out, name, facts, python):
     """Copy a package without its unused files, compiled and compressed; its entry in the lock."""
-    unused = re.compile(UNUSED.get(name, r"(?!)"))
-    with zipfile.ZipFile(folder / facts["file_name"]) as archive:
-        kept = {one: archive.read(one) for one in archive.namelist()
-                if one[-1] != "/" and not unused.match(one) and not FOR_COMPILERS.match(one)}
-    kept = compiled(kept, python, documented=name in DOCUMENTED)
-    for record in [one for one in kept if one.endswith(".dist-info/RECORD")]:
-        kept[record] = "".join(f"{path},,\n" for path in kept).encode()
+    content = compiled(kept(folder / facts["file_name"], name), python, documented=name in DOCUMENTED)
+    for record in [one for one in content if one.endswith(".dist-info/RECORD")]:
+        content[record] = "".join(f"{path},,\n" for path in content).encode()
     target = out / facts["file_name"]
-    pack(target, kept)
+    pack(target, content)
     return facts | {"sha256": sha256(target.read_bytes())}
+
+
+def kept(file, name):
+    """Return {path: bytes} of the files in a package's zip that a lesson may load."""
+    unused = re.compile(UNUSED.get(name, r"(?!)"))
+    with zipfile.ZipFile(file) as archive:
+        return {one: archive.read(one) for one in archive.namelist()
+                if one[-1] != "/" and not unused.match(one) and not FOR_COMPILERS.match(one)}
 
 
 def interpreter():
