@@ -38,7 +38,7 @@ class Plan(NamedTuple):
         """
         if self.most_steps:
             return dict.fromkeys(("plain", "compiled", "engine"), NOTEBOOK)
-        plain, compiled, engine = (0.003, 0.003, 0.01) if self.quick else (0.03, 0.1, 0.4)
+        plain, compiled, engine = (0.003, 0.003, 0.006) if self.quick else (0.03, 0.1, 0.4)
         return {"plain": plain, "compiled": compiled, "engine": engine}
 
     def repeats(self):

@@ -97,6 +97,7 @@ SCENE = Scene(
     title="Asymmetric top",
     **FREE_BODY,
     cases=CASES, duration=T, steps=STEPS,
+    slow_cases=tuple(CASES)[1:],                         # as long as the first, and without a flip
     runners=RUNNERS,
     acceleration=lambda lessons: lessons.rotation.no_torque, start=start_free, run=run,
     truth=truth, truth_uncertainty=UNCERTAINTY,
