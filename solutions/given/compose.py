@@ -131,8 +131,11 @@ def kit_of(model):
 
 def refuses(model):
     """Return why our loop cannot run a model, for people; an empty text where it can."""
-    if any(length == 0.0 for length in lengths_of(model)):
+    if any(length == 0.0 for length in lengths_of(model, [model.joints[k] for k in rods_in(model)])):
         return "a Distance between two points at one place"
+    if any(spring.rest * spring.k > 0.0 and length == 0.0
+           for spring, length in zip(model.springs, lengths_of(model, model.springs), strict=True)):
+        return "a Spring with a rest length between two points at one place"
     return ""
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import BadInput
 from ..contact import kept_impulses, velocity_sweep_2d
 from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
@@ -50,13 +51,27 @@ def model_load(t, x, q, v, omega, p):
         r_x, r_y = x[a, 0] + a_x - x[b, 0] - b_x, x[a, 1] + a_y - x[b, 1] - b_y
         u_x = v[a, 0] - omega[a] * a_y - v[b, 0] + omega[b] * b_y
         u_y = v[a, 1] + omega[a] * a_x - v[b, 1] - omega[b] * b_x
-        length = np.sqrt(r_x * r_x + r_y * r_y)
-        pull = -(p.laws[s, 1] * (length - p.laws[s, 0]) + p.laws[s, 2] * (r_x * u_x + r_y * u_y) / length) / length
+        pull = pull_per_length(r_x * r_x + r_y * r_y, r_x * u_x + r_y * u_y, p.laws[s])
         F[a, 0], F[a, 1] = F[a, 0] + pull * r_x, F[a, 1] + pull * r_y
         F[b, 0], F[b, 1] = F[b, 0] - pull * r_x, F[b, 1] - pull * r_y
         tau[a] += pull * (a_x * r_y - a_y * r_x)
         tau[b] -= pull * (b_x * r_y - b_y * r_x)
     return F, tau
+
+
+def pull_per_length(square, along, law):
+    """Return what times the way r from one end of a spring to the other is the force on the first end [N/m].
+
+    square: r · r [m²];    along: r · (velocity of the first end − velocity of the other) [m²/s];    law: rest, k, c
+    Where the ends meet, a spring without a rest length pulls with no force.
+    Raises BadInput where the ends of any other spring meet, because it has no direction there.
+    """
+    length = np.sqrt(square)
+    if length == 0.0:
+        if law[0] * law[1] > 0.0:
+            raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
+        return 0.0
+    return -(law[1] * (length - law[0]) + law[2] * along / length) / length
 
 
 def accelerated(load, t, state, dt, p):

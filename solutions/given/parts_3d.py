@@ -28,7 +28,16 @@ from .joints import (
     spatial_inertia,
     turn_on,
 )
-from .parts import all_shallow, forget_bounces, is_settled, parting_aims, pushing_aims, swept, swept_and_closed
+from .parts import (
+    all_shallow,
+    forget_bounces,
+    is_settled,
+    parting_aims,
+    pull_per_length,
+    pushing_aims,
+    swept,
+    swept_and_closed,
+)
 from .rods import close_links
 
 # ---------------------------------------------------------------------------------------------- forces
@@ -44,8 +53,7 @@ def model_load_in_space(t, x, q, v, omega, p):
         r_a, r_b = rotate(q[a], p.arms[s, :3]), rotate(q[b], p.arms[s, 3:])
         way = x[a] + r_a - x[b] - r_b
         u = minus(point_velocity_of(v, omega, a, r_a), point_velocity_of(v, omega, b, r_b))
-        length = np.sqrt(dot(way, way))
-        pull = -(p.laws[s, 1] * (length - p.laws[s, 0]) + p.laws[s, 2] * dot(way, u) / length) / length
+        pull = pull_per_length(dot(way, way), dot(way, u), p.laws[s])
         F[a] += pull * way
         F[b] -= pull * way
         tau[a] += pull * cross(r_a, way)

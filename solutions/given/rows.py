@@ -189,11 +189,10 @@ def joints_of(model, row, inv_mass):
     return Joints(a, b, r_a, r_b, d * (farthest_neighbour(a, b, inv_mass) + 1) - 1, form_loops(a, b, inv_mass))
 
 
-def lengths_of(model):
-    """Return the length [m] of each Distance at the start."""
+def lengths_of(model, links):
+    """Return the length [m] of each of these Distances or Springs at the start."""
     start = start_of(model)
-    ways = [world_place(start, joint.a, joint.place_a) - world_place(start, joint.b, joint.place_b)
-            for joint in model.joints if isinstance(joint, Distance)]
+    ways = [world_place(start, link.a, link.place_a) - world_place(start, link.b, link.place_b) for link in links]
     return [float(np.sqrt(way @ way)) for way in ways]
 
 
@@ -204,7 +203,7 @@ def rods_of(model, row):
             for ends in ([rod.a for rod in rods], [rod.b for rod in rods]))
     r_a, r_b = (np.array(places, float).reshape(-1, model.d)
                 for places in ([rod.place_a for rod in rods], [rod.place_b for rod in rods]))
-    return Rods(a, b, r_a, r_b, np.array(lengths_of(model), float), np.array([rod.compliance for rod in rods], float))
+    return Rods(a, b, r_a, r_b, np.array(lengths_of(model, rods), float), np.array([rod.compliance for rod in rods], float))
 
 
 def springs_of(model, row, world):

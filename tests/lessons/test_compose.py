@@ -234,10 +234,32 @@ def test_bodies_that_begin_inside_each_other_part_without_kinetic_energy():
 # ---------------------------------------------------------------------------------------------- refusals
 
 @pytest.mark.parametrize(("model", "why"), [
-    (make_model([Body((0.0, 0.0), 1.0)], DOWN, [Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0))]), "at one place")])
+    (make_model([Body((0.0, 0.0), 1.0)], DOWN, [Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0))]), "at one place"),
+    (make_model([Body((0.0, 0.0), 1.0)], DOWN, springs=[Spring(0, WORLD, (0.0, 0.0), (0.0, 0.0), 1.0, 2.0)]),
+     "a rest length between two points at one place")])
 def test_what_the_loop_cannot_run_is_named(model, why):
     with pytest.raises(BadInput, match=why):
         compose(model)
+
+
+@pytest.mark.parametrize(("place", "down"), [((0.0, 0.0), DOWN), ((0.0, 0.0, 0.0), (0.0, 0.0, -9.81))])
+def test_a_spring_without_a_rest_length_may_begin_with_no_length(place, down):
+    """A weight hung on it where it is attached falls by g/ω² (1 − cos ωt)."""
+    m, k = 2.0, 50.0
+    model = make_model([Body(place, m)], down, springs=[Spring(0, WORLD, place, place, 0.0, k)])
+    s, omega = run(model, 0.7, 7000), np.sqrt(k / m)
+    fallen = 9.81 / omega**2 * (1.0 - np.cos(0.7 * omega))
+    assert s.x[0] @ np.array(down) / 9.81 == pytest.approx(fallen, rel=4e-4)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.0, 0.0, 0.0)])
+def test_a_spring_whose_ends_meet_on_their_way_is_refused(place):
+    """With a rest length it has no direction there; it said before that the state was no number, or nothing."""
+    right = np.eye(len(place))[0]
+    model = make_model([Body(tuple(-0.5 * right), 1.0, v=tuple(right))], 0.0 * right,
+                       springs=[Spring(0, WORLD, place, place, 1.0, 1e-300)])
+    with pytest.raises(BadInput, match="keep its ends apart"):
+        run(model, 1.0, 4)
 
 
 @pytest.mark.parametrize("settings", [
