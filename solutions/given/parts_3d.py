@@ -4,7 +4,6 @@ What finds contacts is the same in both.  Between impulses a body turns by split
 holds its angular momentum, so the gyroscopic term needs no part of its own.
 """
 
-import numpy as np
 
 from ..contact import friction_disc, velocity_sweep
 from ..simulator import weight

@@ -203,7 +203,8 @@ def rods_of(model, row):
             for ends in ([rod.a for rod in rods], [rod.b for rod in rods]))
     r_a, r_b = (np.array(places, float).reshape(-1, model.d)
                 for places in ([rod.place_a for rod in rods], [rod.place_b for rod in rods]))
-    return Rods(a, b, r_a, r_b, np.array(lengths_of(model, rods), float), np.array([rod.compliance for rod in rods], float))
+    lengths, compliances = np.array(lengths_of(model, rods), float), np.array([rod.compliance for rod in rods], float)
+    return Rods(a, b, r_a, r_b, lengths, compliances)
 
 
 def springs_of(model, row, world):

@@ -1,14 +1,17 @@
-"""Towers of boxes on a floor: their Model, and what engines read of them."""
+"""Towers of boxes on a floor: their Model, and what engines read of them; whether a Model stands in an engine."""
 
 import numpy as np
 
 from solutions.support.model import Body, friction_of, make_model, start_of
 from solutions.support.shapes import Box, HalfSpace
+from validate.engines import watched
+from validate.engines.switches import worlds_made
 from validate.scene import PYMUNK
 from validate.scenes._common import one_reading
 
 DT = 1.0 / 240.0             # of the engines [s]
 WAITING = 3.0                # duration of their runs [s]
+WATCHED = 1.0                # duration of a run that shows whether something stands [s]
 OVERLAP = 1e-6               # of pymunk's bodies at first [m]: it detects a contact only if they overlap
 # of pybullet; the floor has other coordinates than the boxes, so that the solver begins at its contacts from zero
 FROM_ZERO = {"overlap": 0.0, "slop": 1e-5, "ground": False, "weighed": False}
@@ -47,3 +50,14 @@ def in_tower(product, model, answer, waiting=WAITING, **settings):
             return answer(p, F, (world.state().x - start_of(tower).x)[1:, -1])
         return one_reading(read, world.close)
     return make
+
+
+def stands_in(product, model, moved, kept, dt, **settings):
+    """Return whether no body of a Model has moved by more than `moved` [m] after a second; kept: gets watched steps."""
+    with worlds_made() as made:
+        world = product.world.build(model, dt, **settings)
+    watching = watched.Pymunk(*made, dt) if product == PYMUNK else watched.Bullet(made[0].pb, dt, made[0].gravity)
+    watched.run(watching, round(WATCHED / dt), kept)
+    far = np.max(np.abs(world.state().x - start_of(model).x))
+    world.close()
+    return far < moved

@@ -12,13 +12,14 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.contact import make_contacts
+from solutions.support.model import Body, make_model
+from solutions.support.shapes import Ball, Box, HalfSpace
 from validate.check import states
 from validate.engines import watched
-from validate.engines.bullet import UPRIGHT, Rigid
-from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
 from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
 from validate.scenes._common import ANSWER, one_reading, sole_array
+from validate.scenes.contact._common import DT, WATCHED, stands_in
 from validate.scenes.drawing import circle
 
 T = 1.0
@@ -26,10 +27,8 @@ G = 9.81                     # [m/s²]; no critical number depends on it
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: sweeps leave some 1e-10
 WIDTH = 1e-9                 # relative, at which bisection stops [-]
 UP, DOWN = (0.0, 1.0), np.array([0.0, -1.0])
-WATCHED = 1.0                # duration of an engine's run [s]
 MOVED = 1e-3                 # a body that has moved less stands [m]
-OVERLAP = 1e-6               # of pymunk's bodies at first [m]: it detects a contact only if they overlap
-THIN = 2e-4                  # thickness of pybullet's ladder, which is a board [m]
+THIN = 2e-5                  # thickness of the engines' ladder, which is a board [m]
 HEIGHT = 0.2                 # of a block of the overhang, over its length [-]
 
 
@@ -201,125 +200,31 @@ def unknown(p, dt):
 
 # ---------------------------------------------------------------------------------------------- engines
 
-def pymunk_world(p, number):
-    """Return (space, bodies) of a scene.
-
-    Friction coefficients multiply; each body begins OVERLAP inside its support.
-    """
-    import pymunk
-    space, bodies = pymunk_space(G * (leaning(number) if p.kind == "box" else DOWN)), []
-
-    def add(body, make, mu):
-        shape = make(body)
-        shape.friction = mu
-        space.add(shape)
-
-    def movable(x, moment, make, mu):
-        body = pymunk.Body(1.0, moment)
-        body.position = tuple(map(float, x))
-        space.add(body)
-        add(body, make, mu)
-        bodies.append(body)
-
-    build = {"ladder": pymunk_ladder, "box": pymunk_box, "overhang": pymunk_overhang}.get(p.kind, pymunk_discs)
-    build(p, number, places_of(p, number), lambda make, mu: add(space.static_body, make, mu), movable)
-    return space, bodies
-
-
-def segment(start, end, thick):
-    """Return the function that gives a pymunk body this shape."""
-    import pymunk
-    return lambda body: pymunk.Segment(body, tuple(map(float, start)), tuple(map(float, end)), thick)
-
-
-def pymunk_discs(p, number, x, static, movable):
-    """Add discs by static(shape of a body, friction) and movable(centre, moment, shape of a body, friction)."""
-    import pymunk
-    between, ground = frictions_of(p, number)
-    static(segment((-20.0, -5.0), (20.0, -5.0), 5.0), ground)
-    below = np.array([0.0, OVERLAP])
-    for k, mu in ((1, 1.0), (2, 1.0), (3, between)):
-        aside = np.array([(2 * k - 3) * OVERLAP, 0.0]) if k < 3 else -2.0 * below
-        movable(x[k] - below + aside, 0.125, lambda body: pymunk.Circle(body, 0.5), mu)
-
-
-def pymunk_ladder(p, number, x, static, movable):
-    end = ladder_end(p)
-    static(segment((-20.0, -end[1] - 5.0), (20.0, -end[1] - 5.0), 5.0), number)
-    static(segment((end[0] + 5.0, -20.0), (end[0] + 5.0, 20.0), 5.0), 0.0)
-    movable(x[1], 1.0 / 12.0, segment(-end, end, OVERLAP), 1.0)
-
-
-def pymunk_box(p, number, x, static, movable):
-    import pymunk
-    static(segment((-20.0, -5.0), (20.0, -5.0), 5.0), 1.0)
-    box = lambda body: pymunk.Poly.create_box(body, (p.slim, 1.0))
-    movable(x[1] - np.array([0.0, OVERLAP]), (p.slim**2 + 1.0) / 12.0, box, p.mu)
-
-
-def pymunk_overhang(p, number, x, static, movable):
-    import pymunk
-    right = x[-1, 0] + 0.5
-    table = [(right - 4.0, -4.0), (right, -4.0), (right, 0.0), (right - 4.0, 0.0)]
-    static(lambda body: pymunk.Poly(body, table), 1.0)
-    block = lambda body: pymunk.Poly.create_box(body, (1.0, HEIGHT))
-    for k in range(p.blocks):
-        sunk = np.array([0.0, (p.blocks - k) * OVERLAP])
-        movable(x[k] - sunk, (1.0 + HEIGHT**2) / 12.0, block, p.mu)
-
-
-def pymunk_stands(p, number, kept, dt, iterations, slop):
-    """Return whether no body has moved by a millimetre after one second; kept: gets its watched steps."""
-    space, bodies = pymunk_world(p, number)
-    space.iterations, space.collision_slop = iterations, slop
-    before = np.array([body.position for body in bodies])
-    watched.run(watched.Pymunk(space, dt), round(WATCHED / dt), kept)
-    return np.max(np.abs(np.array([body.position for body in bodies]) - before)) < MOVED
-
-
-def pybullet_world(p, number, dt, iterations):
-    """Return (Rigid, bodies) of a ladder, a box or an overhang: boards and boxes on slabs, 1 m deep into the page."""
-    g = G * (leaning(number) if p.kind == "box" else DOWN)
-    bullet, x, bodies = Rigid(dt, (g[0], 0.0, g[1]), iterations), places_of(p, number), []
-    pb = bullet.pb
-
-    def static(centre, half, mu):
-        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[half[0], 5.0, half[1]])
-        body = pb.createMultiBody(0, shape, basePosition=[centre[0], 0.0, centre[1]])
-        pb.changeDynamics(body, -1, lateralFriction=mu, restitution=0)
-
-    def movable(centre, width, height, moment, mu, R=UPRIGHT):
-        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * width, 0.5, 0.5 * height])
-        place = (centre[0], 0.0, centre[1])
-        bodies.append(bullet.body(1.0, (10.0 * moment, moment, 10.0 * moment), place, (0.0,) * 3, True, shape=shape,
-                                  mu=mu, R=R))
-
+def model(p, number):
+    """Return the Model of a scene.  Friction of a pair is the product of both."""
+    x, ground = places_of(p, number), HalfSpace(UP)
+    if of_discs(p):
+        between, below = frictions_of(p, number)
+        bodies = [Body(tuple(place), 1.0, Ball(0.5), mu) for place, mu in zip(x[1:], (1.0, 1.0, between))]
+        return make_model([Body(tuple(x[0]), shape=ground, mu=below), *bodies], G * DOWN)
     if p.kind == "ladder":
         end = ladder_end(p)
-        c, s = 2.0 * end                                                 # along the ladder; (−s, c) is its upper side
-        static((0.0, -end[1] - 5.0), (20.0, 5.0), number)
-        static((end[0] + 5.0, 0.0), (5.0, 20.0), 0.0)
-        lies = np.array([(c, 0.0, -s), (0.0, 1.0, 0.0), (s, 0.0, c)])
-        movable((-0.5 * THIN * s, 0.5 * THIN * c), 1.0, THIN, 1.0 / 12.0, 1.0, lies)
-    elif p.kind == "box":
-        static((0.0, -5.0), (20.0, 5.0), 1.0)
-        movable(x[1], p.slim, 1.0, (p.slim**2 + 1.0) / 12.0, p.mu)
-    else:
-        static((x[-1, 0] - 1.5, -2.0), (2.0, 2.0), 1.0)
-        for k in range(p.blocks):
-            movable(x[k], 1.0, HEIGHT, (1.0 + HEIGHT**2) / 12.0, p.mu)
-    return bullet.begin(), bodies
+        floor, wall = HalfSpace(UP, end[1]), HalfSpace((-1.0, 0.0), end[0])
+        board = Body(tuple(THIN * np.array([-end[1], end[0]])), 1.0, Box((0.5, 0.5 * THIN)), 1.0,
+                     q=np.radians(p.degrees), inertia=1.0 / 12.0)
+        return make_model([Body(tuple(x[0]), shape=floor, mu=number), Body(tuple(x[0]), shape=wall), board], G * DOWN)
+    if p.kind == "box":
+        box = Body(tuple(x[1]), 1.0, Box((0.5 * p.slim, 0.5)), p.mu)
+        return make_model([Body(tuple(x[0]), shape=ground, mu=1.0), box], G * leaning(number))
+    grip, right = np.sqrt(p.mu), x[-1, 0] + 0.5
+    table = Body((right - 2.0, -2.0), shape=Box((2.0, 2.0)), mu=grip)
+    return make_model([table, *(Body(tuple(place), 1.0, Box((0.5, 0.5 * HEIGHT)), grip) for place in x[:-1])],
+                      G * DOWN)
 
 
-def pybullet_stands(p, number, kept, dt, iterations, residual):
-    """Return whether no body has moved by a millimetre after one second; kept: gets its watched steps."""
-    bullet, bodies = pybullet_world(p, number, dt, iterations)
-    bullet.pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
-    before = np.array([bullet.position(body) for body in bodies])
-    watched.run(watched.Bullet(bullet.pb, dt, bullet.gravity), round(WATCHED / dt), kept)
-    moved = np.max(np.abs(np.array([bullet.position(body) for body in bodies]) - before))
-    bullet.close()
-    return moved < MOVED
+def holds(p, number, kept, product, dt, **settings):
+    """Return whether no body has moved by a millimetre after a second; kept: gets its watched steps."""
+    return stands_in(product, model(p, number), MOVED, kept, dt, **settings)
 
 
 def make(p, dt, holds):
@@ -338,24 +243,25 @@ def low_boards(p):
     return boards(p) and (p.kind != "overhang" or p.blocks <= 3)
 
 
+AT_ONCE = {"overlap": 0.0, "slop": 1e-5}
 BISECTED = "its bisection and its sweeps stop at a given accuracy, and the limit bounds the remaining error"
 WATCHING = "a body that moves by less than a millimetre in a second stands, and the limit bounds the error of that"
 LEANING = "a body that moves by less than a millimetre stands, and no theory says how far an overhang sinks at first"
 COARSE = "no theory says how coarse its default settings are"
 RUNNERS = (
     ours(SWEEPS, limit=limit, predicted=BISECTED, order=EXACT),
-    engine(PYMUNK, "", partial(make, holds=partial(pymunk_stands, dt=1e-3, iterations=100, slop=1e-5)),
+    engine(PYMUNK, "", partial(make, holds=partial(holds, product=PYMUNK, dt=1e-3, iterations=100)),
            "100 iterations, collision_slop 1e-5; stands if nothing moves by 1 mm in 1 s of 1/1000 s",
            order=EXACT, limit=moved_limit, predicted=WATCHING),
-    engine(PYMUNK, "default", partial(make, holds=partial(pymunk_stands, dt=1.0 / 240.0, iterations=10, slop=0.1)),
+    engine(PYMUNK, "default", partial(make, holds=partial(holds, product=PYMUNK, dt=DT, iterations=10, slop=0.1)),
            "10 iterations, collision_slop 0.1; 1 s of 1/240 s", order=EXACT, limit=unknown, predicted=COARSE,
            laws=watched.pymunk_rules(10)),
-    engine(PYBULLET, "", partial(make, holds=partial(pybullet_stands, dt=2e-3, iterations=100, residual=0)),
+    engine(PYBULLET, "", partial(make, holds=partial(holds, product=PYBULLET, dt=2e-3, iterations=100, **AT_ONCE)),
            "maximal coordinates; solverResidualThreshold 0, 100 iterations; 1 s of 1/500 s",
            order=EXACT, limit=pybullet_limit, predicted=LEANING, supports=boards,
            laws=watched.bullet_rules(100, creeps=True)),
     engine(PYBULLET, "default",
-           partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
+           partial(make, holds=partial(holds, product=PYBULLET, dt=DT, iterations=50, residual=1e-7, **AT_ONCE)),
            "maximal coordinates; 50 iterations; 1 s of 1/240 s",
            order=EXACT, limit=unknown, predicted=COARSE, supports=low_boards,
            laws=watched.bullet_rules(50, creeps=True)),
