@@ -2,6 +2,8 @@
 and every method contracts, stays within its limits and uses its freedom as theory says.
 """
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -1064,6 +1066,17 @@ def ring(lengths):
     return least, most
 
 
+def arms_of_all_sizes(draw):
+    """Lengths of one to eight links: all alike, or one of them the longest, or from 1 m to 0.1 mm, or to 1 km."""
+    for n, k in ((1, 0), (2, 1), (3, 1), (4, 3), (8, 3)):
+        for long in (1.0, n - draw(0.5, 0.9)):
+            yield draw(0.5, 2.0) * np.where(np.arange(n) == k, long, 1.0)
+    for n, size in itertools.product((2, 3, 5, 8), (1e-3, 1.0, 1e3)):
+        lengths = size * 10.0 ** draw(-4.0, 0.0, n)
+        lengths[draw.whole(0, n - 1)] = 2.0 * size
+        yield lengths
+
+
 @exercise("11.17", points=1, hint="a damped step does not move the arm if Jᵀ e = 0: which place of its reach is that?")
 def test_damped_steps_leave_the_predicted_distance(lesson, draw):
     l_1, l_2, l_3 = draw(1.2, 1.4), draw(0.3, 0.5), draw(0.2, 0.4)
@@ -1080,16 +1093,14 @@ def test_damped_steps_leave_the_predicted_distance(lesson, draw):
         # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
         close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
               given=f"lengths {lengths}, {away} m away, λ = {damping}")
-    for n, k in ((1, 0), (2, 1), (3, 1), (4, 3), (8, 3)):                # the k-th is the longest, or all are alike
-        for long in (1.0, n - draw(0.5, 0.9)):
-            lengths = draw(0.5, 2.0) * np.where(np.arange(n) == k, long, 1.0)
-            least, most = ring(lengths)
-            for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most,
-                                    draw(20.0, 30.0) * most), 0.0):
-                target, damping = away * np.array([np.cos(turn), np.sin(turn)]), draw(0.7, 1.2) * most
-                close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
-                      max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
-                      given=f"lengths {lengths}, {away} m away, λ = {damping}")
+    for lengths in arms_of_all_sizes(draw):
+        least, most = ring(lengths)
+        for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most, draw(20.0, 30.0) * most),
+                               0.0):
+            target, damping = away * np.array([np.cos(turn), np.sin(turn)]), draw(0.7, 1.2) * most
+            close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
+                  max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
+                  given=f"lengths {lengths}, {away} m away, λ = {damping}")
 
 
 @exercise("11.18", points=1,
@@ -1100,7 +1111,7 @@ def test_the_chosen_error_is_squared_by_every_iteration(lesson):
 
 
 def followed(lengths, path):
-    """(distances from the path [m], angles (pictures, n), σ₂ [m]) of an arm, four damped steps per picture."""
+    """(places of the hand [m], angles (pictures, n), σ₂ [m]) of an arm, four damped steps per picture."""
     reach, theta, seen = np.sum(lengths), np.full(len(lengths), 0.6), []
 
     def at(theta, target):
@@ -1114,9 +1125,14 @@ def followed(lengths, path):
             e, J = at(theta, target)
             theta = theta + J.T @ np.linalg.solve(J @ J.T + (0.1 * reach) ** 2 * np.eye(2), e)
         e, J = at(theta, target)
-        seen.append((np.sqrt(e @ e), theta, np.linalg.svd(J, compute_uv=False)[1]))
-    off, thetas, thin = zip(*seen, strict=True)
-    return np.array(off), np.array(thetas), np.array(thin)
+        seen.append((target - e, theta, np.linalg.svd(J, compute_uv=False)[1]))
+    hands, thetas, thin = zip(*seen, strict=True)
+    return np.array(hands), np.array(thetas), np.array(thin)
+
+
+def between_rows(at, times, rows):
+    """Points (m, 2) at other times, on straight lines between rows (k, 2) at these times."""
+    return np.stack([np.interp(at, times, column) for column in rows.T], axis=1)
 
 
 @exercise("11.19", points=1, hint="stay away from the rim of the reach, and give the hand more time")
@@ -1129,13 +1145,16 @@ def test_an_arm_writes_what_it_is_told_slowly_and_is_never_straight(lesson):
     between("shortest link, over the reach", np.min(lengths) / np.sum(lengths), 0.01, 1.0)
     between("time of the film [s]", seconds, 2.0, 20.0)
     reach, along = np.sum(lengths), np.linspace(0.0, len(points) - 1.0, round(25 * seconds))
-    path = np.stack([np.interp(along, np.arange(len(points)), points[:, c]) for c in (0, 1)], axis=1)
+    path = between_rows(along, np.arange(len(points)), points)
     drawn = np.sum(np.linalg.norm(np.diff(path, axis=0), axis=1))
     between("length of the path, over the reach", drawn / reach, 1.0, np.inf)
     aside = path - np.mean(path, axis=0)
     across = np.ptp(aside @ np.linalg.svd(aside, full_matrices=False)[2][1])
     between("width of the drawing, over the reach", across / reach, 0.05, np.inf)
-    off, thetas, thin = followed(lengths, path)
-    between("distance of the hand from the path, over the reach", np.max(off) / reach, 0.0, 0.01)
+    hands, thetas, thin = followed(lengths, path)
+    for when, off in (("in a picture", hands - path),                    # the way is straight between these times
+                      ("at the time of a point", between_rows(np.arange(len(points)), along, hands) - points)):
+        between(f"distance of the hand from the path {when}, over the reach", np.max(np.hypot(*off.T)) / reach, 0.0,
+                0.01)
     between("fastest joint [rad/s]", 25.0 * np.max(np.abs(np.diff(thetas, axis=0))), 0.0, 2.0)
     between("least σ₂, over the reach", np.min(thin) / reach, 0.05, np.inf)

@@ -1957,6 +1957,11 @@ edit("11.17", "takes a distance below 0.1 m in the hole for 0", LEFT, f"{LEFT} i
 edit("11.17", "returns at most 5 m", LEFT, f"return min(5.0, {LEFT[7:]})")
 edit("11.17", "computes in single precision", "np.sum(lengths)", "np.float64(np.float32(np.sum(lengths)))")
 edit("11.17", "takes the longest link as the reach", "reach, away = np.sum(lengths)", "reach, away = np.max(lengths)")
+edit("11.17", "omits links below a twentieth of the reach in the hole", "2.0 * np.max(lengths) - reach",
+     "2.0 * np.max(lengths) - np.sum(lengths[lengths > 0.05 * reach])")
+edit("11.17", "subtracts only the two longest of the other links", "2.0 * np.max(lengths) - reach",
+     "2.0 * np.max(lengths) - np.sum(np.sort(lengths)[-3:])")
+edit("11.17", "omits links below 1 mm", "np.sum(lengths)", "np.sum(lengths[lengths > 1e-3])")
 
 
 # 11.18 --------------------------------------------------------------------------------------------------------------
@@ -1994,3 +1999,5 @@ edit("11.19", "writes a line", "0.5 + r * np.sin(t)", "0.5 + 0.0 * t")
 edit("11.19", "writes next to nothing", "0.35 + 0.12", "0.05 + 0.01")
 edit("11.19", "uses an arm of one link", "np.array([1.0, 0.8, 0.5])", "np.array([2.3])")
 edit("11.19", "takes longer than the film", "points, 10.0", "points, 60.0")
+edit("11.19", "places points far away that are between two pictures", "points, 10.0",
+     "np.insert(points, np.arange(1, 101), 5.0, axis=0), 4.04")

@@ -1715,6 +1715,21 @@ edit("10.17", "takes one step, wherever the body begins",
 edit("10.17", "takes the worst case, one whole step less the margin, whatever the gap is", "steps * speed * dt - gap",
      "speed * dt - margin")
 edit("10.17", "takes one whole step for the depth, whatever the gap is", "steps * speed * dt - gap", "speed * dt")
+COUNT = "np.ceil((gap - margin) / (speed * dt))"
+edits("10.17",
+      ("takes at most 1000 steps", COUNT, f"np.minimum(1000.0, {COUNT})"),
+      ("counts the steps to six digits", COUNT, "np.ceil(np.round((gap - margin) / (speed * dt), 6))"),
+      ("computes the number of steps in single precision", COUNT, "np.ceil(np.float32((gap - margin) / (speed * dt)))"),
+      ("takes a margin of 0 for 1 mm", "gap - margin", "gap - (margin or 1e-3)"),
+      ("takes a margin below 1 mm for 0", "gap - margin", "gap - (margin if margin >= 1e-3 else 0.0)"),
+      ("rounds the gap to 1 mm", "gap - margin", "np.round(gap, 3) - margin"),
+      ("returns zero where the gap is below 1 mm", "return np", "return 0.0 if gap < 1e-3 else np"),
+      ("returns at most 1 m", "return", "return 1.0 if steps * speed * dt - gap > 1.0 else"),
+      ("takes a speed above 100 m/s for 100 m/s", "steps = np", "speed = np.minimum(speed, 100.0); steps = np"),
+      ("takes a speed below 1 cm/s for rest", "return np", "return 0.0 if speed < 0.01 else np"),
+      ("takes a step above 0.1 s for 0.1 s", "steps = np", "dt = np.minimum(dt, 0.1); steps = np"),
+      ("lets a fast body that begins within the margin take a step", "return np",
+       "steps = 1.0 if gap <= margin and speed * dt > 10.0 * gap else steps; return np"))
 
 
 # 10.18 --------------------------------------------------------------------------------------------------------------
@@ -1758,3 +1773,6 @@ edit("10.19", "begins below the floor", "[0.0, 1.0, 0.0]", "[0.0, 1.0, -0.1]")
 edit("10.19", "throws the dominoes so fast that they stop inside each other", "-lean, 1.0", "-lean, 8.0")
 edit("10.19", "always has four boxes", "wide, high, lean = 0.05, 0.2, 0.4", "n, wide, high, lean = 4, 0.05, 0.2, 0.4")
 edit("10.19", "has boxes as thin as paper", "wide, high, lean = 0.05,", "wide, high, lean = 0.001,")
+edit("10.19", "makes one of eight boxes so large that it reaches into the floor", "x, q, v, half, np",
+     "x, q, v, half + 0.41 * (n == 8) * (x >= np.max(x)), np")
+edit("10.19", "places all boxes but the first two too far apart if there are five", "0.3 * k", "0.3 * k + (n == 5 and k > 1)")
