@@ -1775,4 +1775,5 @@ edit("10.19", "always has four boxes", "wide, high, lean = 0.05, 0.2, 0.4", "n, 
 edit("10.19", "has boxes as thin as paper", "wide, high, lean = 0.05,", "wide, high, lean = 0.001,")
 edit("10.19", "makes one of eight boxes so large that it reaches into the floor", "x, q, v, half, np",
      "x, q, v, half + 0.41 * (n == 8) * (x >= np.max(x)), np")
-edit("10.19", "places all boxes but the first two too far apart if there are five", "0.3 * k", "0.3 * k + (n == 5 and k > 1)")
+edit("10.19", "places all boxes but the first two too far apart if there are five", "0.3 * k",
+     "0.3 * k + (n == 5 and k > 1)")
