@@ -184,9 +184,10 @@ def with_singular_values(draw, sigma, columns):
 
 @exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
 def test_links_add_up_from_the_base(lesson, draw):
-    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9)):     # the last one has links of nanometres
+    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9), (5, 1e6)):   # from nanometres to 1000 km
         theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)
         theta[6:8] = 0.0                                                 # two links that go straight on
+        theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
               size * ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
@@ -220,7 +221,7 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), *2 * ((2, 1.0),)):   # and an arm with links of micrometres
+    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), (7, 1e6), *2 * ((2, 1.0),)):     # micrometres to 1000 km
         x = size * draw(-2.0, 2.0, (rows, 2))
         if rows > 2:
             x[0, 0], x[1, 1] = -x[-1, 0], x[-1, 1]                       # joint 1 is as high as the end
@@ -232,7 +233,7 @@ def test_the_jacobian_needs_no_angles(lesson, draw):
 
 @exercise("11.3", points=0.25, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
 def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
-    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6)):      # the last arm has links of micrometres
+    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6), (4, 1e6)):      # from micrometres to 1000 km
         sigma = size * np.array([draw(1.5, 3.0), draw(0.3, 1.2)])
         J, u = with_singular_values(draw, sigma, n)
         for mirror in (1.0, -1.0):                                       # the longer axis points upwards, and downwards
@@ -442,8 +443,9 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n in (draw.whole(3, 7), 9, 2, 2, 1):
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):
         theta, axes, offsets = chain(draw, n)
+        offsets *= size
         theta[n // 2] *= 1e-4 if n < 9 else 1e-8                         # this joint hardly turns
         if n == 9:                                                       # these not at all, twice, a half, and back
             theta[:4], theta[6:8] = (0.0, draw(13.0, 20.0), np.pi, -draw(7.0, 12.0)), 0.0
@@ -451,7 +453,7 @@ def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
         x, a, q = lesson.joint_frames(theta, axes, offsets)
         x_true, a_true, R = frames(theta, axes, offsets)
         given = f"θ = {theta}"
-        close("positions of the joints and the end [m]", x, x_true, ROUND_OFF, given=given)
+        close("positions of the joints and the end [m]", x, x_true, size * ROUND_OFF, given=given)
         close("axes of the joints in the world [-]", a, a_true, ROUND_OFF, given=given)
         close("length of the quaternion [-]", np.linalg.norm(q), 1.0, ROUND_OFF, given=given)
         close("axes of the last link [-]", quaternion_matrix(*np.asarray(q)).T, R.T, 1e-7, given=given)
@@ -574,7 +576,7 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
           lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=0.0)), theta, 0.0,
           given=f"θ = {theta}, target {target}, α = 0")
     for rows, size in EQUATIONS:
-        (e, J, target), gain = equations(draw, rows, size), draw(0.7, 3.0)
+        (e, J, target), gain = equations(draw, rows, size), 10.0 ** draw(-6.0, 3.0)
         got = lesson.transpose_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), gain=gain, **NARROW))
         close("change of θ for a linear task, over the gain and the size of e [-]", np.asarray(got) / (gain * size),
               e @ J, ROUND_OFF, given=f"θ = 0, e = {size * e}, J = {J}, α = {gain}, {rows} rows")
@@ -709,6 +711,11 @@ def test_factors_at_the_ends_of_their_range(lesson, draw):
         factors = lesson.contraction_factors(size * parts, 1.0 / size**2, size)
         for got, expected in zip(factors, (1.0 - parts**2, 1.0 / (1.0 + parts**2)), strict=True):
             close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {size * parts} m, α = 1/λ², λ = {size} m")
+    parts = 10.0 ** draw(1.0, 5.0, 6)
+    for got, expected in zip(lesson.contraction_factors(parts, 1.0, 1.0), (1.0 - parts**2, 1.0 / (1.0 + parts**2)),
+                             strict=True):
+        close("factors of large σ, over their truth [-]", np.asarray(got) / expected, np.ones(6), ROUND_OFF,
+              given=f"σ = {parts} m, α = 1/λ², λ = 1 m")
 
 
 # ---------------------------------------------------------------------------------------------- methods without
@@ -732,8 +739,10 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm), expected, 1e-9,
               given=f"θ = {theta}, target {target} m, lengths {lengths} m")
-    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, 1e-6, 1.0), (3, 1.0, 30.0)):   # the last is out of reach
+    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, 1e-6, 1.0), (4, 1e6, 1.0),
+                          (3, 1.0, 30.0)):                               # out of reach
         lengths, theta = size * lengths_of(draw, n), draw(-1.5, 1.5, n)
+        theta[0] *= 1e-3
         arm, target = arm_of(lesson, lengths), joints(theta, lengths)[-1] + size * near * unit(draw, 2)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm),
               coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9,
@@ -818,7 +827,8 @@ def there_and_back(x, target, lengths):
           hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
     for d, far, n, size in ((3, 0.0, draw.whole(3, 6), 1.0), (2, 0.0, draw.whole(7, 9), 1.0),
-                            (2, 20.0, draw.whole(3, 6), 1.0), (2, 0.0, 3, 1e-9)):     # out of reach; nanometres
+                            (2, 20.0, draw.whole(3, 6), 1.0),                 # out of reach
+                            (2, 0.0, 3, 1e-9), (2, 0.0, 3, 1e6)):             # of nanometres, and of 1000 km
         x, target = size * np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), size * (far + draw(-3.0, 3.0, d))
         lengths = size * lengths_of(draw, n)                                  # not what they are before the sweep
         expected = there_and_back(x, target, lengths)
@@ -913,6 +923,23 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
     step_between_far_limits(lesson, draw)
 
 
+def step_of_stiff_arms(lesson, draw, size):
+    """The step of 11.15 on an arm of micrometres, or of 1000 km, with joints that have no room, or are beyond it."""
+    lengths, theta, e = size * lengths_of(draw, 4), turned(draw, 4), size * draw(-2.0, 2.0, 2)
+    J, target = slopes(theta, lengths), e + points_of(theta, lengths)
+    wish, stiff = e @ J, np.array([True, False, True, False])                 # these joints have no room at all
+    low, high = np.where(stiff, theta, -np.inf), np.where(stiff, theta, np.inf)
+    out = np.arange(4) == 3                                                   # and this one is at one of its limits
+    low, high = np.where(out & (wish < 0.0), theta, low), np.where(out & (wish > 0.0), theta, high)
+    for blocked, above in ((stiff | out, 0.0), (np.full(4, True), 0.1)):
+        if above:                                                             # all are beyond one of their limits
+            low, high = np.where(wish < 0.0, theta + above, -np.inf), np.where(wish > 0.0, theta - above, np.inf)
+        free = theta + damped(np.where(blocked, 0.0, J), e, 0.5 * size)
+        close("θ after a step of an arm with stiff joints [rad]",
+              lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, 0.1, 0.5 * size, low, high)),
+              np.clip(free, low, high), SOLVED, given=f"θ = {theta}, limits {low} to {high}, target {target} m")
+
+
 @exercise("11.15", points=0.25,
           hint="zeros in the columns of blocked joints, in all rows, so that the others take over; clip at the end")
 def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
@@ -942,20 +969,8 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
         arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
         close("θ after a step [rad]", lesson.limited_step(task, theta, target, arm), np.clip(free, low, high), SOLVED,
               given=f"θ = {theta}, limits {low} to {high}, target {target} m")
-    size = 1e-6                                                               # an arm of micrometres
-    lengths, theta, e = size * lengths_of(draw, 4), turned(draw, 4), size * draw(-2.0, 2.0, 2)
-    J, target = slopes(theta, lengths), e + points_of(theta, lengths)
-    wish, stiff = e @ J, np.array([True, False, True, False])                 # these joints have no room at all
-    low, high = np.where(stiff, theta, -np.inf), np.where(stiff, theta, np.inf)
-    out = np.arange(4) == 3                                                   # and this one is at one of its limits
-    low, high = np.where(out & (wish < 0.0), theta, low), np.where(out & (wish > 0.0), theta, high)
-    for blocked, above in ((stiff | out, 0.0), (np.full(4, True), 0.1)):
-        if above:                                                             # all are beyond one of their limits
-            low, high = np.where(wish < 0.0, theta + above, -np.inf), np.where(wish > 0.0, theta - above, np.inf)
-        free = theta + damped(np.where(blocked, 0.0, J), e, 0.5 * size)
-        close("θ after a step of an arm with stiff joints [rad]",
-              lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, 0.1, 0.5 * size, low, high)),
-              np.clip(free, low, high), SOLVED, given=f"θ = {theta}, limits {low} to {high}, target {target} m")
+    for size in (1e-6, 1e6):
+        step_of_stiff_arms(lesson, draw, size)
 
 
 @exercise("11.15", points=0.25,
@@ -1009,7 +1024,7 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
                   given=f"e = {e} m")
             shortest = np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]          # from z to the nearest such Δθ
             close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
-    for far, much in zip((*FAR, 1.0), (pull, draw(1.2, 2.0), 0.0), strict=True):
+    for far, much in zip((*FAR, 1.0, 1.0), (pull, draw(1.2, 2.0), 0.0, 1e-3), strict=True):
         lengths, theta, target, e, J = posed(draw, 5, far)
         arm, z = arm_of(lesson, lengths, rest=rest[:5], pull=much, **around(theta)), much * (rest[:5] - theta)
         got = np.asarray(lesson.null_space_step(pose, theta, target, arm)) - theta

@@ -1779,7 +1779,8 @@ def test_a_body_stops_at_the_predicted_depth(lesson, draw):
     for slow, short, least in itertools.product((-4, -2, 0, 2), (-5, -3, -1), (1, 10, 100, 1000)):
         speed, dt, steps = 10.0 ** draw(slow, slow + 2), 10.0 ** draw(short, short + 2), draw.whole(least, 3 * least)
         way = speed * dt
-        for share, part in itertools.product((draw(0.1, 0.9), 1e-7, 1.0 - 1e-7), (draw(0.05, 0.99), 0.0, 1e-3, draw(3.0, 9.0))):
+        parts = draw(0.05, 0.99), 0.0, 1e-3, draw(3.0, 9.0)
+        for share, part in itertools.product((draw(0.1, 0.9), 1e-7, 1.0 - 1e-7), parts):
             margin = part * share * way
             gap = margin + (steps - share) * way
             close("depth at which the loop stops the body [m]", lesson.stopping_depth(speed, gap, margin, dt),
