@@ -712,10 +712,11 @@ def test_factors_at_the_ends_of_their_range(lesson, draw):
         for got, expected in zip(factors, (1.0 - parts**2, 1.0 / (1.0 + parts**2)), strict=True):
             close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {size * parts} m, α = 1/λ², λ = {size} m")
     parts = 10.0 ** draw(1.0, 5.0, 6)
-    for got, expected in zip(lesson.contraction_factors(parts, 1.0, 1.0), (1.0 - parts**2, 1.0 / (1.0 + parts**2)),
-                             strict=True):
-        close("factors of large σ, over their truth [-]", np.asarray(got) / expected, np.ones(6), ROUND_OFF,
-              given=f"σ = {parts} m, α = 1/λ², λ = 1 m")
+    gradient, damping = lesson.contraction_factors(parts, 1.0, 1.0)
+    close("factors of the transpose for large σ, over σ² [-]", np.asarray(gradient) / parts**2, 1.0 / parts**2 - 1.0,
+          ROUND_OFF, given=f"σ = {parts} m, α = 1/m²")
+    close("factors of the damped step for large σ [-]", damping, 1.0 / (1.0 + parts**2), ROUND_OFF,
+          given=f"σ = {parts} m, λ = 1 m")
 
 
 # ---------------------------------------------------------------------------------------------- methods without

@@ -1522,7 +1522,7 @@ def test_the_corner_stops_and_one_impulse_there_explains_it(lesson, draw):
     At last r, v and ω are often 0 or along an axis.
     """
     kinds = ((1.0, 1.0, 1.0), (3.0, 1.0, 1.0), (1.0, 1e-9, 1.0), (1.0, 1e6, 1.0), (1.0, 1.0, 1e6), (1.0, 1.0, 1e-6),
-             (1e-3, 1.0, 1.0), (1e3, 1.0, 1.0))
+             (1e-3, 1.0, 1.0))
     usual = [(speed, heavy, np.append(size * unit_vector(draw, 2), speed * draw(-2.0, 2.0, 3)))
              for size, speed, heavy in 4 * kinds]
     arms, speeds, spins = often_zero(draw, 60, 2), often_zero(draw, 60, 2), often_zero(draw, 60, 1)
