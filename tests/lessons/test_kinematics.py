@@ -575,8 +575,8 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
     close("θ after a step with the gain 0 [rad]",
           lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=0.0)), theta, 0.0,
           given=f"θ = {theta}, target {target}, α = 0")
-    for rows, size in EQUATIONS:
-        (e, J, target), gain = equations(draw, rows, size), 10.0 ** draw(-6.0, 3.0)
+    for (rows, size), small in itertools.product(EQUATIONS, (1.0, 1e-5)):
+        (e, J, target), gain = equations(draw, rows, size), small * draw(0.7, 3.0)
         got = lesson.transpose_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), gain=gain, **NARROW))
         close("change of θ for a linear task, over the gain and the size of e [-]", np.asarray(got) / (gain * size),
               e @ J, ROUND_OFF, given=f"θ = 0, e = {size * e}, J = {J}, α = {gain}, {rows} rows")
