@@ -114,7 +114,8 @@ def contraction_of_a_mass_ratio(lesson, check):
     return Picture("Heavy on light", "log₁₀ of the mass ratio", "log₁₀ of the part of the error removed", [
         series("theory, 1/(1 + r)", fine, -np.log10(1.0 + 10.0**fine), LINE),
         log_series("measured", ratios, done, DOTS)],
-        "A thousand times the mass needs a thousand times the sweeps; a light body on a heavy one converges fast.")
+        "From a ratio of 10 on, ten times the mass needs nearly ten times the sweeps; a light body on a heavy one "
+        "converges fast.")
 
 
 # ---------------------------------------------------------------------------------------------- sweeps that stop early
