@@ -96,7 +96,8 @@ def test_the_plan_gives_the_constants_of_its_hours():
                  f"{course.MINUTES_PER_EXERCISE:g} minutes to read its docstring",
                  f"{course.MINUTES_PER_LINE:g} minutes for each line", f"- {course.MINUTES_TO_FIND:g} minutes more"):
         assert said in text, said
-    assert any(len(own) == 2 for own in weeks.WEEKS.values()) and "a long lesson has two weeks" in text
+    long = sum(len(own) == 2 for own in weeks.WEEKS.values())
+    assert f"({NUMBERS[long]} lessons have two)" in text and "a long lesson has two weeks" in text
 
 
 def test_the_film_that_grows_has_two_exercises_in_each_lesson_that_start_here_names():
