@@ -83,8 +83,8 @@ def by_lesson(report):
     """
     run, level = report["run"], percent(HEADLINE)
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
-             "✓ agrees with the truth · ≈ departs as predicted, or breaks a law of contact by a rule named beforehand · "
-             "§ keeps the laws of contact · ✗ departs otherwise · ○ undecided, unfinished or not attempted.", "",
+             "✓ agrees with the truth · ≈ departs as predicted, or breaks a law of contact by a rule named beforehand "
+             "· § keeps the laws of contact · ✗ departs otherwise · ○ undecided, unfinished or not attempted.", "",
              f"| lesson | scenes | our methods | engines | stability | engine's time over ours, to {level} error | "
              "losses, ties, undecided |",
              "|---|---|---|---|---|---|---|"]
