@@ -410,7 +410,7 @@ def my_writing():
 
     - It has two to six links.  It takes 2 s to 20 s.  The path is at least as long as the reach, and is no line: across
       its main direction it is at least a twentieth of the reach wide.
-    - The hand is always within a hundredth of the reach of where it should be.
+    - The hand is always within a hundredth of the reach of where it should be, also between two pictures.
     - No joint turns faster than 2 rad/s, and σ₂ of the Jacobian never falls below a twentieth of the reach.
     """
     # YOUR CODE HERE

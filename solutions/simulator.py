@@ -507,7 +507,7 @@ def my_scene(n):
 
     *Make it*: place the boxes, give them velocities, and let them meet.  Many scenes are right: dominoes, a tower that
     falls, a break in billiards.  The judge runs your loop for 1 s with dt = 1/100 s, g = 9.81 m/s² downwards, 1 kg per
-    box, μ = 0.5, 10 sweeps and a margin of 3 cm, for some n from 5 to 8, and demands:
+    box, μ = 0.5, 10 sweeps and a margin of 3 cm, for each n from 5 to 8, and demands:
 
     - The half sizes are 5 to 50 cm.  No box moves by more than the smallest half size in one step.
     - At least n/2 pairs of boxes that are farther apart than the margin at the start push each other later.

@@ -2,6 +2,8 @@
 and every method contracts, stays within its limits and uses its freedom as theory says.
 """
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -182,9 +184,10 @@ def with_singular_values(draw, sigma, columns):
 
 @exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
 def test_links_add_up_from_the_base(lesson, draw):
-    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9)):     # the last one has links of nanometres
+    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9), (5, 1e6)):   # from nanometres to 1000 km
         theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)
         theta[6:8] = 0.0                                                 # two links that go straight on
+        theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
               size * ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
@@ -218,7 +221,7 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), *2 * ((2, 1.0),)):   # and an arm with links of micrometres
+    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), (7, 1e6), *2 * ((2, 1.0),)):     # micrometres to 1000 km
         x = size * draw(-2.0, 2.0, (rows, 2))
         if rows > 2:
             x[0, 0], x[1, 1] = -x[-1, 0], x[-1, 1]                       # joint 1 is as high as the end
@@ -230,7 +233,7 @@ def test_the_jacobian_needs_no_angles(lesson, draw):
 
 @exercise("11.3", points=0.25, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
 def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
-    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6)):      # the last arm has links of micrometres
+    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6), (4, 1e6)):      # from micrometres to 1000 km
         sigma = size * np.array([draw(1.5, 3.0), draw(0.3, 1.2)])
         J, u = with_singular_values(draw, sigma, n)
         for mirror in (1.0, -1.0):                                       # the longer axis points upwards, and downwards
@@ -440,8 +443,9 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n in (draw.whole(3, 7), 9, 2, 2, 1):
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):
         theta, axes, offsets = chain(draw, n)
+        offsets *= size
         theta[n // 2] *= 1e-4 if n < 9 else 1e-8                         # this joint hardly turns
         if n == 9:                                                       # these not at all, twice, a half, and back
             theta[:4], theta[6:8] = (0.0, draw(13.0, 20.0), np.pi, -draw(7.0, 12.0)), 0.0
@@ -449,7 +453,7 @@ def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
         x, a, q = lesson.joint_frames(theta, axes, offsets)
         x_true, a_true, R = frames(theta, axes, offsets)
         given = f"θ = {theta}"
-        close("positions of the joints and the end [m]", x, x_true, ROUND_OFF, given=given)
+        close("positions of the joints and the end [m]", x, x_true, size * ROUND_OFF, given=given)
         close("axes of the joints in the world [-]", a, a_true, ROUND_OFF, given=given)
         close("length of the quaternion [-]", np.linalg.norm(q), 1.0, ROUND_OFF, given=given)
         close("axes of the last link [-]", quaternion_matrix(*np.asarray(q)).T, R.T, 1e-7, given=given)
@@ -571,8 +575,8 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
     close("θ after a step with the gain 0 [rad]",
           lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=0.0)), theta, 0.0,
           given=f"θ = {theta}, target {target}, α = 0")
-    for rows, size in EQUATIONS:
-        (e, J, target), gain = equations(draw, rows, size), draw(0.7, 3.0)
+    for (rows, size), small in itertools.product(EQUATIONS, (1.0, 1e-5)):
+        (e, J, target), gain = equations(draw, rows, size), small * draw(0.7, 3.0)
         got = lesson.transpose_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), gain=gain, **NARROW))
         close("change of θ for a linear task, over the gain and the size of e [-]", np.asarray(got) / (gain * size),
               e @ J, ROUND_OFF, given=f"θ = 0, e = {size * e}, J = {J}, α = {gain}, {rows} rows")
@@ -707,6 +711,12 @@ def test_factors_at_the_ends_of_their_range(lesson, draw):
         factors = lesson.contraction_factors(size * parts, 1.0 / size**2, size)
         for got, expected in zip(factors, (1.0 - parts**2, 1.0 / (1.0 + parts**2)), strict=True):
             close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {size * parts} m, α = 1/λ², λ = {size} m")
+    parts = 10.0 ** draw(1.0, 5.0, 6)
+    gradient, damping = lesson.contraction_factors(parts, 1.0, 1.0)
+    close("factors of the transpose for large σ, over σ² [-]", np.asarray(gradient) / parts**2, 1.0 / parts**2 - 1.0,
+          ROUND_OFF, given=f"σ = {parts} m, α = 1/m²")
+    close("factors of the damped step for large σ [-]", damping, 1.0 / (1.0 + parts**2), ROUND_OFF,
+          given=f"σ = {parts} m, λ = 1 m")
 
 
 # ---------------------------------------------------------------------------------------------- methods without
@@ -730,8 +740,10 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm), expected, 1e-9,
               given=f"θ = {theta}, target {target} m, lengths {lengths} m")
-    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, 1e-6, 1.0), (3, 1.0, 30.0)):   # the last is out of reach
+    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, 1e-6, 1.0), (4, 1e6, 1.0),
+                          (3, 1.0, 30.0)):                               # out of reach
         lengths, theta = size * lengths_of(draw, n), draw(-1.5, 1.5, n)
+        theta[0] *= 1e-3
         arm, target = arm_of(lesson, lengths), joints(theta, lengths)[-1] + size * near * unit(draw, 2)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm),
               coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9,
@@ -816,7 +828,8 @@ def there_and_back(x, target, lengths):
           hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
     for d, far, n, size in ((3, 0.0, draw.whole(3, 6), 1.0), (2, 0.0, draw.whole(7, 9), 1.0),
-                            (2, 20.0, draw.whole(3, 6), 1.0), (2, 0.0, 3, 1e-9)):     # out of reach; nanometres
+                            (2, 20.0, draw.whole(3, 6), 1.0),                 # out of reach
+                            (2, 0.0, 3, 1e-9), (2, 0.0, 3, 1e6)):             # of nanometres, and of 1000 km
         x, target = size * np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), size * (far + draw(-3.0, 3.0, d))
         lengths = size * lengths_of(draw, n)                                  # not what they are before the sweep
         expected = there_and_back(x, target, lengths)
@@ -911,6 +924,23 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
     step_between_far_limits(lesson, draw)
 
 
+def step_of_stiff_arms(lesson, draw, size):
+    """The step of 11.15 on an arm of micrometres, or of 1000 km, with joints that have no room, or are beyond it."""
+    lengths, theta, e = size * lengths_of(draw, 4), turned(draw, 4), size * draw(-2.0, 2.0, 2)
+    J, target = slopes(theta, lengths), e + points_of(theta, lengths)
+    wish, stiff = e @ J, np.array([True, False, True, False])                 # these joints have no room at all
+    low, high = np.where(stiff, theta, -np.inf), np.where(stiff, theta, np.inf)
+    out = np.arange(4) == 3                                                   # and this one is at one of its limits
+    low, high = np.where(out & (wish < 0.0), theta, low), np.where(out & (wish > 0.0), theta, high)
+    for blocked, above in ((stiff | out, 0.0), (np.full(4, True), 0.1)):
+        if above:                                                             # all are beyond one of their limits
+            low, high = np.where(wish < 0.0, theta + above, -np.inf), np.where(wish > 0.0, theta - above, np.inf)
+        free = theta + damped(np.where(blocked, 0.0, J), e, 0.5 * size)
+        close("θ after a step of an arm with stiff joints [rad]",
+              lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, 0.1, 0.5 * size, low, high)),
+              np.clip(free, low, high), SOLVED, given=f"θ = {theta}, limits {low} to {high}, target {target} m")
+
+
 @exercise("11.15", points=0.25,
           hint="zeros in the columns of blocked joints, in all rows, so that the others take over; clip at the end")
 def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
@@ -940,20 +970,8 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
         arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
         close("θ after a step [rad]", lesson.limited_step(task, theta, target, arm), np.clip(free, low, high), SOLVED,
               given=f"θ = {theta}, limits {low} to {high}, target {target} m")
-    size = 1e-6                                                               # an arm of micrometres
-    lengths, theta, e = size * lengths_of(draw, 4), turned(draw, 4), size * draw(-2.0, 2.0, 2)
-    J, target = slopes(theta, lengths), e + points_of(theta, lengths)
-    wish, stiff = e @ J, np.array([True, False, True, False])                 # these joints have no room at all
-    low, high = np.where(stiff, theta, -np.inf), np.where(stiff, theta, np.inf)
-    out = np.arange(4) == 3                                                   # and this one is at one of its limits
-    low, high = np.where(out & (wish < 0.0), theta, low), np.where(out & (wish > 0.0), theta, high)
-    for blocked, above in ((stiff | out, 0.0), (np.full(4, True), 0.1)):
-        if above:                                                             # all are beyond one of their limits
-            low, high = np.where(wish < 0.0, theta + above, -np.inf), np.where(wish > 0.0, theta - above, np.inf)
-        free = theta + damped(np.where(blocked, 0.0, J), e, 0.5 * size)
-        close("θ after a step of an arm with stiff joints [rad]",
-              lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, 0.1, 0.5 * size, low, high)),
-              np.clip(free, low, high), SOLVED, given=f"θ = {theta}, limits {low} to {high}, target {target} m")
+    for size in (1e-6, 1e6):
+        step_of_stiff_arms(lesson, draw, size)
 
 
 @exercise("11.15", points=0.25,
@@ -1007,7 +1025,7 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
                   given=f"e = {e} m")
             shortest = np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]          # from z to the nearest such Δθ
             close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
-    for far, much in zip((*FAR, 1.0), (pull, draw(1.2, 2.0), 0.0), strict=True):
+    for far, much in zip((*FAR, 1.0, 1.0), (pull, draw(1.2, 2.0), 0.0, 1e-3), strict=True):
         lengths, theta, target, e, J = posed(draw, 5, far)
         arm, z = arm_of(lesson, lengths, rest=rest[:5], pull=much, **around(theta)), much * (rest[:5] - theta)
         got = np.asarray(lesson.null_space_step(pose, theta, target, arm)) - theta
@@ -1064,6 +1082,17 @@ def ring(lengths):
     return least, most
 
 
+def arms_of_all_sizes(draw):
+    """Lengths of one to eight links: all alike, or one of them the longest, or from 1 m to 0.1 mm, or to 1 km."""
+    for n, k in ((1, 0), (2, 1), (3, 1), (4, 3), (8, 3)):
+        for long in (1.0, n - draw(0.5, 0.9)):
+            yield draw(0.5, 2.0) * np.where(np.arange(n) == k, long, 1.0)
+    for n, size in itertools.product((2, 3, 5, 8), (1e-3, 1.0, 1e3)):
+        lengths = size * 10.0 ** draw(-4.0, 0.0, n)
+        lengths[draw.whole(0, n - 1)] = 2.0 * size
+        yield lengths
+
+
 @exercise("11.17", points=1, hint="a damped step does not move the arm if Jᵀ e = 0: which place of its reach is that?")
 def test_damped_steps_leave_the_predicted_distance(lesson, draw):
     l_1, l_2, l_3 = draw(1.2, 1.4), draw(0.3, 0.5), draw(0.2, 0.4)
@@ -1080,16 +1109,14 @@ def test_damped_steps_leave_the_predicted_distance(lesson, draw):
         # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
         close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
               given=f"lengths {lengths}, {away} m away, λ = {damping}")
-    for n, k in ((1, 0), (2, 1), (3, 1), (4, 3), (8, 3)):                # the k-th is the longest, or all are alike
-        for long in (1.0, n - draw(0.5, 0.9)):
-            lengths = draw(0.5, 2.0) * np.where(np.arange(n) == k, long, 1.0)
-            least, most = ring(lengths)
-            for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most,
-                                    draw(20.0, 30.0) * most), 0.0):
-                target, damping = away * np.array([np.cos(turn), np.sin(turn)]), draw(0.7, 1.2) * most
-                close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
-                      max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
-                      given=f"lengths {lengths}, {away} m away, λ = {damping}")
+    for lengths in arms_of_all_sizes(draw):
+        least, most = ring(lengths)
+        for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most, draw(20.0, 30.0) * most),
+                               0.0):
+            target, damping = away * np.array([np.cos(turn), np.sin(turn)]), draw(0.7, 1.2) * most
+            close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
+                  max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
+                  given=f"lengths {lengths}, {away} m away, λ = {damping}")
 
 
 @exercise("11.18", points=1,
@@ -1100,7 +1127,7 @@ def test_the_chosen_error_is_squared_by_every_iteration(lesson):
 
 
 def followed(lengths, path):
-    """(distances from the path [m], angles (pictures, n), σ₂ [m]) of an arm, four damped steps per picture."""
+    """(places of the hand [m], angles (pictures, n), σ₂ [m]) of an arm, four damped steps per picture."""
     reach, theta, seen = np.sum(lengths), np.full(len(lengths), 0.6), []
 
     def at(theta, target):
@@ -1114,9 +1141,14 @@ def followed(lengths, path):
             e, J = at(theta, target)
             theta = theta + J.T @ np.linalg.solve(J @ J.T + (0.1 * reach) ** 2 * np.eye(2), e)
         e, J = at(theta, target)
-        seen.append((np.sqrt(e @ e), theta, np.linalg.svd(J, compute_uv=False)[1]))
-    off, thetas, thin = zip(*seen, strict=True)
-    return np.array(off), np.array(thetas), np.array(thin)
+        seen.append((target - e, theta, np.linalg.svd(J, compute_uv=False)[1]))
+    hands, thetas, thin = zip(*seen, strict=True)
+    return np.array(hands), np.array(thetas), np.array(thin)
+
+
+def between_rows(at, times, rows):
+    """Points (m, 2) at other times, on straight lines between rows (k, 2) at these times."""
+    return np.stack([np.interp(at, times, column) for column in rows.T], axis=1)
 
 
 @exercise("11.19", points=1, hint="stay away from the rim of the reach, and give the hand more time")
@@ -1129,13 +1161,16 @@ def test_an_arm_writes_what_it_is_told_slowly_and_is_never_straight(lesson):
     between("shortest link, over the reach", np.min(lengths) / np.sum(lengths), 0.01, 1.0)
     between("time of the film [s]", seconds, 2.0, 20.0)
     reach, along = np.sum(lengths), np.linspace(0.0, len(points) - 1.0, round(25 * seconds))
-    path = np.stack([np.interp(along, np.arange(len(points)), points[:, c]) for c in (0, 1)], axis=1)
+    path = between_rows(along, np.arange(len(points)), points)
     drawn = np.sum(np.linalg.norm(np.diff(path, axis=0), axis=1))
     between("length of the path, over the reach", drawn / reach, 1.0, np.inf)
     aside = path - np.mean(path, axis=0)
     across = np.ptp(aside @ np.linalg.svd(aside, full_matrices=False)[2][1])
     between("width of the drawing, over the reach", across / reach, 0.05, np.inf)
-    off, thetas, thin = followed(lengths, path)
-    between("distance of the hand from the path, over the reach", np.max(off) / reach, 0.0, 0.01)
+    hands, thetas, thin = followed(lengths, path)
+    for when, off in (("in a picture", hands - path),                    # the way is straight between these times
+                      ("at the time of a point", between_rows(np.arange(len(points)), along, hands) - points)):
+        between(f"distance of the hand from the path {when}, over the reach", np.max(np.hypot(*off.T)) / reach, 0.0,
+                0.01)
     between("fastest joint [rad/s]", 25.0 * np.max(np.abs(np.diff(thetas, axis=0))), 0.0, 2.0)
     between("least σ₂, over the reach", np.min(thin) / reach, 0.05, np.inf)

@@ -1917,6 +1917,28 @@ edit("11.16", "does not pull where J is 0", "arm.pull *", "arm.pull * np.any(J) 
 edit("11.16", "does not pull a single joint", "arm.pull *", "arm.pull * (theta.size > 1) *")
 
 
+# 11.1 to 11.15: right for arms of about a metre ---------------------------------------------------------------------
+edit("11.1", "takes an angle below 1 mrad for 0", "phi += theta[k]", "phi += theta[k] * (abs(theta[k]) > 1e-3)")
+edit("11.1", "takes an angle beyond 100 rad for 100 rad", "phi += theta[k]", "phi += np.clip(theta[k], -100.0, 100.0)")
+edit("11.2", "takes distances above 100 m for 100 m", "n = x.shape[0] - 1",
+     "n, x = x.shape[0] - 1, np.clip(x - x[-1], -100.0, 100.0)")
+edit("11.3", "returns a longer half axis of at most 100 m", "return longer, np", "return min(longer, 100.0), np")
+edit("11.6", "takes offsets above 100 m for 100 m", "n = theta.size",
+     "n, offsets = theta.size, np.clip(offsets, -100.0, 100.0)")
+edit("11.6", "takes offsets below 1 mm for 0", "n = theta.size",
+     "n, offsets = theta.size, np.where(np.abs(offsets) < 1e-3, 0.0, offsets)")
+edit("11.9", "takes a gain below 0.01 for 0.01", "arm.gain", "max(arm.gain, 1e-2 * (arm.gain > 0.0))")
+edit("11.12", "returns factors of at least −100", FACTORS,
+     "return np.maximum(1.0 - gain * sigma**2, -100.0), damping**2 / (sigma**2 + damping**2)")
+edit("11.12", "takes a factor below 0.001 for 0", FACTORS, "left = damping**2 / (sigma**2 + damping**2)\n"
+     "    return 1.0 - gain * sigma**2, left * (left > 1e-3)")
+edit("11.13", "takes a target beyond 100 m for one at 100 m", BEGIN,
+     f"target = np.clip(target, -100.0, 100.0); {BEGIN}")
+edit("11.14", "takes a target beyond 100 m for one at 100 m", SET, f"{SET}; x[n] = np.clip(x[n], -100.0, 100.0)")
+edit("11.15", "takes a damping above 100 m for 100 m", "arm.damping * arm.damping", "min(arm.damping, 100.0) ** 2")
+edit("11.16", "takes a pull below 0.01 for 0", "arm.pull * (", "arm.pull * (arm.pull > 1e-2) * (")
+
+
 # 11.17 --------------------------------------------------------------------------------------------------------------
 @right("11.17", "by cases")
 def remaining_distance(lengths, target, damping):
@@ -1957,6 +1979,11 @@ edit("11.17", "takes a distance below 0.1 m in the hole for 0", LEFT, f"{LEFT} i
 edit("11.17", "returns at most 5 m", LEFT, f"return min(5.0, {LEFT[7:]})")
 edit("11.17", "computes in single precision", "np.sum(lengths)", "np.float64(np.float32(np.sum(lengths)))")
 edit("11.17", "takes the longest link as the reach", "reach, away = np.sum(lengths)", "reach, away = np.max(lengths)")
+edit("11.17", "omits links below a twentieth of the reach in the hole", "2.0 * np.max(lengths) - reach",
+     "2.0 * np.max(lengths) - np.sum(lengths[lengths > 0.05 * reach])")
+edit("11.17", "subtracts only the two longest of the other links", "2.0 * np.max(lengths) - reach",
+     "2.0 * np.max(lengths) - np.sum(np.sort(lengths)[-3:])")
+edit("11.17", "omits links below 1 mm", "np.sum(lengths)", "np.sum(lengths[lengths > 1e-3])")
 
 
 # 11.18 --------------------------------------------------------------------------------------------------------------
@@ -1994,3 +2021,5 @@ edit("11.19", "writes a line", "0.5 + r * np.sin(t)", "0.5 + 0.0 * t")
 edit("11.19", "writes next to nothing", "0.35 + 0.12", "0.05 + 0.01")
 edit("11.19", "uses an arm of one link", "np.array([1.0, 0.8, 0.5])", "np.array([2.3])")
 edit("11.19", "takes longer than the film", "points, 10.0", "points, 60.0")
+edit("11.19", "places points far away that are between two pictures", "points, 10.0",
+     "np.insert(points, np.arange(1, 101), 5.0, axis=0), 4.04")

@@ -1689,6 +1689,45 @@ edits("10.16",
       ("loses a NaN", MOST, f"max(difference, {LARGEST})"))
 
 
+# 10.1 to 10.16: right for numbers of the order of one ---------------------------------------------------------------
+LOADS = "F, tau = load(t, x, q, v, omega, p)"
+edits("10.1 10.2",
+      ("takes a velocity below 1 mm/s for 0", LOADS, f"{LOADS}; v = np.where(np.abs(v) < 1e-3, 0.0, v)"),
+      ("takes a velocity above 1000 m/s for 1000 m/s", LOADS, f"{LOADS}; v = np.clip(v, -1e3, 1e3)"),
+      ("omits forces below 0.01 N", LOADS, f"{LOADS}; F = np.where(np.abs(F) < 1e-2, 0.0, F)"))
+edits("10.3 10.4",
+      ("takes a place beyond 10 km for 10 km", "return x + dt * v", "return np.clip(x + dt * v, -1e4, 1e4)"),
+      ("keeps the place of a body that moves by less than 1 µm", "return x + dt * v",
+       "return x + np.where(np.abs(dt * v) < 1e-6, 0.0, dt * v)"))
+edits("10.5",
+      ("takes a place beyond 100 m for 100 m", "narrow(x, turn", "narrow(np.clip(x, -100.0, 100.0), turn"),
+      ("takes a margin below 1 mm for 1 mm", "pairs, p.margin", "pairs, max(p.margin, 1e-3)"))
+edits("10.6 10.7", ("keeps the place of a body that moves by less than 1 µm", "return PileState(x + dt * v",
+                    "return PileState(x + np.where(np.abs(dt * v) < 1e-6, 0.0, dt * v)"))
+edits("10.8",
+      ("takes a floor that turns faster than 100 rad/s for one with 100 rad/s", "ball.floor_omega",
+       "np.clip(ball.floor_omega, -100.0, 100.0)"))
+edits("10.9",
+      ("takes a velocity above 100 m/s for 100 m/s", SLIP, f"v = np.clip(v, -100.0, 100.0); {SLIP}"),
+      ("takes a ball below 1 cm for a point, which slides", SLIP,
+       f"{SLIP}; pushed, turned = (pushed, turned) if ball.radius > 1e-2 else (v, omega)"))
+edits("10.10",
+      ("takes a slip above 100 m/s for 100 m/s", "slip[2] = 0.0", "slip[2] = 0.0; slip = np.clip(slip, -100.0, 100.0)"),
+      ("returns zero for a ball below 1 cm", "size == 0.0", "size == 0.0 or ball.radius < 1e-2"))
+edits("10.11",
+      ("takes a velocity above 100 m/s for 100 m/s", f"first = {UNTIL}",
+       f"v = np.clip(v, -100.0, 100.0); first = {UNTIL}"))
+edits("10.12",
+      ("takes a velocity above 100 m/s for 100 m/s", ANGULAR, f"v = np.clip(v, -100.0, 100.0); {ANGULAR}"),
+      ("takes a corner within 1 cm for the centre", ANGULAR, f"r = r * (np.hypot(r[0], r[1]) > 1e-2); {ANGULAR}"))
+edits("10.13", ("omits the translation of bodies below 1 cm/s", KINETIC, f"{KINETIC} * (norm(v[i]) > 1e-2)"))
+edits("10.14", ("omits the orbital part within 1 cm of the origin", ORBIT, f"{ORBIT} * (norm(x[i]) > 1e-2)"))
+edits("10.15", ("takes an energy above 1 MJ for 1 MJ", REST, "min(energies[k], 1e6) - work[k]"))
+edits("10.16",
+      ("returns a ratio of at most 10", MEDIAN, f"min({MEDIAN}, 10.0)"),
+      ("returns a difference of at most 1000", "return difference", "return np.minimum(difference, 1e3)"))
+
+
 # 10.17 --------------------------------------------------------------------------------------------------------------
 @right("10.17", "step by step")
 def stopping_depth(speed, gap, margin, dt):
@@ -1715,6 +1754,21 @@ edit("10.17", "takes one step, wherever the body begins",
 edit("10.17", "takes the worst case, one whole step less the margin, whatever the gap is", "steps * speed * dt - gap",
      "speed * dt - margin")
 edit("10.17", "takes one whole step for the depth, whatever the gap is", "steps * speed * dt - gap", "speed * dt")
+COUNT = "np.ceil((gap - margin) / (speed * dt))"
+edits("10.17",
+      ("takes at most 1000 steps", COUNT, f"np.minimum(1000.0, {COUNT})"),
+      ("counts the steps to six digits", COUNT, "np.ceil(np.round((gap - margin) / (speed * dt), 6))"),
+      ("computes the number of steps in single precision", COUNT, "np.ceil(np.float32((gap - margin) / (speed * dt)))"),
+      ("takes a margin of 0 for 1 mm", "gap - margin", "gap - (margin or 1e-3)"),
+      ("takes a margin below 1 mm for 0", "gap - margin", "gap - (margin if margin >= 1e-3 else 0.0)"),
+      ("rounds the gap to 1 mm", "gap - margin", "np.round(gap, 3) - margin"),
+      ("returns zero where the gap is below 1 mm", "return np", "return 0.0 if gap < 1e-3 else np"),
+      ("returns at most 1 m", "return", "return 1.0 if steps * speed * dt - gap > 1.0 else"),
+      ("takes a speed above 100 m/s for 100 m/s", "steps = np", "speed = np.minimum(speed, 100.0); steps = np"),
+      ("takes a speed below 1 cm/s for rest", "return np", "return 0.0 if speed < 0.01 else np"),
+      ("takes a step above 0.1 s for 0.1 s", "steps = np", "dt = np.minimum(dt, 0.1); steps = np"),
+      ("lets a fast body that begins within the margin take a step", "return np",
+       "steps = 1.0 if gap <= margin and speed * dt > 10.0 * gap else steps; return np"))
 
 
 # 10.18 --------------------------------------------------------------------------------------------------------------
@@ -1758,3 +1812,7 @@ edit("10.19", "begins below the floor", "[0.0, 1.0, 0.0]", "[0.0, 1.0, -0.1]")
 edit("10.19", "throws the dominoes so fast that they stop inside each other", "-lean, 1.0", "-lean, 8.0")
 edit("10.19", "always has four boxes", "wide, high, lean = 0.05, 0.2, 0.4", "n, wide, high, lean = 4, 0.05, 0.2, 0.4")
 edit("10.19", "has boxes as thin as paper", "wide, high, lean = 0.05,", "wide, high, lean = 0.001,")
+edit("10.19", "makes one of eight boxes so large that it reaches into the floor", "x, q, v, half, np",
+     "x, q, v, half + 0.41 * (n == 8) * (x >= np.max(x)), np")
+edit("10.19", "places all boxes but the first two too far apart if there are five", "0.3 * k",
+     "0.3 * k + (n == 5 and k > 1)")
