@@ -728,24 +728,45 @@ def overlap_goes(lesson, rng):
     return (*end[:4], end.contacts.gap), (x, q, state.v, state.omega, np.array([gap + away]))
 
 
-@random_law("The pull of a soft rod and the weight change the momenta of its body, about its centre by arm × J.",
-            "a soft rod: largest error of the momenta [kg m/s, kg m²/s]", EXACT)
+def tumbling(rng, d):
+    """Return a Body that moves and tumbles anywhere."""
+    x, v = rng.normal(size=(2, d))
+    spin, inertia = (float(rng.normal()), 0.3) if d == 2 else (tuple(rng.normal(size=3)), (0.2, 0.3, 0.4))
+    q = float(rng.normal()) if d == 2 else tuple(random_quaternions(rng, 1)[0])
+    return model.Body(tuple(x), rng.uniform(0.5, 3.0), q=q, v=tuple(v), omega=spin, inertia=inertia)
+
+
+@random_law("The pull F of a soft rod and the weight change the momenta of its body; the rod is longer by F times its "
+            "compliance.", "a soft rod: largest error of momenta and length [kg m/s, kg m²/s, m]", EXACT)
 def pull_of_a_soft_rod(lesson, rng):
     """Hold a body that tumbles at a point off its centre, in the plane and in space."""
     errors = []
     for d in (2, 3):
-        g, m, dt, (x, v) = rng.normal(size=d), rng.uniform(0.5, 3.0), rng.uniform(0.01, 0.05), rng.normal(size=(2, d))
-        spin, inertia = (float(rng.normal()), 0.3) if d == 2 else (tuple(rng.normal(size=3)), (0.2, 0.3, 0.4))
-        q, place = float(rng.normal()) if d == 2 else tuple(random_quaternions(rng, 1)[0]), 0.3 * rng.normal(size=d)
-        held = model.Body(tuple(x), m, q=q, v=tuple(v), omega=spin, inertia=inertia)
+        held, g, dt, place = tumbling(rng, d), rng.normal(size=d), rng.uniform(0.01, 0.05), 0.3 * rng.normal(size=d)
         rod = model.Distance(0, model.WORLD, tuple(place), (2.0,) * d, compliance=0.01)
         loop = lesson.compose(model.make_model([held], tuple(g), [rod]))
         after = lesson.run_parts(loop, 0.0, loop.state, dt, 1)
         J = in_space(lesson.link_impulses(loop.load, 0.0, loop.state, after, dt, loop.p)[0])
-        arm, weight = rotations([q])[0] @ in_space(place), in_space(m * dt * g)
+        x, weight, arms = in_space(held.x), in_space(held.m * dt * g), [
+            rotations(q[:1])[0] @ in_space(place) for q in (loop.state.q, after.q)]
         (P, L), (P_new, L_new) = momenta_of(*loop.state[:4], loop.p), momenta_of(*after[:4], loop.p)
-        errors += [P_new - P - J - weight, L_new - L - np.cross(in_space(x), J + weight) - np.cross(arm, J)]
-    return tuple(errors), (np.zeros(12),)
+        ways = x + arms[0] - in_space((2.0,) * d), in_space(after.x[0]) + arms[1] - in_space((2.0,) * d)
+        lengths = [np.linalg.norm(way) for way in ways]
+        errors += [P_new - P - J - weight, L_new - L - np.cross(x, J + weight) - np.cross(arms[0], J),
+                   lengths[1] - lengths[0] + 0.01 / dt * (J @ ways[0]) / lengths[0]]
+    return tuple(errors), (np.zeros(14),)
+
+
+@random_law("Two bodies on a rod between points off their centres keep both momenta.",
+            "two bodies on a rod: largest error of the momenta [kg m/s, kg m²/s]", EXACT)
+def momenta_on_a_rod(lesson, rng):
+    begin, end = [], []
+    for d in (2, 3):
+        rod = model.Distance(0, 1, *map(tuple, 0.3 * rng.normal(size=(2, d))), compliance=rng.choice((0.0, 0.01)))
+        loop = lesson.compose(model.make_model([tumbling(rng, d), tumbling(rng, d)], (0.0,) * d, [rod]))
+        begin += momenta_of(*loop.state[:4], loop.p)
+        end += momenta_of(*lesson.run_parts(loop, 0.0, loop.state, 0.01, 3)[:4], loop.p)
+    return tuple(end), tuple(begin)
 
 
 @random_law("A rod carries what hangs on it: its impulse in a step is m g dt, for every spin of the body.",
@@ -772,7 +793,8 @@ def loop_from_a_model(lesson, check):
     A spring pulls −(k (l − l₀) + c l̇) along its line, drag −k v.  Parts: see each law.
     """
     check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
-                        overlap_goes, weight_on_a_rod, pull_of_a_soft_rod), seed=35, times=10)
+                        overlap_goes, weight_on_a_rod, pull_of_a_soft_rod,
+                        momenta_on_a_rod), seed=35, times=10)
     right_parts(lesson, check)
     pairs_of_a_model(check)
     composed_motions(lesson, check)
