@@ -1007,8 +1007,8 @@ class Solid(SimpleNamespace):
 
 def solid(rng, kind, size=1.0):
     """Return a Solid of this kind in a random place; a polyhedron has the corners of a box."""
-    (a, b, c), r, q, x = size * rng.uniform(0.4, 0.8, 3), size * rng.uniform(0.1, 0.3), *(
-        random_quaternions(rng, 1)[0], rng.normal(size=3))
+    (a, b, c), r, x = size * rng.uniform(0.4, 0.8, 3), size * rng.uniform(0.1, 0.3), rng.normal(size=3)
+    q = random_quaternions(rng, 1)[0]
     shape, edges, radius = {
         "ball": (shapes.Ball(r), np.zeros((0, 3)), r), "capsule": (shapes.Capsule(a, r), np.array([(a, 0.0, 0.0)]), r),
         "box": (shapes.Box((a, b, c)), np.diag((a, b, c)), 0.0),
