@@ -13,6 +13,7 @@ from solutions.checks import Diverged
 from solutions.support import model, shapes
 from solutions.support.events import extrema, value_at, zeros
 from solutions.support.quaternions import quaternion_from_matrix
+from solutions.support.small_systems import shortest_solution
 from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 ROUND_OFF = 1e-14            # change of an impulse, over the largest one, at which sweeps have settled
@@ -371,6 +372,14 @@ def joined_bodies_bounce(lesson, rng):
              end.omega[1] - state.omega[1]))
 
 
+@random_law("Of all solutions of equations that depend on each other the shortest is taken: the pseudo-inverse's.",
+            "six equations of rank 2 to 5: largest error of their solution [-]", 1e-8)
+def shortest_of_all(lesson, rng):
+    half = rng.normal(size=(6, rng.integers(2, 6)))
+    A, z = half @ half.T, rng.normal(size=6)
+    return shortest_solution(A, A @ z), np.linalg.pinv(A, 1e-9) @ A @ z
+
+
 @case("joints", "Joints in the plane and in space, and what judges a run", compiled=False)
 def joints(lesson, check):
     """Compare steps with joints with conserved momenta, with reversed time and with Newton's and Euler's equations.
@@ -380,7 +389,8 @@ def joints(lesson, check):
     """
     check.laws(lesson, (judges_in_the_plane, work_of_driven_rows, parting_speeds, without_joined, joints_stay_closed,
                         joints_keep_momenta, joints_are_reversible, hinge_in_space, force_of_a_joint,
-                        joined_bodies_bounce, residual_of_a_step, force_of_contacts, bound_of_the_overlap),
+                        joined_bodies_bounce, residual_of_a_step, force_of_contacts, bound_of_the_overlap,
+                        shortest_of_all),
                seed=33, times=10)
 
 
