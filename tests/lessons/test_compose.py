@@ -23,6 +23,7 @@ from solutions.support.model import (
     Spring,
     Weld,
     make_model,
+    model_energy,
     picture_of,
     start_of,
 )
@@ -151,6 +152,19 @@ def test_each_body_has_its_own_restitution(e):
     J = -(1.0 + e) * reduced * ((v[0] - v[1]) @ n)
     expected = np.array([v[0] + J / m[0] * n, v[1] - J / m[1] * n])
     assert s.v == pytest.approx(expected, abs=5e-3)                    # the normal turns within the last step
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_an_oblique_elastic_impact_without_friction_keeps_the_energy_and_turns_nothing(d):
+    """The bodies still overlap in the step after it, with another normal; the impulse that is kept must not rub."""
+    still, along = (0.0,) * d, np.eye(d)[0]
+    bodies = [Body(still, 1.0, Ball(0.5), e=1.0, v=tuple(2.0 * along + 0.1 * np.eye(d)[1])),
+              Body(tuple(1.05 * along + 0.3 * np.eye(d)[1]), 2.0, Ball(0.5), e=1.0, v=tuple(-0.3 * along))]
+    model = make_model(bodies, still)
+    s, before = run(model, 0.2, 48), model_energy(model, start_of(model))
+    assert np.abs(s.v[0] - bodies[0].v).max() > 1.0                    # they did meet
+    assert model_energy(model, s) == pytest.approx(before, rel=1e-13)
+    assert np.abs(s.omega).max() < 1e-13
 
 
 @pytest.mark.parametrize("shape", [
