@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_not_negative, whole_number
+from ..checks import BadInput, check_not_negative, finite_number, whole_number
 from ..simulator import weight
 from ..support.convex_2d import (
     box_bounds_of,
@@ -146,14 +146,20 @@ def compose(model, settings=SETTINGS):
     """Return the Loop of a Model.  Raises BadInput where refuses(model) has a reason."""
     if why := refuses(model):
         raise BadInput("a model for our loop", why, "take another world")
-    whole_number("number of sweeps", settings.sweeps, 1)
-    check_not_negative("the share at which sweeps have settled [-]", settings.settled)
+    settings = checked_settings(settings)
     p, state, row = rows_of(model, settings)
     bounds, narrow = shapes_of_loop(model)
     joint_of = tuple(k for k, joint in enumerate(model.joints) for _ in points_of(model, joint))
     joint_of += tuple(rods_in(model))
     return Loop(parts_of(model, kit_of(model)), step_of(model), first_touch, load_of(model), bounds, narrow, state, p,
                 row, joint_of)
+
+
+def checked_settings(settings):
+    """Return Settings as numbers of their kinds.  Raises BadInput; rows_of checks the margin."""
+    settled = finite_number("the share at which sweeps have settled [-]", settings.settled)
+    check_not_negative("the share at which sweeps have settled [-]", settled)
+    return settings._replace(sweeps=whole_number("number of sweeps", settings.sweeps, 1), settled=settled)
 
 
 def parts_of(model, kit):
@@ -262,7 +268,10 @@ def padded(loop):
 
 
 def run_parts(loop, t, state, dt, steps):
-    """Return the PileState after so many steps of a Loop."""
+    """Return the PileState after so many steps of a Loop.
+
+    Raises BadInput for a step that is not positive, Diverged where the end is not finite or a step is far too long.
+    """
     steps = whole_number("number of steps", steps, 0)
     functions = loop.step.step, *padded(loop), loop.touch, loop.load, loop.bounds, loop.narrow
     return advance_parts(*functions, t, state, dt, steps, loop.p)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import Diverged, check_end, finite_number, positive_number
 from ..support.records import check_record
 from ..support.scenes import TOO_DEEP
 from .joints import Joints
@@ -22,6 +23,7 @@ MOST_PARTS = 30              # of one step: bodies that bounce between two other
 SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
 SHORTEST = 1e-9              # part of a step that is left out [-]
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
+TOO_LONG = "take a smaller step; if that does not help, bodies have no room between others"
 
 
 class Rough(NamedTuple):
@@ -103,6 +105,7 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
     """Return the same, but divided where bodies touch that would go too deep into each other or pass each other.
 
     touch: first_touch, of which only fast bodies have need
+    Raises Diverged where bodies still pass each other when the step has MOST_PARTS parts.
     """
     left, part, divisions = dt, dt, 0
     while True:
@@ -113,10 +116,12 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
             if left < SHORTEST * dt:
                 return state
             part = left
-        elif divisions < MOST_PARTS - 1 and may_pass(state, after, left, p.half.half):
+        elif may_pass(state, after, left, p.half.half):
             share = touch(bounds, narrow, state, after, left, p)
             if share == 1.0 or share * left < SHORTEST * dt:
                 return after
+            if divisions >= MOST_PARTS - 1:
+                raise Diverged("the share of a step that its most parts reach [-]", 1.0 - left / dt, TOO_LONG)
             part = share * left
         else:
             return after
@@ -127,8 +132,12 @@ def advance_parts(step, first, second, third, fourth, fifth, sixth, touch, load,
     """Return the PileState after so many steps of a loop with six parts; step: whole_step or divided_step.
 
     All are arguments of their own, so that compiled code is kept on disk for each set of parts.
+    Raises BadInput for a step that is not positive, Diverged where the end is not finite.
     """
     check_record(p, state)
+    t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
     for n in range(steps):
         state = step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + n * dt, state, dt, p)
+    check_end(state.x, state.v, dt)
+    check_end(state.q, state.omega, dt)
     return state

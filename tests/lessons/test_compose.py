@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from solutions.given import parts as given_parts
 from solutions.given.compose import Part, Settings, compose, run_parts, state_of
 from solutions.support.model import (
@@ -281,6 +281,31 @@ def test_a_spring_whose_ends_meet_on_their_way_is_refused(place):
 def test_settings_that_cannot_be_are_refused(settings):
     with pytest.raises(BadInput):
         compose(make_model([Body((0.0, 1.0), 1.0, Ball(0.5)), FLOOR], DOWN), Settings(**settings))
+
+
+@pytest.mark.parametrize("settings", [{"sweeps": 10.0}, {"sweeps": np.int64(10)}, {"settled": 1}])
+def test_settings_may_be_numbers_of_another_kind(settings):
+    assert np.isfinite(run(make_model([Body((0.0, 0.4), 1.0, Ball(0.5)), FLOOR], DOWN), 0.1, 10, **settings).x).all()
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, np.nan, np.inf, "a"])
+def test_a_step_that_cannot_be_is_refused(dt):
+    loop = compose(make_model([Body((0.0, 0.5), 1.0, Ball(0.5)), FLOOR], DOWN))
+    with pytest.raises(BadInput, match="step dt"):
+        run_parts(loop, 0.0, loop.state, dt, 10)
+
+
+@pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
+def test_a_run_whose_end_is_no_number_is_no_result():
+    """A drag that is too strong for the step lets the speed grow by k dt/m − 1 per step."""
+    with pytest.raises(Diverged, match="no longer finite"):
+        run(make_model([Body((0.0, 0.0), 1.0, v=(1.0, 0.0))], (0.0, 0.0), loads=[Drag(1000.0)]), 10.0, 1000)
+
+
+def test_a_step_in_which_a_body_falls_past_all_parts_is_no_result():
+    """Each part gains speed anew, so the most parts lead through little of such a step; the rest fell through."""
+    with pytest.raises(Diverged, match="most parts"):
+        run(make_model([Body((0.0, 0.7), 1.0, Box((0.5, 0.5)), mu=0.5, q=0.3), FLOOR], DOWN), 10.0, 1)
 
 
 def test_no_friction_beside_an_infinite_one_is_no_friction():
