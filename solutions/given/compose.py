@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_not_negative, finite_number, whole_number
+from ..checks import check_not_negative, finite_number, whole_number
 from ..simulator import weight
 from ..support.convex_2d import (
     box_bounds_of,
@@ -73,7 +73,7 @@ from .parts_3d import (
     separate_in_space,
 )
 from .rods import close_with_rods, hold_with_rods
-from .rows import Composed, Settings, in_order, lengths_of, points_of, rods_in, rows_in_order, rows_of
+from .rows import Composed, Settings, in_order, points_of, rods_in, rows_in_order, rows_of
 
 FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
 
@@ -129,23 +129,11 @@ def kit_of(model):
 
 # ---------------------------------------------------------------------------------------------- composition
 
-def refuses(model):
-    """Return why our loop cannot run a model, for people; an empty text where it can."""
-    if any(length == 0.0 for length in lengths_of(model, [model.joints[k] for k in rods_in(model)])):
-        return "a Distance between two points at one place"
-    if any(spring.rest * spring.k > 0.0 and length == 0.0
-           for spring, length in zip(model.springs, lengths_of(model, model.springs), strict=True)):
-        return "a Spring with a rest length between two points at one place"
-    return ""
-
-
 SETTINGS = Settings()
 
 
 def compose(model, settings=SETTINGS):
-    """Return the Loop of a Model.  Raises BadInput where refuses(model) has a reason."""
-    if why := refuses(model):
-        raise BadInput("a model for our loop", why, "take another world")
+    """Return the Loop of a Model.  Raises BadInput for settings that cannot be."""
     settings = checked_settings(settings)
     p, state, row = rows_of(model, settings)
     bounds, narrow = shapes_of_loop(model)

@@ -17,6 +17,7 @@ from solutions.support.model import (
     Capsule,
     Distance,
     Drag,
+    Force,
     HalfSpace,
     Hinge,
     Polygon,
@@ -247,13 +248,53 @@ def test_bodies_that_begin_inside_each_other_part_without_kinetic_energy():
 
 # ---------------------------------------------------------------------------------------------- refusals
 
-@pytest.mark.parametrize(("model", "why"), [
-    (make_model([Body((0.0, 0.0), 1.0)], DOWN, [Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0))]), "at one place"),
-    (make_model([Body((0.0, 0.0), 1.0)], DOWN, springs=[Spring(0, WORLD, (0.0, 0.0), (0.0, 0.0), 1.0, 2.0)]),
-     "a rest length between two points at one place")])
-def test_what_the_loop_cannot_run_is_named(model, why):
+ONE, AT = Body((0.0, 0.0), 1.0, Ball(0.5)), (0.0, 0.0)
+
+
+def shift(t, x, q, v, omega):
+    x += 1.0
+    return 0.0 * x, omega
+
+
+@pytest.mark.parametrize(("parts", "why"), [
+    ({"gravity": 9.81}, "shape of gravity"), ({"gravity": [DOWN, DOWN]}, "shape of gravity"),
+    ({"bodies": None}, "bodies is a NoneType: give a list"), ({"loads": None}, "loads is a NoneType"),
+    ({"bodies": [ONE._replace(m=1e-310)]}, "mass m .* of body 0"),
+    ({"bodies": [ONE._replace(inertia=1e-310)]}, "moment of inertia .* of body 0"),
+    ({"bodies": [ONE._replace(shape=Ball(1e200))]}, "moment of inertia of the shape of body 0"),
+    ({"bodies": [ONE, FLOOR._replace(inertia=1.0)]}, "body 1 .*leave it out"),
+    ({"bodies": [ONE._replace(omega=np.nan)]}, "angular velocity ω .* of body 0 is nan"),
+    ({"bodies": [ONE, FLOOR._replace(v=(0.0, 1.0))]}, "surface of body 1 along its normal"),
+    ({"bodies": [ONE, FLOOR._replace(omega=1.0)]}, "angular velocity of the surface of body 1"),
+    ({"joints": [Distance(0, WORLD, AT, AT)]}, "length of joint 0"),
+    ({"springs": [Spring(0, WORLD, AT, AT, 1.0, 2.0)]}, "length of spring 0"),
+    ({"loads": [lambda t, x, q, v, omega: None]}, "load 0 is a function that fails at the start"),
+    ({"loads": [lambda t, x: (x, t)]}, "load 0 is a function that fails at the start"),
+    ({"loads": [lambda t, x, q, v, omega: (x[0], omega)]}, "shape of F .* of load 0"),
+    ({"loads": [lambda t, x, q, v, omega: (x, 1.0)]}, "shape of tau .* of load 0"),
+    ({"loads": [lambda t, x, q, v, omega: (x + np.nan, omega)]}, "F .* of load 0 is nan"),
+    ({"loads": [shift]}, "changes the state"),
+    ({"loads": [Force(0, lambda t: 1.0, "t")]}, "shape of the force of load 0"),
+    ({"loads": [Force(0, lambda t: (np.inf, 0.0), "t")]}, "force of load 0"),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_what_no_world_could_run_is_refused_where_it_is_made(parts, why):
     with pytest.raises(BadInput, match=why):
-        compose(model)
+        make_model(**{"bodies": [ONE], "gravity": DOWN} | parts)
+
+
+@pytest.mark.parametrize(("motion", "why"), [
+    ({"v": (1.0, 0.0, 1.0)}, "along its normal"), ({"omega": (1.0, 0.0, 1.0)}, "angular velocity of the surface")])
+def test_a_half_space_slides_and_turns_only_so_that_it_stays_where_it_is(motion, why):
+    floor = Body((1.0, 2.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), v=(1.0, 2.0, 0.0), omega=(0.0, 0.0, 3.0))
+    assert make_model([floor], (0.0, 0.0, -G)).bodies[0].omega == (0.0, 0.0, 3.0)
+    with pytest.raises(BadInput, match=why):
+        make_model([floor._replace(**motion)], (0.0, 0.0, -G))
+
+
+@pytest.mark.parametrize("inertia", ["much", ((1.0, 2.0), 3.0), 1e-310])
+def test_moments_in_space_that_are_no_moments_are_refused(inertia):
+    with pytest.raises(BadInput, match=r"moment of inertia .* of body 0"):
+        make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=inertia)], (0.0, 0.0, -G))
 
 
 @pytest.mark.parametrize(("place", "down"), [((0.0, 0.0), DOWN), ((0.0, 0.0, 0.0), (0.0, 0.0, -9.81))])

@@ -25,7 +25,7 @@ PLANE = make_model(
     [Body((THIRD, -0.0), 0.1 + 0.2, Ball(np.pi), THIRD, 0.7, 1e-300, (1e300, 5e-324), -THIRD),
      Body((2.0, 0.0), 1.0, Box((0.1, 0.2)), inertia=np.inf), Body((3.0, 0.0), 1.0, Capsule(0.1, 0.2), mu=np.inf),
      Body((4.0, 0.0), 1.0, Polygon(((-0.3, -0.2), (0.3, -0.2), (0.0, 0.4)))), Body((5.0, 0.0), 2.0, inertia=0.3),
-     Body((0.0, 0.0), shape=HalfSpace((0.6, 0.8), THIRD), v=(1.0, 0.0))], (0.0, -9.81),
+     Body((0.0, 0.0), shape=HalfSpace((0.6, 0.8), THIRD), v=(0.8, -0.6))], (0.0, -9.81),
     [Hinge(0, WORLD, (THIRD, 0.0)), Weld(1, 2, (2.5, 0.0)), Distance(3, 4, (0.0, 0.1), (0.0, 0.2), THIRD)],
     [Spring(0, WORLD, (0.0, 0.0), (1.0, THIRD), 1.0, 1e5, 0.1)], [Drag(THIRD)])
 HALF = np.sqrt(0.5)

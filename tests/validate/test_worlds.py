@@ -316,6 +316,18 @@ def test_a_spring_with_a_damper_swings_as_its_formula_says(product, settings, d)
 
 
 @every
+@pytest.mark.parametrize("held", [WORLD, 1], ids=["world", "body"])
+def test_a_spring_without_a_rest_length_may_begin_with_no_length(product, settings, held):
+    """A weight hung on it where it is attached falls by g/ω² (1 − cos ωt)."""
+    T, steps, k, m = 0.4, 400, 50.0, 2.0
+    bodies, omega = [Body((0.0, 0.0), m), Body((0.0, 0.0))], np.sqrt(k / m)
+    model = make_model(bodies, (0.0, -G), springs=[Spring(0, held, (0.0, 0.0), (0.0, 0.0), 0.0, k)])
+    state, _ = run(product, model, T, steps, **settings)
+    fallen = G / omega**2 * (1.0 - np.cos(omega * T))
+    assert abs(state.x[0, 1] + fallen) <= 0.5 * T / steps * G / omega + spacings(product, steps)
+
+
+@every
 def test_a_compliant_distance_is_a_spring_of_the_inverse_stiffness(product, settings):
     T, steps, alpha = 0.5, 500, 0.01
     bob = Body((0.5, 0.0), 1.0, v=(0.0, 1.0))

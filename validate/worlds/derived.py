@@ -196,7 +196,7 @@ def net_of(model):
     def pull(x, v):
         r = B @ x
         length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
-        n = r / length
+        n = r / np.maximum(length, np.finfo(float).tiny)     # 0 where its ends meet
         tension = k * (length - rest) + c * np.sum(n * (B @ v), axis=1, keepdims=True)
         return -drag * v - B.T @ (tension * n)
     return pull
@@ -214,7 +214,7 @@ def pull_of(spring):
 
     def pull(x, v):
         along, up = x[0] - right, x[1] - high
-        near = 1.0 / sqrt(along * along + up * up)
+        near = 1.0 / (sqrt(along * along + up * up) or 1.0)  # any number where its ends meet: along and up are 0
         share = k * (rest * near - 1.0) - c * near * near * (along * v[0] + up * v[1])
         return share * along, share * up
     return pull

@@ -14,8 +14,8 @@ def lesson_of(subject, compiled=False):
 
 
 def refuses(model):
-    """Return why our loop cannot run a Model; an empty text where it can."""
-    return lesson_of("solutions").refuses(model)
+    """Return "": our loop runs every Model."""
+    return ""
 
 
 def build(model, dt, of="solutions", compiled=False, **settings):
