@@ -71,6 +71,16 @@ def order_of(product):
 # ---------------------------------------------------------------------------------------------- closed forms
 
 @every
+@pytest.mark.parametrize("dt", [0.0, -0.01, np.nan, np.inf, "a"])
+def test_a_step_that_cannot_be_is_refused(product, settings, dt):
+    """The engines give a state of NaN, go backwards, or stand still."""
+    if not product.installed():
+        pytest.skip(f"{product} is not installed: {product.remedy}")
+    with pytest.raises(BadInput, match="step dt"):
+        product.world.build(make_model([Body((0.0, 0.0), 1.0)], (0.0, -G)), dt, **settings)
+
+
+@every
 @pytest.mark.parametrize("d", [2, 3])
 def test_a_thrown_body_errs_by_half_a_step_of_its_velocity_at_most(product, settings, d):
     T, steps, v = 1.0, 100, np.array((1.0, 2.0, 3.0)[3 - d:])

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     Distance,
@@ -70,6 +71,7 @@ def refuses(model):
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
+    dt = positive_number("step dt [s]", dt)
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, substeps, ahead)

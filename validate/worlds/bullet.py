@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -93,6 +94,7 @@ def refuses(model):
 
 def build(model, dt, **settings):
     """Make a World."""
+    dt = positive_number("step dt [s]", dt)
     settings, model = Settings(**settings), with_plain_springs(model)
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, positive_number
 from solutions.support.model import (
     WORLD,
     Distance,
@@ -49,6 +49,7 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
     ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog
     own_drag: the space damps, v e^(−k dt/m) at the end of a step, in place of a force −k v of the old velocity
     """
+    dt = positive_number("step dt [s]", dt)
     settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop,
                 "own_drag": own_drag}
     if model.d == 3:

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+from solutions.checks import positive_number
 from solutions.support.model import WORLD
 from validate.subject import modules
 
@@ -24,6 +25,7 @@ def build(model, dt, of="solutions", compiled=False, **settings):
     of: the subject whose exercises the loop calls, such as "lessons".  A load that is a Python function is not
     compiled, and a loop with one runs in plain Python.
     """
+    dt = positive_number("step dt [s]", dt)
     lesson = lesson_of(of)
     loop = lesson.compose(model, lesson.Settings(**settings))
     fast = compiled and not any(callable(load) for load in model.loads)
