@@ -22,6 +22,7 @@ from .passing import both_sides, find_suspects, may_pass, pose_at
 MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
 SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
 SHORTEST = 1e-9              # part of a step that is left out [-]
+CLOSING = 1e-8               # part of a step that closes what SHORTEST has left open [-]: forces make parts end short
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
 TOO_LONG = "take a smaller step; if that does not help, bodies have no room between others"
 
@@ -107,7 +108,7 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
     touch: first_touch, of which only fast bodies have need
     Raises Diverged where bodies still pass each other when the step has MOST_PARTS parts.
     """
-    left, part, divisions = dt, dt, 0
+    left, part, divisions, closed = dt, dt, 0, False
     while True:
         after = whole_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + dt - left,
                            state, part, p)
@@ -118,11 +119,12 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
             part = left
         elif may_pass(state, after, left, p.half.half):
             share = touch(bounds, narrow, state, after, left, p)
-            if share == 1.0 or share * left < SHORTEST * dt:
+            if share == 1.0 or (closed and share * left < SHORTEST * dt):
                 return after
             if divisions >= MOST_PARTS - 1:
                 raise Diverged("the share of a step that its most parts reach [-]", 1.0 - left / dt, TOO_LONG)
-            part = share * left
+            closed = share * left < SHORTEST * dt                        # by the next part: what is open does not bounce
+            part = min(CLOSING * dt, left) if closed else share * left
         else:
             return after
 
