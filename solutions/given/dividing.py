@@ -123,7 +123,7 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
                 return after
             if divisions >= MOST_PARTS - 1:
                 raise Diverged("the share of a step that its most parts reach [-]", 1.0 - left / dt, TOO_LONG)
-            closed = share * left < SHORTEST * dt                        # by the next part: what is open does not bounce
+            closed = share * left < SHORTEST * dt                # by the next part: what is open does not bounce
             part = min(CLOSING * dt, left) if closed else share * left
         else:
             return after
