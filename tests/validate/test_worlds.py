@@ -502,7 +502,20 @@ REFUSED = [
     (MUJOCO, make_model([BALL, MOVING], (0.0, -G)), "without mass"), (MUJOCO, BOUNCY, "no restitution"),
     (BOX2D, SEVERAL, "restitution"), (BOX2D, NINE, "8 corners"),
     (PYMUNK, make_model([SPACE_BOX], (0.0, 0.0, -G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))]), "plane"),
+    *((product, make_model([Body((3000.0, 0.1), 1.0, Box((0.1, 0.1))), FLOOR], (0.0, -G)), "half-spaces end")
+      for product in (PYMUNK, PYBULLET, BOX2D)),
 ]
+
+
+@pytest.mark.parametrize("shape", [Ball(0.2), Box((0.3, 0.2))], ids=["ball", "box"])
+@pytest.mark.parametrize("place", [40.0, 3000.0])
+def test_a_floor_carries_a_body_that_is_far_away_or_is_refused(shape, place):
+    """Half-spaces of some engines are boxes, and bodies fell past their ends."""
+    model = make_model([Body((place, 0.2), 1.0, shape, 0.5), FLOOR], (0.0, -G))
+    worlds = [product for product in BUILDERS if product.installed() and not product.world.refuses(model)]
+    assert worlds
+    for product in worlds:
+        assert abs(run(product, model, 0.5, 50)[0].x[0, 1] - 0.2) < 0.01
 
 
 @pytest.mark.parametrize(("product", "model", "word"), REFUSED)

@@ -29,6 +29,7 @@ from . import Push, World, unsupported
 from .derived import (
     Embedding,
     acceleration_at_start,
+    beyond,
     bounces,
     carries,
     fastest,
@@ -88,8 +89,9 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if carries(model):
         return "in maximal coordinates it ignores the velocity of a body without mass"
-    return unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
-                       Weld)
+    return (unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
+                        Weld)
+            or ("" if round_only(model) else beyond(model, SLAB)))
 
 
 def build(model, dt, **settings):

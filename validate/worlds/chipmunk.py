@@ -22,6 +22,7 @@ from ..engines.chipmunk import pymunk_space
 from . import Push, World, unsupported
 from .derived import (
     acceleration_at_start,
+    beyond,
     bounces,
     forces_of,
     grip,
@@ -40,7 +41,8 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if model.d == 3 and in_plane(model) is None:
         return "it is an engine of the plane"
-    return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+    return (unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+            or beyond(model, LONG))
 
 
 def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop=SLOP, own_drag=False):

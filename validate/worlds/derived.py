@@ -336,6 +336,19 @@ class Embedding:
         return F[::2].copy() if self.flat else np.array(F, float)
 
 
+def beyond(model, reach):
+    """Return why an engine refuses a model whose half-spaces it ends at `reach` [m], "" where all begin above them.
+
+    Such a half-space is a box or a segment around the point of its plane that is nearest to the origin.
+    """
+    solid = [body for body in model.bodies if body.shape is not None and not isinstance(body.shape, HalfSpace)]
+    for plane in (body.shape for body in model.bodies if isinstance(body.shape, HalfSpace)):
+        n = np.array(plane.normal)
+        if any(np.linalg.norm(body.x - n * (n @ body.x)) + size_of(body.shape) > reach for body in solid):
+            return f"its half-spaces end {reach:g} m from the origin, and a body begins beyond that"
+    return ""
+
+
 def round_only(model):
     """Return whether every shape that can move is a ball, so that a fixed plane needs no edges."""
     return all(isinstance(body.shape, Ball | HalfSpace | None) for body in model.bodies)
