@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import Diverged, check_end, finite_number, positive_number
+from ..checks import Diverged, finite_number, positive_number
 from ..support.records import check_record
 from ..support.scenes import TOO_DEEP
 from .joints import Joints
@@ -24,6 +24,7 @@ SUNK = 0.5                   # of what is too deep, at which bodies are parted a
 SHORTEST = 1e-9              # part of a step that is left out [-]
 CLOSING = 1e-8               # part of a step that closes what SHORTEST has left open [-]: forces make parts end short
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
+NOT_FINITE = "take a smaller step, or look for a function that returned no number"
 TOO_LONG = "take a smaller step; if that does not help, bodies have no room between others"
 
 
@@ -140,6 +141,7 @@ def advance_parts(step, first, second, third, fourth, fifth, sixth, touch, load,
     t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
     for n in range(steps):
         state = step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + n * dt, state, dt, p)
-    check_end(state.x, state.v, dt)
-    check_end(state.q, state.omega, dt)
+    if not (np.all(np.isfinite(state.x)) and np.all(np.isfinite(state.v))
+            and np.all(np.isfinite(state.q)) and np.all(np.isfinite(state.omega))):
+        raise Diverged("the time [s] at which the motion is no longer finite", t + steps * dt, NOT_FINITE)
     return state
