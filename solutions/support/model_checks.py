@@ -78,7 +78,7 @@ def check_moments(thing, inertia, d):
     if moments.shape != (3,):
         raise WrongShape(thing, moments.shape, (3,))
     check_principal_moments(moments)
-    if not np.min(moments) * np.finfo(float).max > 1.0:
+    if not np.min(moments) > 1.0 / np.finfo(float).max:
         raise BadInput(thing, moments.tolist(), "give moments that are not so near zero")
     return tuple(map(float, moments))
 
