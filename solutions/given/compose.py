@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_not_negative, whole_number
+from ..checks import check_not_negative, finite_number, whole_number
 from ..simulator import weight
 from ..support.convex_2d import (
     box_bounds_of,
@@ -73,7 +73,7 @@ from .parts_3d import (
     separate_in_space,
 )
 from .rods import close_with_rods, hold_with_rods
-from .rows import Composed, Settings, in_order, lengths_of, points_of, rods_in, rows_in_order, rows_of
+from .rows import Composed, Settings, in_order, points_of, rods_in, rows_in_order, rows_of
 
 FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
 
@@ -129,31 +129,25 @@ def kit_of(model):
 
 # ---------------------------------------------------------------------------------------------- composition
 
-def refuses(model):
-    """Return why our loop cannot run a model, for people; an empty text where it can."""
-    if any(length == 0.0 for length in lengths_of(model, [model.joints[k] for k in rods_in(model)])):
-        return "a Distance between two points at one place"
-    if any(spring.rest * spring.k > 0.0 and length == 0.0
-           for spring, length in zip(model.springs, lengths_of(model, model.springs), strict=True)):
-        return "a Spring with a rest length between two points at one place"
-    return ""
-
-
 SETTINGS = Settings()
 
 
 def compose(model, settings=SETTINGS):
-    """Return the Loop of a Model.  Raises BadInput where refuses(model) has a reason."""
-    if why := refuses(model):
-        raise BadInput("a model for our loop", why, "take another world")
-    whole_number("number of sweeps", settings.sweeps, 1)
-    check_not_negative("the share at which sweeps have settled [-]", settings.settled)
+    """Return the Loop of a Model.  Raises BadInput for settings that cannot be."""
+    settings = checked_settings(settings)
     p, state, row = rows_of(model, settings)
     bounds, narrow = shapes_of_loop(model)
     joint_of = tuple(k for k, joint in enumerate(model.joints) for _ in points_of(model, joint))
     joint_of += tuple(rods_in(model))
     return Loop(parts_of(model, kit_of(model)), step_of(model), first_touch, load_of(model), bounds, narrow, state, p,
                 row, joint_of)
+
+
+def checked_settings(settings):
+    """Return Settings as numbers of their kinds.  Raises BadInput; rows_of checks the margin."""
+    settled = finite_number("the share at which sweeps have settled [-]", settings.settled)
+    check_not_negative("the share at which sweeps have settled [-]", settled)
+    return settings._replace(sweeps=whole_number("number of sweeps", settings.sweeps, 1), settled=settled)
 
 
 def parts_of(model, kit):
@@ -262,7 +256,10 @@ def padded(loop):
 
 
 def run_parts(loop, t, state, dt, steps):
-    """Return the PileState after so many steps of a Loop."""
+    """Return the PileState after so many steps of a Loop.
+
+    Raises BadInput for a step that is not positive, Diverged where the end is not finite or a step is far too long.
+    """
     steps = whole_number("number of steps", steps, 0)
     functions = loop.step.step, *padded(loop), loop.touch, loop.load, loop.bounds, loop.narrow
     return advance_parts(*functions, t, state, dt, steps, loop.p)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import Diverged, finite_number, positive_number
 from ..support.records import check_record
 from ..support.scenes import TOO_DEEP
 from .joints import Joints
@@ -21,7 +22,10 @@ from .passing import both_sides, find_suspects, may_pass, pose_at
 MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
 SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
 SHORTEST = 1e-9              # part of a step that is left out [-]
+CLOSING = 1e-8               # part of a step that closes what SHORTEST has left open [-]: forces make parts end short
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
+NOT_FINITE = "take a smaller step, or look for a function that returned no number"
+TOO_LONG = "take a smaller step; if that does not help, bodies have no room between others"
 
 
 class Rough(NamedTuple):
@@ -103,8 +107,9 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
     """Return the same, but divided where bodies touch that would go too deep into each other or pass each other.
 
     touch: first_touch, of which only fast bodies have need
+    Raises Diverged where bodies still pass each other when the step has MOST_PARTS parts.
     """
-    left, part, divisions = dt, dt, 0
+    left, part, divisions, closed = dt, dt, 0, False
     while True:
         after = whole_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + dt - left,
                            state, part, p)
@@ -113,11 +118,14 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
             if left < SHORTEST * dt:
                 return state
             part = left
-        elif divisions < MOST_PARTS - 1 and may_pass(state, after, left, p.half.half):
+        elif may_pass(state, after, left, p.half.half):
             share = touch(bounds, narrow, state, after, left, p)
-            if share == 1.0 or share * left < SHORTEST * dt:
+            if share == 1.0 or (closed and share * left < SHORTEST * dt):
                 return after
-            part = share * left
+            if divisions >= MOST_PARTS - 1:
+                raise Diverged("the share of a step that its most parts reach [-]", 1.0 - left / dt, TOO_LONG)
+            closed = share * left < SHORTEST * dt                # by the next part: what is open does not bounce
+            part = min(CLOSING * dt, left) if closed else share * left
         else:
             return after
 
@@ -127,8 +135,13 @@ def advance_parts(step, first, second, third, fourth, fifth, sixth, touch, load,
     """Return the PileState after so many steps of a loop with six parts; step: whole_step or divided_step.
 
     All are arguments of their own, so that compiled code is kept on disk for each set of parts.
+    Raises BadInput for a step that is not positive, Diverged where the end is not finite.
     """
     check_record(p, state)
+    t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
     for n in range(steps):
         state = step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + n * dt, state, dt, p)
+    if not (np.all(np.isfinite(state.x)) and np.all(np.isfinite(state.v))
+            and np.all(np.isfinite(state.q)) and np.all(np.isfinite(state.omega))):
+        raise Diverged("the time [s] at which the motion is no longer finite", t + steps * dt, NOT_FINITE)
     return state

@@ -221,6 +221,27 @@ def begun(state, dt, p):
     return v, omega, J, aim, arms, p.inv_inertia
 
 
+def along_normals(J, n):
+    """Return what of the impulses J (m, d) is along the normals n: those that were kept may be along older ones.
+
+    Where nothing rubs, the rest would be a friction, because no sweep takes it away.
+    """
+    kept = np.empty(J.shape)
+    for k in range(J.shape[0]):
+        along = 0.0
+        for c in range(J.shape[1]):
+            along += n[k, c] * J[k, c]
+        for c in range(J.shape[1]):
+            kept[k, c] = along * n[k, c]
+    return kept
+
+
+def begun_of_centres(state, dt, p):
+    """Return the same where nothing rubs and nothing turns."""
+    x, q, v, omega, contacts, J = state
+    return begun(PileState(x, q, v, omega, contacts, along_normals(J, contacts.n)), dt, p)
+
+
 def is_settled(J, before, p):
     """Return whether a sweep has changed no impulse by more than p.settled times the largest one.
 
@@ -266,7 +287,7 @@ def contact_impulses_of_pairs(load, bounds, narrow, t, state, dt, p):
 
 def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    return swept(begun, sweep_centres_2d, state, dt, p)
+    return swept(begun_of_centres, sweep_centres_2d, state, dt, p)
 
 
 def swept_and_closed(begin, sweep, close_all, state, dt, p):

@@ -29,6 +29,7 @@ from .joints import (
 )
 from .parts import (
     all_shallow,
+    along_normals,
     forget_bounces,
     is_settled,
     parting_aims,
@@ -125,6 +126,12 @@ def begun_in_space(state, dt, p):
     return v, omega, J, aim, arms, inv_inertia
 
 
+def begun_of_centres_in_space(state, dt, p):
+    """Return the same where nothing rubs and nothing turns."""
+    x, q, v, omega, contacts, J = state
+    return begun_in_space(PileState(x, q, v, omega, contacts, along_normals(J, contacts.n)), dt, p)
+
+
 def contact_impulses_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the state after the impulses of all contacts, each pair with its own friction."""
     return swept(begun_in_space, sweep_pairs, state, dt, p)
@@ -132,7 +139,7 @@ def contact_impulses_in_space(load, bounds, narrow, t, state, dt, p):
 
 def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    return swept(begun_in_space, sweep_centres, state, dt, p)
+    return swept(begun_of_centres_in_space, sweep_centres, state, dt, p)
 
 
 def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):

@@ -189,10 +189,10 @@ def joints_of(model, row, inv_mass):
     return Joints(a, b, r_a, r_b, d * (farthest_neighbour(a, b, inv_mass) + 1) - 1, form_loops(a, b, inv_mass))
 
 
-def lengths_of(model, links):
-    """Return the length [m] of each of these Distances or Springs at the start."""
+def lengths_of(model, rods):
+    """Return the length [m] of each of these Distances at the start."""
     start = start_of(model)
-    ways = [world_place(start, link.a, link.place_a) - world_place(start, link.b, link.place_b) for link in links]
+    ways = [world_place(start, rod.a, rod.place_a) - world_place(start, rod.b, rod.place_b) for rod in rods]
     return [float(np.sqrt(way @ way)) for way in ways]
 
 

@@ -15,13 +15,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_friction, check_restitution, finite_array, number
+from ..checks import BadInput, WrongShape, check_friction, check_restitution, finite_array, finite_number, number
 from .model_checks import (
     check_force,
     check_joint,
     check_moments,
+    check_own_load,
     check_shape_of,
+    check_sliding,
     check_spring,
+    listed,
     one_of,
     orientation,
     vector,
@@ -106,10 +109,14 @@ class Force(NamedTuple):
 
     def __call__(self, t, x, q, v, omega):
         """Return (F (n, d) [N], tau [N m]) of all bodies."""
-        now = {"r": x[self.b] - x[self.a]} if self.of == "r" else {"t": t, "x": x[self.a], "v": v[self.a]}
         F = np.zeros(x.shape)
-        F[self.a] = self.F(*(now[name] for name in self.of))
+        F[self.a] = self.now(t, x, v)
         return F, np.zeros(omega.shape)
+
+    def now(self, t, x, v):
+        """Return F (d,) [N]."""
+        now = {"r": x[self.b] - x[self.a]} if self.of == "r" else {"t": t, "x": x[self.a], "v": v[self.a]}
+        return self.F(*(now[name] for name in self.of))
 
 
 class Model(NamedTuple):
@@ -143,20 +150,26 @@ def make_model(bodies, gravity, joints=(), springs=(), loads=()):
     """Return the Model of these records, with all numbers as floats and without None in a body that has a value there.
 
     Raises BadInput, with the number of the record, for what cannot be: a mass that is not above zero, moments that no
-    body has, a number of a body that is none, a joint of two bodies that cannot move, a shape of the other dimension.
+    body has, a number of a body that is none, a joint of two bodies that cannot move, a shape of the other dimension, a
+    link without a length, a half-space that would leave its place, a load that returns no force at the start.
     """
-    gravity = tuple(map(float, finite_array("gravity [m/s²]", gravity)))
-    d = len(gravity)
-    if d not in (2, 3):
-        raise BadInput("the number of components of gravity", d, "give 2 in the plane or 3 in space")
-    bodies = tuple(checked_body(k, one_of("a body", body, (Body,)), d) for k, body in enumerate(bodies))
+    gravity = finite_array("gravity [m/s²]", gravity)
+    if gravity.shape not in ((2,), (3,)):
+        raise WrongShape("gravity [m/s²]", gravity.shape, "2 numbers in the plane or 3 in space")
+    gravity, d = tuple(map(float, gravity)), gravity.size
+    bodies = tuple(checked_body(k, one_of("a body", body, (Body,)), d)
+                   for k, body in enumerate(listed("bodies", bodies)))
     if not bodies:
         raise BadInput("the number of bodies of a model", 0, "give at least one")
     free = [np.isfinite(body.m) for body in bodies]
-    joints = tuple(check_joint(k, one_of("a joint", joint, JOINTS), free, d) for k, joint in enumerate(joints))
+    joints = tuple(check_joint(k, one_of("a joint", joint, JOINTS), free, d)
+                   for k, joint in enumerate(listed("joints", joints)))
     springs = tuple(check_spring(k, one_of("a spring", spring, (Spring,)), free, d)
-                    for k, spring in enumerate(springs))
-    return Model(bodies, gravity, joints, springs, tuple(checked_load(load, free) for load in loads))
+                    for k, spring in enumerate(listed("springs", springs)))
+    model = Model(bodies, gravity, joints, springs, tuple(checked_load(load, free) for load in listed("loads", loads)))
+    check_links(model, start_of(model))
+    check_own_loads(model, start_of(model))
+    return model
 
 
 def checked_body(k, body, d):
@@ -165,7 +178,7 @@ def checked_body(k, body, d):
         return f"{thing} of body {k}"
 
     mass, shape, fixed = number(name("the mass m [kg]"), body.m), body.shape, False
-    if not mass > 0.0:
+    if not (mass > 0.0 and np.isfinite(1.0 / mass)):
         raise BadInput(name("the mass m [kg]"), mass, "give a number above zero; ∞ for what nothing moves")
     fixed = not np.isfinite(mass)
     if shape is not None:
@@ -176,16 +189,52 @@ def checked_body(k, body, d):
     q = orientation(name("the orientation q"), body.q, d)
     v = vector(name("the velocity v [m/s]"), (0.0,) * d if body.v is None else body.v, d)
     omega = still if body.omega is None else body.omega
-    omega = (number(name("the angular velocity ω [rad/s]"), omega) if d == 2 else
+    omega = (finite_number(name("the angular velocity ω [rad/s]"), omega) if d == 2 else
              vector(name("the angular velocity ω [rad/s]"), omega, 3))
+    if isinstance(shape, HalfSpace):
+        check_sliding(name("the surface"), shape, v, omega)
     inertia = body.inertia
-    if fixed or (inertia is None and shape is None):
+    if inertia is None and (fixed or shape is None):
         inertia = np.inf if d == 2 else (np.inf,) * 3
     elif inertia is None:
-        inertia = moments_of_shape(shape, mass, d)
+        inertia = filled(name("the shape"), shape, mass, d)
     inertia = check_moments(name("the moment of inertia [kg m²]"), inertia, d)
+    if fixed and np.any(np.isfinite(inertia)):
+        raise BadInput(name("the moment of inertia [kg m²]"), inertia, "leave it out where m is ∞: nothing turns it")
     return Body(vector(name("the centre x [m]"), body.x, d), mass, shape, float(body.mu), float(body.e), q, v, omega,
                 inertia)
+
+
+def filled(thing, shape, m, d):
+    """Return the moments of a shape that is filled evenly.  Raises BadInput where they are no floats."""
+    try:
+        moments = moments_of_shape(shape, m, d)
+    except OverflowError:
+        moments = np.inf
+    if not np.all(np.isfinite(moments)):
+        raise BadInput(f"the moment of inertia of {thing} [kg m²]", np.inf, "give a smaller shape or a smaller mass")
+    return moments
+
+
+def check_links(model, start):
+    """Raise BadInput for a Distance whose ends are at one place, and for a Spring without a direction there."""
+    links = [(f"joint {k} (a Distance)", joint, "a Hinge") for k, joint in enumerate(model.joints)
+             if isinstance(joint, Distance)]
+    links += [(f"spring {k}", spring, "the rest length 0") for k, spring in enumerate(model.springs)
+              if spring.rest * spring.k > 0.0]
+    for thing, link, other in links:
+        way = world_place(start, link.a, link.place_a) - world_place(start, link.b, link.place_b)
+        if not way @ way > 0.0:
+            raise BadInput(f"the length of {thing} [m]", 0.0, f"keep its ends apart at the start, or give {other}")
+
+
+def check_own_loads(model, start):
+    """Raise BadInput for a load that is a function unless it returns what a load does, at the start."""
+    for k, load in enumerate(model.loads):
+        if isinstance(load, Force):
+            vector(f"the force of load {k} [N]", load.now(0.0, start.x, start.v), model.d)
+        elif not isinstance(load, Drag):
+            check_own_load(f"load {k}", load, start)
 
 
 def checked_load(load, free):
@@ -264,6 +313,10 @@ def add_spring(F, tau, spring, state):
         u.append(0.0 if k == WORLD else state.v[k] + turned_by(state.omega[k], at[-1] - state.x[k]))
     way = at[0] - at[1]
     length = np.sqrt(way @ way)
+    if length == 0.0 and spring.rest * spring.k > 0.0:
+        raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
+    if length == 0.0:                                                       # without a rest length it pulls with -k way
+        return
     pull = -(spring.k * (length - spring.rest) + spring.c * (way @ (u[0] - u[1])) / length) / length * way
     for k, point, force in ((spring.a, at[0], pull), (spring.b, at[1], -pull)):
         if k != WORLD:

@@ -3,9 +3,11 @@
 import numpy as np
 
 from ..checks import (
+    UNIT,
     BadInput,
     WrongShape,
     check_not_negative,
+    check_shape,
     check_unit,
     finite_array,
     finite_number,
@@ -36,6 +38,14 @@ def one_of(thing, record, kinds):
     return record
 
 
+def listed(thing, records):
+    """Return records as a tuple.  Raises BadInput unless they are several."""
+    try:
+        return tuple(records)
+    except TypeError:
+        raise BadInput(thing, f"a {type(records).__name__}", "give a list; an empty one for none") from None
+
+
 def vector(thing, values, d):
     """Return values as a tuple of d floats.  Raises BadInput."""
     values = finite_array(thing, values)
@@ -57,14 +67,19 @@ def check_moments(thing, inertia, d):
     """Return a moment, or three.  Raises BadInput for those that no body has."""
     if d == 2:
         inertia = number(thing, inertia)
-        if not inertia > 0.0:
+        if not (inertia > 0.0 and np.isfinite(1.0 / inertia)):
             raise BadInput(thing, inertia, "give a number above zero; ∞ for what does not turn")
         return inertia
-    moments = np.asarray(inertia, float)
+    try:
+        moments = np.asarray(inertia, float)
+    except (TypeError, ValueError):
+        raise BadInput(thing, "not a number, nor three", "give one moment, or three") from None
     moments = np.full(3, moments) if moments.ndim == 0 else moments
     if moments.shape != (3,):
         raise WrongShape(thing, moments.shape, (3,))
     check_principal_moments(moments)
+    if not np.min(moments) > 1.0 / np.finfo(float).max:
+        raise BadInput(thing, moments.tolist(), "give moments that are not so near zero")
     return tuple(map(float, moments))
 
 
@@ -89,6 +104,17 @@ def check_shape_of(thing, shape, d, fixed):
     if d == 3:
         raise BadInput(thing, "a Polygon in space", "polygons are shapes of the plane")
     return check_polygon(thing, shape)
+
+
+def check_sliding(thing, shape, v, omega):
+    """Raise BadInput where the surface of a HalfSpace, which stays where it is, would move along its normal."""
+    n, spin = np.array(shape.normal), np.atleast_1d(omega)
+    if abs(n @ v) > UNIT * np.linalg.norm(v):
+        raise BadInput(f"the speed of {thing} along its normal [m/s]", float(n @ v),
+                       "a HalfSpace can slide along itself only; take a Box for a floor that rises")
+    if np.linalg.norm(spin if n.size == 2 else np.cross(spin, n)) > UNIT * np.linalg.norm(spin):
+        raise BadInput(f"the angular velocity of {thing} [rad/s]", omega,
+                       "a HalfSpace can turn about its normal only; take a Box for a floor that tilts")
 
 
 def check_polyhedron(thing, shape, d):
@@ -193,3 +219,17 @@ def not_negative(thing, value):
     value = finite_number(thing, value)
     check_not_negative(thing, value)
     return value
+
+
+def check_own_load(thing, load, start):
+    """Raise BadInput unless a function returns (F, tau) of these bodies at the start, and leaves the start as it is."""
+    given = [rows.copy() for rows in start]
+    try:
+        F, tau = load(0.0, *given)
+    except (TypeError, ValueError) as error:
+        raise BadInput(thing, f"a function that fails at the start ({error})",
+                       "take (t, x, q, v, omega), and return two arrays, F and tau") from error
+    for name, values, like in (("F [N]", F, start.x), ("tau [N m]", tau, start.omega)):
+        check_shape(f"{name} of {thing}", finite_array(f"{name} of {thing}", values), like.shape)
+    if any(np.any(now != before) for now, before in zip(given, start)):
+        raise BadInput(thing, "a function that changes the state it is given", "copy an array before you change it")

@@ -7,11 +7,9 @@ A verdict has turned if it is DEPARTS where the same sweep of the worked answers
 
 import importlib
 import shutil
-import sys
 import tempfile
 import time
 import types
-import uuid
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -31,6 +29,7 @@ from . import file_of, planted
 
 SWEEPS = (300, 1000, 5000)   # most steps of a run, before all of them: a coarse sweep often shows the fault
 SECONDS = {}                 # of the places that have run in this process: quick ones are asked first
+OWN = {}                     # {function of a given module: its own code}, while it has another
 LIMITS = {"plain": 40.0, "compiled": 120.0}  # of one place, on the processor; what plain Python leaves is compiled [s]
 
 
@@ -47,7 +46,8 @@ def copy_with(texts):
     """A temporary copy of solutions/ in which some modules have another text: {lesson or given module: text}.
 
     What is compiled meanwhile goes with it, so that it does not crowd out compiled code that will be used again.
-    Given modules are everybody's own, so only plain code takes them from the copy, and only while this lasts.
+    Given modules are everybody's own, the cases' and the scenes', too: while this lasts, their own functions have the
+    code of that text.
     """
     cache = numba_twins.CACHE
     with tempfile.TemporaryDirectory(prefix="fault-") as folder:
@@ -55,22 +55,29 @@ def copy_with(texts):
         shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
         for lesson, text in texts.items():
             (copy / file_of(lesson)).write_text(text, encoding="utf-8")
-        if any(is_given(lesson) for lesson in texts):
-            modules.ORIGINALS = package_of(copy)
+            if is_given(lesson):
+                OWN.update(replaced(codes_of(lesson, text)))
         try:
             yield copy
         finally:
-            numba_twins.CACHE, modules.ORIGINALS = cache, "solutions"
+            replaced(OWN)
+            OWN.clear()
+            numba_twins.CACHE = cache
 
 
-def package_of(copy):
-    """The name of a new package with the modules of a copy of solutions/; its errors are ours, so that all know them.
-    """
-    name = f"_faulty_{uuid.uuid4().hex}"
-    package = sys.modules[name] = types.ModuleType(name)
-    package.__path__ = [str(copy)]
-    sys.modules[f"{name}.checks"] = importlib.import_module("solutions.checks")
-    return name
+def codes_of(module, text):
+    """{function of a given module: its code in another text}."""
+    ours = vars(importlib.import_module(f"solutions.{module}"))
+    codes = [code for code in compile(text, module, "exec").co_consts if isinstance(code, types.CodeType)]
+    return {ours[code.co_name]: code for code in codes if isinstance(ours.get(code.co_name), types.FunctionType)}
+
+
+def replaced(codes):
+    """Give functions other code; return {function: the code that it had}."""
+    before = {function: function.__code__ for function in codes}
+    for function, code in codes.items():
+        function.__code__ = code
+    return before
 
 
 def is_given(module):
@@ -173,11 +180,15 @@ def shortened(selection, most):
 @cache
 def worked(name, case, method, most, compiled):
     """The verdict on a method of the worked answers, on the same sweep."""
-    selection = shortened(select(name, Plan(speeds=("compiled",) if compiled else ("plain",), live=())), most)
-    p = selection.cases[case]
-    truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
-    runner = next(r for r in selection.ours_for(p) if r.who.function == method)
-    return our_curve(selection, runner, p, truth)["verdict"]
+    faulty = replaced(OWN)
+    try:
+        selection = shortened(select(name, Plan(speeds=("compiled",) if compiled else ("plain",), live=())), most)
+        p = selection.cases[case]
+        truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
+        runner = next(r for r in selection.ours_for(p) if r.who.function == method)
+        return our_curve(selection, runner, p, truth)["verdict"]
+    finally:
+        replaced(faulty)
 
 
 @cache

@@ -46,6 +46,11 @@ def axes(draw, d):
     return np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
 
 
+def frames(draw, d):
+    """d orthogonal unit vectors as rows: in general position, and along the coordinate axes, both ways."""
+    return [axes(draw, d), *(sign * np.roll(np.eye(d), k, axis=0) for k in range(d) for sign in (1.0, -1.0))]
+
+
 def never(quantity, got, given=""):
     """The answer must be infinity: there is no impact."""
     if got is None or np.ndim(got) > 0 or np.asarray(got).dtype.kind not in "iuf":
@@ -67,12 +72,15 @@ def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
 @exercise("6.1", points=1, hint="n · p + d, with the plane's unit normal n and its d")
 def test_the_distance_to_a_plane_has_a_sign_for_its_side(lesson, draw):
     for d, size in ((2, 1.0), *((3, size) for size in SIZES)):
-        rows, foot = axes(draw, d), size * draw(-3.0, 3.0, d)
-        plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
-        for height in (size * draw(0.1, 3.0), 0.0, -size * draw(0.1, 3.0)):
-            p = foot + height * rows[0] + size * draw(-2.0, 2.0) * rows[1]
-            close("signed distance [m]", lesson.plane_distance(p, plane), height, ROUND_OFF * size,
-                  given=f"p = {p}, {plane}")
+        for rows in frames(draw, d):
+            for foot in (size * draw(-3.0, 3.0, d), size * draw.sparse(-3.0, 3.0, d), np.zeros(d)):
+                plane, height = lesson.Plane(rows[0], float(-rows[0] @ foot)), size * draw(-3.0, 3.0)
+                for high, along in ((height, size * draw(-2.0, 2.0)), (0.0, size * draw(-2.0, 2.0)), (height, 0.0)):
+                    p = foot + high * rows[0] + along * rows[1]
+                    close("signed distance [m]", lesson.plane_distance(p, plane), high, ROUND_OFF * size,
+                          given=f"p = {p}, {plane}")
+            close("signed distance of the origin [m]",
+                  lesson.plane_distance(np.zeros(d), lesson.Plane(rows[0], height)), height, ROUND_OFF * size)
 
 
 def fall(lesson, draw, d, r):
@@ -108,7 +116,25 @@ def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_ne
               lesson.plane_impact_time(t, dt, begin, end, r, plane), t, 0.0, given(begin, end))
 
 
-@exercise("6.2", points=0.5,
+@exercise("6.2", points=0.25,
+          hint="d₁ ≤ 0: return t, also of a ball at rest; d₂ < 0: NEVER; else the share of the step is d₁/(d₁ + d₂)")
+def test_a_ball_that_rests_slides_or_falls_along_an_axis_meets_a_plane_when_its_gap_is_gone(lesson, draw):
+    """Whole numbers and powers of two: no round-off."""
+    shares = {(2.0, 2.0): np.inf, (0.0, 0.0): 0.0, (-1.0, -1.0): 0.0, (0.0, 2.0): 0.0, (2.0, 0.0): 1.0,
+              (2.0, -2.0): 0.5, (6.0, -2.0): 0.75}
+    for rows, (gaps, share), along in itertools.product(frames(draw, 3)[1:], shares.items(), (0.0, 3.0)):
+        t, dt, r = float(draw.whole(-2, 2)), 2.0 ** draw.whole(-20, 6), float(draw.whole(0, 1))
+        foot = np.floor(draw.sparse(-4.0, 4.0, 3))
+        plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
+        x_0, x_1 = foot + (r + gaps[0]) * rows[0], foot + (r + gaps[1]) * rows[0] + along * rows[1]
+        got, given = lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}"
+        if share == np.inf:
+            never("time of impact of a ball that stays above the plane [s]", got, f"{given}, {plane}")
+        else:
+            close("time of impact [s]", got, t + share * dt, 0.0, f"{given}, {plane}")
+
+
+@exercise("6.2", points=0.25,
           hint="test d₁ ≤ 0 first, wherever the ball goes; then d₂ < 0; with d₂ = 0 it touches at the end of the step")
 def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(lesson, draw):
     """The gap changes linearly. Both ends are known to 1e-13 of the size and differ by at least 0.4 sizes."""
@@ -159,10 +185,17 @@ def test_a_ball_and_a_cylinder_are_nearest_across_the_axis(lesson, draw):
         # The error of n is 1e-16·5/0.06.
         same_contact(lesson.cylinder_contact(x, r, R), x - r * n, foot + R * n,
                      n, gap, 1e-11, f"x = {x}, r = {r}, R = {R}")
-    c = lesson.cylinder_contact(np.array([along, 0.0, 0.0]), r, R)
-    close("gap of a ball on the axis [m]", c.gap, -R - r, ROUND_OFF)
-    close("length of n there", np.linalg.norm(numbers("n", c.n, (3,))), 1.0, ROUND_OFF)
-    close("component of n along the axis there", c.n[0], 0.0, ROUND_OFF)
+    for ball, cylinder, foot in itertools.product((r, 0.0), (R, 0.0), (np.array([along, 0.0, 0.0]), np.zeros(3))):
+        reach = ball + cylinder
+        for y, z, length in ((0.0, 2.0, 2.0), (-0.5, 0.0, 0.5), (3.0, -4.0, 5.0), (0.0, -R - r, R + r)):
+            x, n = foot + np.array([0.0, y, z]), np.array([0.0, y, z]) / length
+            same_contact(lesson.cylinder_contact(x, ball, cylinder), x - ball * n, foot + cylinder * n, n,
+                         length - reach, ROUND_OFF, f"x = {x}, r = {ball}, R = {cylinder}")
+        c, given = lesson.cylinder_contact(foot, ball, cylinder), f"x = {foot}, r = {ball}, R = {cylinder}"
+        n = numbers("n", c.n, (3,), given)
+        close("length of n of a ball on the axis", np.linalg.norm(n), 1.0, ROUND_OFF, given)
+        close("component of n along the axis there", n[0], 0.0, ROUND_OFF, given)
+        same_contact(c, foot - ball * n, foot + cylinder * n, n, -reach, ROUND_OFF, given)
 
 
 @exercise("6.3", points=0.5,
@@ -277,7 +310,25 @@ def touches_first(draw, got, t, dt, x_0, x_1, rho, size, given):
         between("rate of change of that distance [-]: approaching", (y + s * w) @ w / size**2, -np.inf, 1e-9, given)
 
 
-@exercise("6.4", points=0.5,
+@exercise("6.4", points=0.25,
+          hint="a radius of 0, a path along an axis or none at all need no case of their own: test C, B, D and s")
+def test_a_ball_that_rests_or_flies_along_an_axis_touches_the_cylinder_when_it_arrives(lesson, draw):
+    """Both radii together are 2 m.  Whole numbers: only the division rounds."""
+    shares = {(6.0, 2.0): 1.0, (6.0, 0.0): 2.0 / 3.0, (6.0, -6.0): 1.0 / 3.0, (6.0, 3.0): np.inf, (6.0, 6.0): np.inf,
+              (6.0, 8.0): np.inf, (2.0, 2.0): 0.0, (1.0, 1.0): 0.0, (0.0, 0.0): 0.0, (0.0, 6.0): 0.0, (2.0, 6.0): 0.0}
+    for ((begin, end), share), r, k in itertools.product(shares.items(), (0.0, 0.5, 2.0), range(4)):
+        e, along = (np.eye(3)[1], np.eye(3)[2], -np.eye(3)[1], -np.eye(3)[2])[k], np.array([draw.whole(0, 1), 0.0, 0.0])
+        t, dt = float(draw.whole(-2, 2)), 2.0 ** draw.whole(-20, 6)
+        x_0, x_1 = along + begin * e, draw.whole(0, 2) * along + end * e
+        got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, 2.0 - r)
+        given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {2.0 - r}"
+        if share == np.inf:
+            never("time of impact of a ball that does not arrive [s]", got, given)
+        else:
+            close("time of impact [s]", got, t + share * dt, ROUND_OFF, given)
+
+
+@exercise("6.4", points=0.25,
           hint="C ≤ 0: it starts inside; B ≥ 0: it moves away; D < 0: it misses; s > 1: it arrives later; s = 1 counts")
 def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
     for size, place in places(draw):
@@ -326,6 +377,13 @@ def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
                             *((q + aside, q) for q in nearly)):
             close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF,
                   given=f"p = {p}, a = {a}, b = {b}")
+    for e in (*np.eye(1), *np.eye(2), *np.eye(3)):                       # along an axis, from and to the origin, too
+        along = 4.0 * e
+        for a, share in itertools.product((0.0 * e, -along, np.floor(draw.sparse(-4.0, 4.0, len(e)))),
+                                          (-1.0, 0.0, 0.25, 0.5, 1.0, 2.0)):
+            p = a + share * along + draw.sparse(-3.0, 3.0, len(e)) * (1.0 - e)
+            close("nearest point of a segment along an axis [m]", lesson.closest_on_segment(p, a, a + along),
+                  a + min(1.0, abs(share)) * (share > 0.0) * along, ROUND_OFF, f"p = {p}, a = {a}, b = {a + along}")
 
 
 @exercise("6.5", points=0.25, hint="if a and b are the same point, raise BadInput with the length")
@@ -435,6 +493,11 @@ def test_a_triangle_is_as_far_from_the_axis_as_its_shadow_is_from_the_origin(les
             gap = distance(x[:, 1:], np.zeros((1, 2))) - R - r
             got = lesson.triangle_cylinder_gap(*(row.copy() for row in x), r, R)
             close("gap over the size [-]", got / size, gap / size, KNOWN, f"corners {x.tolist()}, r = {r}, R = {R}")
+    for _ in range(60):                              # corners on the axis, edges along or through it, parallel planes
+        x, r, R = np.floor(draw.sparse(-3.0, 4.0, (3, 3))), draw.sparse(0.01, 0.5), draw.sparse(0.1, 1.0)
+        gap = distance(x[:, 1:], np.zeros((1, 2))) - R - r
+        close("gap of a triangle with some zeros [m]", lesson.triangle_cylinder_gap(*(row.copy() for row in x), r, R),
+              gap, KNOWN, f"corners {x.tolist()}, r = {r}, R = {R}")
 
 
 # ---------------------------------------------------------------------------------------------- narrow phase
@@ -517,6 +580,16 @@ def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson,
             for p in place + size * (draw(-2.0, 3.0, (4, 2)) @ rows[:2] + draw(-0.2, 0.2, (4, 1)) * rows[2]):
                 q = lesson.closest_on_triangle(p, *(row.copy() for row in corners))
                 is_nearest("nearest point of the triangle", q, p, corners, size, f"p = {p}, corners {corners.tolist()}")
+    # p at the corners, the middles of the edges, inside and beyond, in the triangle's plane and above a point of it
+    shares = np.array([*np.eye(3), *(1.0 - np.eye(3)) / 2.0, [0.25, 0.25, 0.5], [2.0, 0.0, -1.0], [1.5, 1.5, -2.0]])
+    for k, rows in enumerate(frames(draw, 3)):
+        corners = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]) @ rows[:2]
+        corners = corners - shares[k] @ corners                          # one of them is the origin
+        for q in shares @ corners:
+            for p in (q, q + draw(-2.0, 2.0) * rows[2]):
+                got = lesson.closest_on_triangle(p, *(row.copy() for row in corners))
+                is_nearest("nearest point of a triangle with a right angle", got, p, corners, 4.0,
+                           f"p = {p}, corners {corners.tolist()}")
 
 
 @exercise("6.8", points=0.125,
@@ -545,10 +618,11 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
             n, x = sign * box.R[:, axis], box.x + box.R @ local
             same_contact(lesson.ball_box(x, r, box), x - r * n, x + depth * n,
                          n, -depth - r, 1e-11, f"x = {x}, r = {r}, {box}")
-    middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.array([2.0, 1.0, 3.0])))
-    close("n of a ball at the centre: along the axis of the shortest half, sign(0) = 1", middle.n,
-          box.R[:, 1], 1e-11)
-    close("gap of a ball at the centre [m]", middle.gap, -1.0 - r, 1e-11)
+    for axis in range(3):
+        middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.roll([1.0, 2.0, 3.0], axis)))
+        close("n of a ball at the centre: along the axis of the shortest half, sign(0) = 1", middle.n,
+              box.R[:, axis], 1e-11)
+        close("gap of a ball at the centre [m]", middle.gap, -1.0 - r, 1e-11)
     cube = lesson.Box(np.zeros(3), np.eye(3), 0.5 * np.ones(3))
     for axis in range(3):
         for sign in (1.0, -1.0):
@@ -575,6 +649,34 @@ def corners_of(box):
     return box.x + signs * box.half @ box.R.T
 
 
+# rotations by none, a third and a half turn, and by a quarter turn about z
+AXIS_TURNS = np.stack([np.eye(3), np.roll(np.eye(3), 1, axis=0), np.diag([1.0, -1.0, -1.0]),
+                       np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])])
+
+
+def touches_box(lesson, x, r, box, size):
+    """Check the contact of a ball and a box with the hull of the corners and its facets."""
+    corners = corners_of(box)
+    normals, offsets = facets(corners - box.x)
+    depths, given = -((x - box.x) @ normals.T + offsets), f"x = {x}, r = {r}, {box}"
+    c = lesson.ball_box(x, r, box)
+    n = numbers("n", c.n, (3,), given)
+    if np.any(np.abs(box.R.T @ (x - box.x)) > box.half):
+        is_nearest("p_b of a ball outside", c.p_b, x, corners, size, given)
+        expected = np.linalg.norm(x - c.p_b)
+    else:
+        expected = -depths.min()
+        between("p_b of a ball inside: distance beyond the surface over the size [-]",
+                ((c.p_b - box.x) @ normals.T + offsets).max() / size, -KNOWN, KNOWN, given)
+        face = np.argmax(normals @ n)
+        close("n of a ball inside: that of a face", n, normals[face], KNOWN, given)
+        close("depth below that face, over the size [-]: the least", depths[face] / size, -expected / size, KNOWN,
+              given)
+    close("gap over the size [-]", c.gap / size, (expected - r) / size, KNOWN, given)
+    close("p_a − p_b over the size: gap times n [-]", (c.p_a - c.p_b) / size, c.gap * n / size, KNOWN, given)
+    close("p_a over the size: x − r n [-]", (c.p_a - x) / size, -r * n / size, KNOWN, given)
+
+
 @exercise("6.8", points=0.25,
           hint="outside: the nearest point of the box; inside: the nearest of the six faces, the least half_i − |y_i|")
 def test_a_ball_touches_a_cube_a_plank_or_a_rod_at_its_nearest_point_or_face(lesson, draw):
@@ -583,23 +685,16 @@ def test_a_ball_touches_a_cube_a_plank_or_a_rod_at_its_nearest_point_or_face(les
         for half in ((1.0, 1.0, 1.0), (1.0, 0.05, 0.7), (0.1, 1.0, 0.08)):
             half, r = size * np.array(half) * draw(0.9, 1.1, 3), size * draw(0.01, 1.0)
             box = lesson.Box(place + size * draw(-1.0, 1.0, 3), rotation(draw), half)
-            corners, inside = corners_of(box), draw(-0.95, 0.95, 3)
-            normals, offsets = facets(corners - box.x)
+            inside = draw(-0.95, 0.95, 3)
             for y in (inside, 1.1 * inside / np.abs(inside).max(), draw(1.1, 3.0, 3) * np.sign(inside),
                       inside * [1.0, 1.0, 0.0] + [0.0, 0.0, 2.0]):
-                x = box.x + box.R @ (y * box.half)
-                c, given = lesson.ball_box(x, r, box), f"x = {x}, r = {r}, {box}"
-                if np.abs(y).max() > 1.0:
-                    is_nearest("p_b of a ball outside", c.p_b, x, corners, size, given)
-                    expected = np.linalg.norm(x - c.p_b)
-                else:
-                    expected = ((x - box.x) @ normals.T + offsets).max()
-                    between("p_b of a ball inside: distance beyond the surface over the size [-]",
-                            ((c.p_b - box.x) @ normals.T + offsets).max() / size, -KNOWN, KNOWN, given)
-                close("gap over the size [-]", c.gap / size, (expected - r) / size, KNOWN, given)
-                close("p_a − p_b over the size: gap times n [-]", (c.p_a - c.p_b) / size,
-                      c.gap * np.asarray(c.n) / size, KNOWN, given)
-                close("p_a over the size: x − r n [-]", (c.p_a - x) / size, -r * np.asarray(c.n) / size, KNOWN, given)
+                touches_box(lesson, box.x + box.R @ (y * box.half), r, box, size)
+    for k in range(40):                              # whole numbers: exactly on faces, edges, corners and axes
+        half, y = np.floor(draw(1.0, 3.0, 3)), np.floor(draw.sparse(-3.0, 4.0, 3))
+        y = np.copysign(half, draw(-1.0, 1.0, 3)) if k % 5 == 0 else y
+        at = -AXIS_TURNS[k % 4] @ y if k % 5 == 1 else np.floor(draw.sparse(-3.0, 4.0, 3))   # then x is the origin
+        box = lesson.Box(at, AXIS_TURNS[k % 4].copy(), half)
+        touches_box(lesson, box.x + box.R @ y, np.floor(draw.sparse(1.0, 3.0)), box, 1.0)
 
 
 # ---------------------------------------------------------------------------------------------- broad phase
@@ -618,6 +713,13 @@ def test_a_swept_box_holds_the_box_at_every_moment_and_no_more(lesson, draw):
                   given=f"low {low}, high {high}, move {way}")
             close("high corner of the swept box [m]", got[1], (high + s * way).max(axis=0), ROUND_OFF,
                   given=f"low {low}, high {high}, move {way}")
+    for d in (1, 1, 1, 2, 2, 2, 3, 3, 3):                                # boxes at the origin, flat ones and points
+        at, move, none = draw.sparse(-3.0, 3.0, d), draw.sparse(-5.0, 5.0, d), np.zeros(d)
+        for low, high in ((at, at + draw.sparse(0.2, 2.0, d)), (none, none), (-abs(move), none)):
+            close("corners of the swept box [m]", np.stack(lesson.swept_box(low, high, move)),
+                  [[min(a, a + way) for a, way in zip(low, move, strict=True)],
+                   [max(a, a + way) for a, way in zip(high, move, strict=True)]], ROUND_OFF,
+                  f"low {low}, high {high}, move {move}")
 
 
 @exercise("6.9", points=0.5, hint="treat each coordinate separately: one may increase while another decreases or stays")
@@ -660,11 +762,11 @@ def same_pairs(quantity, got, expected, given=""):
 
 @exercise("6.10", points=0.25, hint="every i and every j > i; a common face, edge or corner counts as touching")
 def test_brute_force_finds_every_pair_once(lesson, draw):
-    for d, wide in ((2, 12.0), (3, 6.0)):
-        low, high = boxes(draw, 30, d, wide)
+    for n, d, wide in ((30, 2, 12.0), (30, 3, 6.0), (30, 1, 90.0), (240, 3, 12.0)):
+        low, high = boxes(draw, n, d, wide)
         expected = touching(low, high, low, high)
         same_pairs("pairs that touch", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]],
-                   given=f"30 boxes in {d}D")
+                   given=f"{n} boxes in {d}D")
     far = 10.0 * np.arange(6.0).reshape(3, 2)
     same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
     raises("boxes that are inside out", BadInput, lesson.all_pairs, far + 1.0, far)
@@ -694,13 +796,14 @@ def crowds(draw, d):
             ("flat boxes", low, flat),
             ("boxes far away", low + 2.0**30, high + 2.0**30),
             ("identical boxes", 0.0 * low - 1.0, 0.0 * high + 1.0),
+            ("points at the origin", 0.0 * low[:5], 0.0 * low[:5]),
             ("boxes with negative coordinates", low - 20.0, high - 20.0)]
 
 
 @exercise("6.10", points=0.25,
           hint="loop from the first to the last box, also for one or two; a box inside another touches it")
 def test_pairs_of_crowds_of_any_kind_are_those_of_the_definition(lesson, draw):
-    for d in (2, 3):
+    for d in (1, 2, 3):
         for name, low, high in crowds(draw, d):
             expected = touching(low, high, low, high)
             same_pairs(f"pairs of {name}", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]],
@@ -748,15 +851,18 @@ def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
 @exercise("6.11", points=0.25,
           hint="a tree may be a single leaf with child 0; compare half_perimeter only if neither node is a leaf")
 def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesson, draw):
-    for d in (2, 3):
+    for d in (1, 2, 3):
         for name, low, high in crowds(draw, d):
             size, centre = (high - low).max() + np.ptp(low), low.mean(axis=0)
             other_low = centre + size * draw(-0.6, 0.6, (20, d))
             other_high = other_low + 0.3 * size * draw(0.0, 1.0, (20, d))
             trees = lesson.build_tree(low, high), lesson.build_tree(other_low, other_high)
             expected = touching(low, high, other_low, other_high)
-            same_pairs(f"pairs of {name} and twenty others", lesson.find_intersections(*trees), expected,
-                       f"low {low.tolist()}, high {high.tolist()}")
+            given = f"low {low.tolist()}, high {high.tolist()}"
+            same_pairs(f"pairs of {name} and twenty others", lesson.find_intersections(*trees), expected, given)
+            single = lesson.build_tree(low[:1].copy(), high[:1].copy())
+            same_pairs(f"pairs of {name} and the first of them", lesson.find_intersections(trees[0], single),
+                       touching(low, high, low[:1], high[:1]), given)
 
 
 def rods(draw, n, axis):
@@ -834,6 +940,18 @@ def gaps_of_edges(a, b):
     return np.min(n @ b.T - np.sum(n * a, axis=1)[:, None], axis=1)
 
 
+CORNER = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+
+
+def best_edge(lesson, a, b, size, given):
+    """The greatest gap of the edges of a, checked."""
+    gaps = gaps_of_edges(a, b)
+    gap, i = lesson.separating_edge(a, b)
+    close("greatest gap of all edges over the size [-]", gap / size, gaps.max() / size, KNOWN, given)
+    close("gap of the returned edge, over the size [-]", gaps[int(i)] / size, gaps.max() / size, KNOWN, given)
+    return gap
+
+
 @exercise("6.12", points=0.5,
           hint="take the greatest gap of all edges: not the one nearest to zero, nor the first positive one")
 def test_polygons_apart_overlapping_nested_and_far_away_are_separated_as_the_hull_of_all_differences_says(lesson, draw):
@@ -844,16 +962,18 @@ def test_polygons_apart_overlapping_nested_and_far_away_are_separated_as_the_hul
             b = b * (0.2 if draw.whole(0, 3) == 0 else 1.0) + apart * axes(draw, 2)[0]
             a, b = place + size * a, place + size * b
             given = f"a = {a.tolist()}, b = {b.tolist()}"
-            found = []
-            for first, second in ((a, b), (b, a)):
-                gaps = gaps_of_edges(first, second)
-                gap, i = lesson.separating_edge(first, second)
-                close("greatest gap of all edges over the size [-]", gap / size, gaps.max() / size, KNOWN, given)
-                close("gap of the returned edge, over the size [-]", gaps[int(i)] / size, gaps.max() / size, KNOWN,
-                      given)
-                found.append(gap)
+            found = [best_edge(lesson, *pair, size, given) for pair in ((a, b), (b, a))]
             close("greater gap of both polygons, over the size [-]: that of the hull of all differences",
                   max(found) / size, facets(differences(a, b))[1].max() / size, KNOWN, given)
+    for _ in range(20):                                                  # whole numbers: common corners and edges
+        a, b = (outline(np.append(np.floor(draw.sparse(-3.0, 4.0, (3, 2))), np.floor(draw(-3.0, 4.0, 2)) + CORNER, 0))
+                for _ in range(2))
+        for first, second in ((a, b), (b, a), (a, a), (a, a + 7.0 * CORNER[1])):
+            best_edge(lesson, first, second, 1.0, f"a = {first.tolist()}, b = {second.tolist()}")
+    many = [polygon(draw, k)[0] for k in (120, 150)]
+    for turn in (0, 50, 100):                                            # what counts may be the last edge, or corner
+        first, second = (np.roll(y, turn, axis=0) for y in many)
+        best_edge(lesson, first, second, 1.0, f"a = {first.tolist()}, b = {second.tolist()}")
 
 
 @exercise("6.13", points=0.125, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) where an edge changes sides")
@@ -889,7 +1009,7 @@ def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
           hint="a cut may add a corner, and a polygon may have any number: reserve space for all of them")
 def test_a_polygon_of_many_corners_loses_one_and_gains_two(lesson, draw):
     """The cut passes through the midpoints of the two edges at the first corner."""
-    for k in (3, 7, 9, 12, 15, 20, 40):
+    for k in (3, 7, 9, 12, 15, 20, 40, 300):
         y, _ = polygon(draw, k)
         n = y[0] - y.mean(axis=0)
         n = n / np.linalg.norm(n)
@@ -920,6 +1040,20 @@ def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
                        given=f"y = {y.tolist()}")
         close("corners of a rectangle of which one edge remains, sorted by position [m]",
               left[np.argsort(left[:, 1])], y[[0, 3]], 0.0, given=f"y = {y.tolist()}")
+        for place, k, sign in itertools.product((0.0, 3.0), range(d), (1.0, -1.0)):
+            e, aside, rows = sign * np.eye(d)[k], np.eye(d)[k - 1], [place * np.ones(d)] * 4
+            y, level = np.stack(rows) + np.array([-e, -aside, e, aside]) * wide, sign * place
+            cuts = (("that touches the plane by a corner", y, level - wide, [0]),
+                    ("cut through two corners", y, level, [0, 1, 3]), ("in the plane", y[[1, 3, 1]], level, [0, 1, 2]),
+                    ("segment in the plane", y[[1, 3]], level, [0, 1]), ("point in the plane", y[1:2], level, [0]),
+                    ("point at the foot", 0.5 * (y[1:2] + y[3:]), level, [0]),
+                    ("segment that ends at the plane", y[[0, 1]], level, [0, 1]),
+                    ("segment that begins at the plane", y[[1, 2]], level, [0]))
+            for name, shape, offset, kept in cuts:
+                given = f"y = {shape.tolist()}, n = {e}, d = {offset}"
+                left = numbers(f"corners of a {name} [m]", lesson.clip(shape, e, offset), (len(kept), d), given)
+                close(f"corners of a {name}, sorted [m]", left[np.lexsort(left.T)],
+                      shape[kept][np.lexsort(shape[kept].T)], 0.0, given)
 
 
 @exercise("6.13", points=0.25, hint="a segment has one edge: do not return from its second corner to its first")
@@ -1051,7 +1185,8 @@ def pairs_of_boxes(draw, lesson, size, place):
         a = lesson.Box(place + size * apart * axes(draw, 3)[0], R, size * half_a)
         yield a, lesson.Box(place, np.ascontiguousarray(R_b), size * half_b)
     for k in range(15 if size == 1.0 else 0):                            # far apart along each axis, the best one
-        a, b = lesson.Box(place, R, cube), lesson.Box(place, Q, any_half)
+        turns = ((R, Q), (np.eye(3), Q), (R, np.eye(3)))[k % 3]
+        a, b = lesson.Box(place, turns[0], cube), lesson.Box(place, turns[1], any_half)
         yield a._replace(x=place + 30.0 * gaps_of_axes(a, b)[1][k]), b
 
 
@@ -1095,6 +1230,33 @@ def test_two_edges_win_only_by_a_billionth_of_the_size_of_the_boxes(lesson, draw
                       lesson.box_separation(*at_size)[2], i if share < 1.0 else j, 0.0, given=f"{at_size}")
 
 
+def well_separated(lesson, a, b, size):
+    """Check the separating axis of two boxes with the gaps along all axes, and with the hull of all differences."""
+    gap, n, k = lesson.box_separation(a, b)
+    gaps, candidates = gaps_of_axes(a, b)
+    given = f"{a}, {b}"
+    known = KNOWN * (size + np.abs(a.x - b.x).max())
+    lead = EDGE_PREFERENCE * longest_half_edge(a, b)
+    close("error of the greatest gap over its uncertainty [-]",
+          (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, lead), 0.0, 1.0 + KNOWN, given)
+    between("gap minus the best gap of the faces [m]", gap - gaps[:6].max(), -known, np.inf, given)
+    n, k = numbers("n", n, (3,), given), int(k)
+    between("gap of the returned axis, minus the greatest [m]", gaps[k] - gap, -known, known, given)
+    between("gain over all faces, if the returned axis belongs to two edges [m]",
+            gaps[k] - gaps[:6].max() if k >= 6 else size, lead - known, np.inf, given)
+    close("n · returned axis: parallel, with either sign [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
+    close("size of n [-]", n @ n, 1.0, KNOWN, given)
+    between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
+    p, q = corners_of(a) - b.x, corners_of(b) - b.x
+    hull = facets(differences(p, q) / size)[1].max() * size
+    if hull <= 0.0:
+        close("depth of overlapping boxes, minus that of the hull of all differences, over its uncertainty [-]",
+              (gap - hull) / max(known, lead), 0.0, 1.0 + KNOWN, given)
+    else:
+        low = hull - max(known, lead)
+        between("gap of separate boxes [m]", gap, low, distance(p, q) + known, given)
+
+
 @exercise("6.14", points=0.25,
           hint="an axis of zeros gives a gap of 0, which is greater than the gap of overlapping boxes: skip it")
 def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of_their_axes(lesson, draw):
@@ -1104,29 +1266,11 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
     """
     for size, place in places(draw):
         for a, b in pairs_of_boxes(draw, lesson, size, place):
-            gap, n, k = lesson.box_separation(a, b)
-            gaps, candidates = gaps_of_axes(a, b)
-            given = f"{a}, {b}"
-            known = KNOWN * (size + np.abs(a.x - b.x).max())
-            lead = EDGE_PREFERENCE * longest_half_edge(a, b)
-            close("error of the greatest gap over its uncertainty [-]",
-                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, lead), 0.0, 1.0 + KNOWN, given)
-            between("gap minus the best gap of the faces [m]", gap - gaps[:6].max(), -known, np.inf, given)
-            n, k = numbers("n", n, (3,), given), int(k)
-            between("gap of the returned axis, minus the greatest [m]", gaps[k] - gap, -known, known, given)
-            between("gain over all faces, if the returned axis belongs to two edges [m]",
-                    gaps[k] - gaps[:6].max() if k >= 6 else size, lead - known, np.inf, given)
-            close("n · returned axis: parallel, with either sign [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
-            close("size of n [-]", n @ n, 1.0, KNOWN, given)
-            between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
-            p, q = corners_of(a) - b.x, corners_of(b) - b.x
-            hull = facets(differences(p, q) / size)[1].max() * size
-            if hull <= 0.0:
-                close("depth of overlapping boxes, minus that of the hull of all differences, over its uncertainty [-]",
-                      (gap - hull) / max(known, lead), 0.0, 1.0 + KNOWN, given)
-            else:
-                low = hull - max(known, lead)
-                between("gap of separate boxes [m]", gap, low, distance(p, q) + known, given)
+            well_separated(lesson, a, b, size)
+    for k in range(16):                                  # whole numbers: boxes that touch, that coincide, without turns
+        a, b = (lesson.Box(np.floor(draw.sparse(-2.0, 3.0, 3)), AXIS_TURNS[j].copy(), np.floor(draw(1.0, 3.0, 3)))
+                for j in (k % 4, k // 4))
+        well_separated(lesson, a, b, 1.0)
 
 
 # ---------------------------------------------------------------------------------------------- any two convex bodies
@@ -1226,6 +1370,14 @@ def test_bodies_of_any_kind_are_as_far_apart_as_least_squares_over_all_differenc
                 close("distance over the size [-]", c.gap / size, expected, KNOWN if expected > 0.01 else 1e-8, given)
                 close("p_a − p_b over the size: gap times n [-]", (np.asarray(c.p_a) - c.p_b) / size,
                       c.gap * np.asarray(c.n) / size, KNOWN, given)
+    for d, k, m in itertools.product((1, 2, 3), (1, 2, 4), (1, 2, 3)):   # whole numbers: common points, points at 0
+        one, other = np.floor(draw.sparse(-3.0, 4.0, (k, d))), np.floor(draw.sparse(-3.0, 4.0, (m, d)))
+        for a, b in ((one, other), (one, one.copy()), (0.0 * one, other)):
+            c, expected, given = lesson.gjk(a, b), distance(a, b), f"a = {a.tolist()}, b = {b.tolist()}"
+            close("distance of bodies with whole-number corners [m]", c.gap, expected,
+                  KNOWN if expected > 0.01 else 1e-8, given)
+            holds("p_a", c.p_a, a, given)
+            holds("p_b", c.p_b, b, given)
 
 
 # ---------------------------------------------------------------------------------------------- avoidance
@@ -1261,15 +1413,17 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
     # (1/g − 1)/g² < 26 m/s², and the error of g = |x − centre| − radius is 1e-15 of 0.3.
     close("acceleration outside [m/s²]", lesson.repulsion(centre + (radius + gap) * way, centre, radius, 1.0, 1.0),
           (1.0 / gap - 1.0) / gap**2 * way, 1e-11, given=f"gap {gap} m")
-    for size, k in ((size, k) for size in SIZES for k in range(2)):      # exact: sums of two powers of two
-        corner, e, wide = size * np.array([2.0, -1.0]), np.eye(2)[k], 2.0 * size
+    # exact: sums of two powers of two; a radius of 0 is a point
+    for size, e, wide in itertools.product(SIZES, (*np.eye(2), np.eye(3)[1], np.ones(1)), (2.0, 0.0, 2.0**-10)):
+        corner, wide = size * np.array([2.0, 0.0, -1.0])[:len(e)], wide * size
         raises("a position on the surface of an obstacle", BadInput,
                lesson.repulsion, corner + wide * e, corner, wide, size, 1.0)
-        for near in (0.5, 2.0**-8, 2.0**-20):
+        for near, k in ((0.5, 1.0), (0.5, 0.0), (2.0**-8, 2.0**-30), (2.0**-8, 2.0**30), (2.0**-20, 1.0)):
             g, strength = near * size, (1.0 / near - 1.0) / near**2 / size**3
-            got = lesson.repulsion(corner - (wide + g) * e, corner, wide, size, 1.0)
-            close("acceleration near the surface over k (1/g − 1/reach)/g² [-]", got / strength, -e, ROUND_OFF,
-                  f"gap {g} m, radius {wide} m, reach {size} m, k = 1")
+            for centre in (corner, 0.0 * corner, (wide + g) * e):
+                got = lesson.repulsion(centre - (wide + g) * e, centre, wide, size, k)
+                close("acceleration near the surface over (1/g − 1/reach)/g² [m⁴/s²]", got / strength, -k * e,
+                      ROUND_OFF * k, f"gap {g} m, radius {wide} m, reach {size} m, k = {k}, centre {centre}")
     for share in (0.0, *draw.within()):
         raises("a position inside the obstacle", BadInput,
                lesson.repulsion, centre + share * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
@@ -1277,12 +1431,14 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
 
 @exercise("6.17", points=0.5, hint="½ a τ² = radius − |y|, away from the side of the centre")
 def test_the_steered_body_is_abreast_of_the_centre_at_the_radius_and_was_nearer_before(lesson, draw):
-    for side in (1.0, -1.0):
+    for side, (from_origin, to_origin) in itertools.product((1.0, -1.0), ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))):
         rows = axes(draw, 2)
         x, speed, radius = draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
         tau, offset = draw(0.5, 3.0), side * draw(0.1, 0.9) * radius
         v = speed * rows[0]
-        centre = x + speed * tau * rows[0] + offset * rows[1]
+        way = speed * tau * rows[0] + offset * rows[1]
+        x = (1.0 - from_origin) * x - to_origin * way
+        centre = x + way
         a = numbers("acceleration [m/s²]", lesson.steer(x, v, centre, radius, 4.0), (2,))
         given = f"x = {x}, v = {v}, centre {centre}, radius {radius}"
         close("component of the acceleration along v [m/s²]", a @ rows[0], 0.0, 1e-11, given)
@@ -1311,13 +1467,17 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
     v, left = speed * rows[0], np.array([-rows[0][1], rows[0][0]])
     off = lambda tau, offset: x + speed * tau * rows[0] + offset * rows[1]
     cases = {"an obstacle behind": (off(-1.0, 0.1), v), "an obstacle too far ahead": (off(5.0, 0.1), v),
-             "an obstacle far enough aside": (off(1.0, 1.01 * radius), v), "a walker at rest": (off(1.0, 0.1), 0.0 * v)}
+             "an obstacle far enough aside": (off(1.0, 1.01 * radius), v), "a walker at rest": (off(1.0, 0.1), 0.0 * v),
+             "a walker at rest at the centre": (x, 0.0 * v), "a walker at the centre": (x, v)}
     for name, (centre, velocity) in cases.items():
         close(f"acceleration for {name} [m/s²]", lesson.steer(x, velocity, centre, radius, 4.0),
               np.zeros(2), 0.0, given=f"x = {x}, v = {velocity}, centre {centre}")
+    for offset in (0.0, 0.1):
+        close("acceleration for a disc of radius 0 [m/s²]", lesson.steer(x, v, off(1.0, offset), 0.0, 4.0), np.zeros(2),
+              0.0, given=f"x = {x}, v = {v}, centre {off(1.0, offset)}")
     for size, e in ((size, np.roll([turn, 0.0], k)) for size in SIZES for k in range(2) for turn in (1.0, -1.0)):
-        # Sums of powers of two: the offset is exact.
-        x, v, left = size * np.array([1.0, 2.0]), 2.0 * size * e, np.array([-e[1], e[0]])
+        # Sums of powers of two: the offset is exact.  Motions along the second axis start at the origin.
+        x, v, left = abs(e[0]) * size * np.array([1.0, 2.0]), 2.0 * size * e, np.array([-e[1], e[0]])
         offsets = [0.0] + [s * 2.0**-k for k in (10, 20, 30) for s in (1, -1)]
         for tau in (0.0, 4.0):                                           # 0 < τ < ahead: at both ends nothing happens
             close("acceleration exactly beside the centre, and exactly at the end of the time ahead [m/s²]",
@@ -1346,8 +1506,12 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
           hint="a ball is sent back only if a step ends inside the wall's reach, in front of its middle")
 def test_the_predicted_share_gets_past_when_balls_are_thrown_at_every_phase(lesson, draw):
     phases = (np.arange(4000) + 0.5) / 4000
-    for share in (draw(2.0, 4.0), draw(6.0, 12.0), draw(0.3, 0.7), draw(1.1, 1.5)):
-        r, w, dt = draw(0.02, 0.2), draw(0.01, 0.1), draw(0.002, 0.02)
+    radii = draw(0.02, 0.2, 5) * [1.0, 0.0, 1.0, 1e3, 1e-4]
+    widths = draw(0.01, 0.1, 5) * [1.0, 1.0, 0.0, 1e3, 1e-4]
+    for share, (r, w) in itertools.product(
+            (draw(2.0, 4.0), draw(6.0, 12.0), draw(0.3, 0.7), draw(1.1, 1.5), draw(50.0, 90.0), 1e-3),
+            zip(radii, widths, strict=True)):
+        dt = draw(0.1, 1.0) * 10.0 ** -draw.whole(-2, 4)
         v = share * (r + 0.5 * w) / dt
         z = r + 0.5 * w + phases * v * dt                    # before the first step that may touch
         ahead = z - v * dt
@@ -1360,6 +1524,8 @@ def test_the_predicted_share_gets_past_when_balls_are_thrown_at_every_phase(less
                   given)
         else:                                                # 4000 phases count a share to half a phase at either end
             close("share that gets past", lesson.share_past(r, w, v, dt), 1.0 - np.mean(back), 1.0 / 4000, given)
+    close("share of points that get past a plane", lesson.share_past(0.0, 0.0, v, dt), 1.0, 0.0)
+    close("share that gets past if a step is as long as r + w/2", lesson.share_past(0.25, 0.5, 4.0, 0.125), 0.0, 0.0)
 
 
 @exercise("6.19", points=1, hint="a force stops a body if its work up to the wall exceeds the kinetic energy")

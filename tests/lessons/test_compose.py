@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from solutions.given import parts as given_parts
 from solutions.given.compose import Part, Settings, compose, run_parts, state_of
 from solutions.support.model import (
@@ -17,12 +17,14 @@ from solutions.support.model import (
     Capsule,
     Distance,
     Drag,
+    Force,
     HalfSpace,
     Hinge,
     Polygon,
     Spring,
     Weld,
     make_model,
+    model_energy,
     picture_of,
     start_of,
 )
@@ -153,6 +155,19 @@ def test_each_body_has_its_own_restitution(e):
     assert s.v == pytest.approx(expected, abs=5e-3)                    # the normal turns within the last step
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_an_oblique_elastic_impact_without_friction_keeps_the_energy_and_turns_nothing(d):
+    """The bodies still overlap in the step after it, with another normal; the impulse that is kept must not rub."""
+    still, along = (0.0,) * d, np.eye(d)[0]
+    bodies = [Body(still, 1.0, Ball(0.5), e=1.0, v=tuple(2.0 * along + 0.1 * np.eye(d)[1])),
+              Body(tuple(1.05 * along + 0.3 * np.eye(d)[1]), 2.0, Ball(0.5), e=1.0, v=tuple(-0.3 * along))]
+    model = make_model(bodies, still)
+    s, before = run(model, 0.2, 48), model_energy(model, start_of(model))
+    assert np.abs(s.v[0] - bodies[0].v).max() > 1.0                    # they did meet
+    assert model_energy(model, s) == pytest.approx(before, rel=1e-13)
+    assert np.abs(s.omega).max() < 1e-13
+
+
 @pytest.mark.parametrize("shape", [
     Box((0.4, 0.2)), Ball(0.3), Capsule(0.4, 0.2),
     Polygon(tuple(map(tuple, np.array([(0.5, -0.3), (0.2, 0.4), (-0.5, -0.3)]) - polygon_centre(
@@ -233,13 +248,53 @@ def test_bodies_that_begin_inside_each_other_part_without_kinetic_energy():
 
 # ---------------------------------------------------------------------------------------------- refusals
 
-@pytest.mark.parametrize(("model", "why"), [
-    (make_model([Body((0.0, 0.0), 1.0)], DOWN, [Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0))]), "at one place"),
-    (make_model([Body((0.0, 0.0), 1.0)], DOWN, springs=[Spring(0, WORLD, (0.0, 0.0), (0.0, 0.0), 1.0, 2.0)]),
-     "a rest length between two points at one place")])
-def test_what_the_loop_cannot_run_is_named(model, why):
+ONE, AT = Body((0.0, 0.0), 1.0, Ball(0.5)), (0.0, 0.0)
+
+
+def shift(t, x, q, v, omega):
+    x += 1.0
+    return 0.0 * x, omega
+
+
+@pytest.mark.parametrize(("parts", "why"), [
+    ({"gravity": 9.81}, "shape of gravity"), ({"gravity": [DOWN, DOWN]}, "shape of gravity"),
+    ({"bodies": None}, "bodies is a NoneType: give a list"), ({"loads": None}, "loads is a NoneType"),
+    ({"bodies": [ONE._replace(m=1e-310)]}, "mass m .* of body 0"),
+    ({"bodies": [ONE._replace(inertia=1e-310)]}, "moment of inertia .* of body 0"),
+    ({"bodies": [ONE._replace(shape=Ball(1e200))]}, "moment of inertia of the shape of body 0"),
+    ({"bodies": [ONE, FLOOR._replace(inertia=1.0)]}, "body 1 .*leave it out"),
+    ({"bodies": [ONE._replace(omega=np.nan)]}, "angular velocity ω .* of body 0 is nan"),
+    ({"bodies": [ONE, FLOOR._replace(v=(0.0, 1.0))]}, "surface of body 1 along its normal"),
+    ({"bodies": [ONE, FLOOR._replace(omega=1.0)]}, "angular velocity of the surface of body 1"),
+    ({"joints": [Distance(0, WORLD, AT, AT)]}, "length of joint 0"),
+    ({"springs": [Spring(0, WORLD, AT, AT, 1.0, 2.0)]}, "length of spring 0"),
+    ({"loads": [lambda t, x, q, v, omega: None]}, "load 0 is a function that fails at the start"),
+    ({"loads": [lambda t, x: (x, t)]}, "load 0 is a function that fails at the start"),
+    ({"loads": [lambda t, x, q, v, omega: (x[0], omega)]}, "shape of F .* of load 0"),
+    ({"loads": [lambda t, x, q, v, omega: (x, 1.0)]}, "shape of tau .* of load 0"),
+    ({"loads": [lambda t, x, q, v, omega: (x + np.nan, omega)]}, "F .* of load 0 is nan"),
+    ({"loads": [shift]}, "changes the state"),
+    ({"loads": [Force(0, lambda t: 1.0, "t")]}, "shape of the force of load 0"),
+    ({"loads": [Force(0, lambda t: (np.inf, 0.0), "t")]}, "force of load 0"),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_what_no_world_could_run_is_refused_where_it_is_made(parts, why):
     with pytest.raises(BadInput, match=why):
-        compose(model)
+        make_model(**{"bodies": [ONE], "gravity": DOWN} | parts)
+
+
+@pytest.mark.parametrize(("motion", "why"), [
+    ({"v": (1.0, 0.0, 1.0)}, "along its normal"), ({"omega": (1.0, 0.0, 1.0)}, "angular velocity of the surface")])
+def test_a_half_space_slides_and_turns_only_so_that_it_stays_where_it_is(motion, why):
+    floor = Body((1.0, 2.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), v=(1.0, 2.0, 0.0), omega=(0.0, 0.0, 3.0))
+    assert make_model([floor], (0.0, 0.0, -G)).bodies[0].omega == (0.0, 0.0, 3.0)
+    with pytest.raises(BadInput, match=why):
+        make_model([floor._replace(**motion)], (0.0, 0.0, -G))
+
+
+@pytest.mark.parametrize("inertia", ["much", ((1.0, 2.0), 3.0), 1e-310])
+def test_moments_in_space_that_are_no_moments_are_refused(inertia):
+    with pytest.raises(BadInput, match=r"moment of inertia .* of body 0"):
+        make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=inertia)], (0.0, 0.0, -G))
 
 
 @pytest.mark.parametrize(("place", "down"), [((0.0, 0.0), DOWN), ((0.0, 0.0, 0.0), (0.0, 0.0, -9.81))])
@@ -267,6 +322,31 @@ def test_a_spring_whose_ends_meet_on_their_way_is_refused(place):
 def test_settings_that_cannot_be_are_refused(settings):
     with pytest.raises(BadInput):
         compose(make_model([Body((0.0, 1.0), 1.0, Ball(0.5)), FLOOR], DOWN), Settings(**settings))
+
+
+@pytest.mark.parametrize("settings", [{"sweeps": 10.0}, {"sweeps": np.int64(10)}, {"settled": 1}])
+def test_settings_may_be_numbers_of_another_kind(settings):
+    assert np.isfinite(run(make_model([Body((0.0, 0.4), 1.0, Ball(0.5)), FLOOR], DOWN), 0.1, 10, **settings).x).all()
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, np.nan, np.inf, "a"])
+def test_a_step_that_cannot_be_is_refused(dt):
+    loop = compose(make_model([Body((0.0, 0.5), 1.0, Ball(0.5)), FLOOR], DOWN))
+    with pytest.raises(BadInput, match="step dt"):
+        run_parts(loop, 0.0, loop.state, dt, 10)
+
+
+@pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
+def test_a_run_whose_end_is_no_number_is_no_result():
+    """A drag that is too strong for the step lets the speed grow by k dt/m − 1 per step."""
+    with pytest.raises(Diverged, match="no longer finite"):
+        run(make_model([Body((0.0, 0.0), 1.0, v=(1.0, 0.0))], (0.0, 0.0), loads=[Drag(1000.0)]), 10.0, 1000)
+
+
+def test_a_step_in_which_a_body_falls_past_all_parts_is_no_result():
+    """Each part gains speed anew, so the most parts lead through little of such a step; the rest fell through."""
+    with pytest.raises(Diverged, match="most parts"):
+        run(make_model([Body((0.0, 0.7), 1.0, Box((0.5, 0.5)), mu=0.5, q=0.3), FLOOR], DOWN), 10.0, 1)
 
 
 def test_no_friction_beside_an_infinite_one_is_no_friction():

@@ -52,6 +52,22 @@ def test_a_fast_ball_bounces_off_a_thin_wall_at_the_very_time_of_its_impact(e, d
     assert s.x[1, 0] == pytest.approx(-0.11 - e * v * (DT - hits), abs=1e-9)
 
 
+@pytest.mark.parametrize("e", [0.5, 1.0])
+@pytest.mark.parametrize("g", [-50.0, 9.81, 50.0])
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_fast_ball_bounces_off_a_thin_wall_while_a_force_acts(d, g, e):
+    """The part that is to end where they touch is run anew and gains less speed, so it leaves a gap open.
+
+    As in every step, the force of the part after the impact acts before the impulse: first order.
+    """
+    rest, v = (0.0,) * (d - 1), 100.0
+    model = make_model([wall(d), Body((-1.0, *rest), 1.0, Ball(0.1), e=e, v=(v, *rest))], (g, *rest))
+    s = states(model, 1)[0]
+    hits = (1.0 - 0.01 - 0.1) / v
+    assert s.v[1, 0] == pytest.approx(-e * (v + g * hits) + g * (DT - hits), abs=2.0 * abs(g) * DT)
+    assert s.x[1, 0] == pytest.approx(-0.11 - e * v * (DT - hits), abs=2.0 * abs(g) * DT**2)
+
+
 def test_what_flies_past_a_corner_is_not_stopped():
     """It comes within a millimetre of the wall's end, and its swept box touches the wall."""
     way = np.array([1.0, 1.0]) / np.sqrt(2.0)

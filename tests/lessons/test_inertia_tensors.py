@@ -37,6 +37,18 @@ def rotation(draw):
     return about(n / np.linalg.norm(n), angle)
 
 
+def sparse_clouds(draw):
+    """Masses [kg], positions [m] and velocities [m/s] of 1 to 150 points: on axes, at the origin, at rest; or all."""
+    for n in (1, 2, 3, 150):
+        m, x, v = draw(0.5, 3.0, n), draw.sparse(-1.5, 1.5, (n, 3)), draw.sparse(-4.0, 4.0, (n, 3))
+        yield from ((m, x, v), (m, 0.0 * x, v), (m, x, 0.0 * v), (m, draw(-1.5, 1.5) * np.eye(3)[np.arange(n) % 3], v))
+
+
+# rotations by none, a third and a half turn, and by a quarter turn about z
+AXIS_TURNS = np.stack([np.eye(3), np.roll(np.eye(3), 1, axis=0), np.diag([1.0, -1.0, -1.0]),
+                       np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])])
+
+
 # ---------------------------------------------------------------------------------------------- momenta of points
 
 @exercise("4.1", points=0.5,
@@ -50,6 +62,11 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
           np.zeros(3), ROUNDED, f"m = {m}, x = {x.tolist()}")
     _, X = lesson.centre_of_mass(m[:1], x[:1])
     close("centre of a single point [m]: that point", X, x[0], ROUNDED, f"x = {x[0]}")
+    for masses, points, _ in sparse_clouds(draw):
+        M, X = lesson.centre_of_mass(masses, points)
+        close("total mass [kg]", M, sum(masses), ROUNDED, f"m = {masses}")
+        close("centre of mass [m]", X, sum(k * y for k, y in zip(masses, points, strict=True)) / sum(masses), ROUNDED,
+              f"m = {masses}, x = {points.tolist()}")
     hole = np.array([m[0] + m[1], -m[1], 0.0])                           # the sum of its masses is m[0] > 0
     for unit, size in ((1.0, 1.0), (1e-30, 1e30), (1e30, 1e-30)):
         given = f"m = {unit * hole}, x = {(size * x[:3]).tolist()}"
@@ -84,6 +101,9 @@ def test_linear_momentum_is_the_mass_times_the_velocity_of_the_centre(lesson, dr
     moved = (m @ (x + t * v) - m @ x) / t                                # M (X(t) − X(0))/t at constant velocities
     close("P of points with different velocities [kg m/s]", lesson.linear_momentum(m, v),
           moved, ROUNDED, f"m = {m}, v = {v.tolist()}")
+    for masses, _, speeds in sparse_clouds(draw):
+        close("P of points, some of them at rest [kg m/s]", lesson.linear_momentum(masses, speeds),
+              sum(k * y for k, y in zip(masses, speeds, strict=True)), ROUNDED, f"m = {masses}, v = {speeds.tolist()}")
     recoil = np.stack([v[0], -m[0] / m[1] * v[0]])
     close("P after an explosion at rest [kg m/s]", lesson.linear_momentum(m[:2], recoil),
           np.zeros(3), ROUNDED, f"m = {m[:2]}")
@@ -126,6 +146,12 @@ def test_angular_momentum_about_another_point_has_the_arm_of_the_whole_momentum(
           carried, ROUNDED, given)
     flight = lesson.angular_momentum(m, x + 0.7 * v, v, about)
     close("L at a later time, each point on its straight line [kg m²/s]: the same", flight, here, ROUNDED, given)
+    for m, x, v in sparse_clouds(draw):
+        for about in (np.zeros(3), x[-1].copy(), draw.sparse(-1.5, 1.5, 3)):
+            arm = x - about
+            close("L of points, some of them at rest, at `about`, or on an axis [kg m²/s]",
+                  lesson.angular_momentum(m, x, v, about), m @ np.cross(arm, v), ROUNDED,
+                  f"m = {m}, x = {x.tolist()}, v = {v.tolist()}, about = {about}")
 
 
 # ---------------------------------------------------------------------------------------------- tensors
@@ -141,6 +167,10 @@ def test_tensor_of_points_gives_their_angular_momentum_and_energy(lesson, draw):
         energy = 0.5 * m @ np.sum(v * v, axis=1)
         close("½ ω·I ω, compared with Σ ½ m v² [J]", 0.5 * omega @ I @ omega, energy, ROUNDED, given)
     close("I − Iᵀ [kg m²]: symmetric", I - I.T, np.zeros((3, 3)), ROUNDED, f"m = {m}, r = {r.tolist()}")
+    for masses, points, _ in sparse_clouds(draw):
+        close("I of points on axes, at the reference point, one alone, or many [kg m²]",
+              lesson.point_mass_inertia(masses, points), tensor(masses, points), ROUNDED,
+              f"m = {masses}, r = {points.tolist()}")
     hole = lesson.point_mass_inertia(np.append(m, -m[0]), np.append(r, r[:1], axis=0))
     close("I with a hole of equal mass at the first point [kg m²]: as without both", hole, tensor(m[1:], r[1:]),
           ROUNDED, f"m = {m}, r = {r.tolist()}")
@@ -179,7 +209,9 @@ def test_tensor_of_a_box_is_its_volume_integral(lesson, draw):
         I = np.asarray(lesson.box_inertia(mass * m, small * size)) / mass / small**2
         close("tensor of a very small or large box over its mass and size squared [-]", I, by_eight_points(m, size),
               ROUNDED, f"m = {mass * m:.4g}, size = {small * size}")
-    for name, edges in (("plate", size * [1.0, 1.0, 0.0]), ("rod", size * [0.0, 1.0, 0.0])):
+    parts = draw.sparse(0.2, 2.0, (6, 3))
+    for name, edges in (("plate", size * [1.0, 1.0, 0.0]), ("rod", size * [0.0, 1.0, 0.0]),
+                        ("cube", size[0] * np.ones(3)), *(("box, a plate or a rod", edges) for edges in parts)):
         close(f"tensor of a {name} [kg m²]", lesson.box_inertia(m, edges), by_eight_points(m, edges), ROUNDED,
               f"m = {m:.4g}, size = {edges}")
 
@@ -293,6 +325,12 @@ def test_the_tensor_turns_with_the_body(lesson, draw):
     close("input I_body after the call: return a new array", I_body, kept, 0.0, given)
     close("tensor of a hole that is rotated by R [kg m²]", lesson.world_inertia(-I_body, R), -tensor(m, r @ R.T),
           ROUNDED, given)
+    for R in (*AXIS_TURNS, rotation(draw), about(np.array([0.0, 0.0, 1.0]), draw(0.5, 2.5))):
+        for points in (r, draw.sparse(-1.5, 1.5, r.shape), np.eye(3)[:2], np.concatenate([np.eye(3), -np.eye(3)])):
+            masses = np.resize(m, len(points)) if len(points) < 6 else np.ones(6)          # the last one is like a ball
+            close("tensor of points on axes that are rotated by R [kg m²]",
+                  lesson.world_inertia(tensor(masses, points), R.copy()), tensor(masses, points @ R.T), ROUNDED,
+                  f"m = {masses}, r = {points.tolist()}, R = {R.tolist()}")
 
 
 @exercise("4.10", points=1, hint="invert I_body with `inverse`, then rotate it like any tensor: R first, Rᵀ last")
@@ -305,6 +343,12 @@ def test_the_inverse_in_world_axes_turns_l_back_into_omega(lesson, draw):
         inverse = np.asarray(lesson.world_inverse_inertia(size * I_body, R))
         close("I⁻¹ I in world axes [-]", inverse @ (size * I), np.eye(3), ROUNDED,
               f"I_body = {(size * I_body).tolist()}, R = {R.tolist()}")
+    for R in (*AXIS_TURNS, rotation(draw)):
+        for moments in (draw(1.0, 3.0, 3), np.array([2.0, 2.0, 3.0]), 2.0 * np.ones(3), np.array([2.0**-10, 1.0, 1.0])):
+            close("I⁻¹ in world axes of a body in its principal axes [1/(kg m²)]: over its largest entry",
+                  np.asarray(lesson.world_inverse_inertia(np.diag(moments), R.copy())) * moments.min(),
+                  sum(moments.min() / k * np.outer(axis, axis) for k, axis in zip(moments, R.T, strict=True)), ROUNDED,
+                  f"moments {moments}, R = {R.tolist()}")
     for axis in range(3):                                                # NumPy's error for a singular matrix will do
         raises("the tensor of collinear points, which has no inverse", ValueError, lesson.world_inverse_inertia,
                np.diag(1.0 - np.eye(3)[axis]), np.eye(3))
@@ -325,6 +369,16 @@ def test_away_from_its_centre_a_body_resists_like_a_point_more(lesson, draw):
     close("tensor moved back to the centre with −m [kg m²]", lesson.parallel_axes(np.array(moved), -M, d), I, ROUNDED,
           given)
     close("input tensor after the call: return a new array", I, kept, 0.0, given)
+    for d in (np.zeros(3), *draw(0.2, 1.0) * np.eye(3), *draw.sparse(-1.0, 1.0, (4, 3))):
+        given = f"I = {I.tolist()}, m = {M:.4g}, d = {d}"
+        close("tensor of a body about its centre, a point on an axis, or in a plane [kg m²]",
+              lesson.parallel_axes(I, M, d.copy()), tensor(m, r - d), ROUNDED, given)
+        close("tensor of a point of mass [kg m²]", lesson.parallel_axes(np.zeros((3, 3)), M, d.copy()),
+              tensor([M], [d]), ROUNDED, f"no I, m = {M:.4g}, d = {d}")
+        close("tensor of a body whose holes are as heavy as it is [kg m²]: the same everywhere",
+              lesson.parallel_axes(I, 0.0, d.copy()), I, ROUNDED, f"I = {I.tolist()}, m = 0, d = {d}")
+    d = draw(-1.0, 1.0, 3)
+    given = f"I = {I.tolist()}, m = {M:.4g}, d = {d}"
     for size in (1.0, 1e-30, 1e30):
         hole = np.asarray(lesson.parallel_axes(-size**2 * I, -M, size * d)) / size**2
         close("tensor of a hole about a point at d from its centre, over its size squared [kg]", hole,
@@ -376,7 +430,20 @@ def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
           np.sum(I, axis=0) + tensor(m, near - X), 1e-7, given)
 
 
-@exercise("4.12", points=0.5, hint="centre_of_mass raises BadInput: call it")
+@exercise("4.12", points=0.25,
+          hint="add up all bodies in one loop: one alone, bodies in one place and on an axis are no case of their own")
+def test_equal_bodies_on_axes_in_one_place_or_alone_have_the_tensor_of_their_centres_added(lesson, draw):
+    own = np.diag([1.0, 2.0, 2.5])
+    for m, x, _ in sparse_clouds(draw):
+        found, X = lesson.combine(m, x, np.stack([own] * len(m))), m @ x / m.sum()
+        given = f"m = {m}, x = {x.tolist()}, each with the moments 1, 2 and 2.5 kg m²"
+        close("mass of all [kg]", found.m, m.sum(), ROUNDED, given)
+        close("centre of mass of all [m]", found.x, X, ROUNDED, given)
+        close("tensor of all about their centre [kg m²]", found.I, tensor(m, x - X) + len(m) * own, 10.0 * ROUNDED,
+              given)
+
+
+@exercise("4.12", points=0.25, hint="centre_of_mass raises BadInput: call it")
 def test_parts_without_mass_are_refused(lesson, draw):
     x = draw(-1.0, 1.0, (2, 3))
     I = np.stack([np.eye(3), np.eye(3)])
@@ -423,6 +490,7 @@ def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any
     low, middle, high = 0.5 + draw(0.0, 0.3), 1.0 + draw(0.0, 0.3), 1.5 + draw(0.0, 0.3)
     for size in (1.0, 1e-30, 1e-6, 1e6, 1e30):
         for moments in ([low, middle, high], [low, middle, middle], [low, low, high], [low, low, low],
+                        [0.0, low, low], [0.0, 0.0, 0.0], [1e-9, high, high],         # a rod, nothing, a thin body
                         [-high, -middle, -low], [-middle, -low, high]):               # holes have negative ones
             I = turned(moments, rotation(draw))
             trace, roots = np.trace(I), np.array(moments)
@@ -654,6 +722,9 @@ def lumps(draw, place):
     hole = added([(1.0, of_tetrahedron(inner[t])) for t in Delaunay(x).simplices])
     hollow = added([(1.0, whole), (-1.0, hole)])
     yield "a lump with a cavity", np.concatenate((x, inner)), np.concatenate((faces, faces[:, ::-1] + len(x))), hollow
+    round_one = draw(-1.0, 1.0, (80, 3))
+    x, faces = solid(0.5 * round_one / np.linalg.norm(round_one, axis=1)[:, None] + place)
+    yield "a round lump", x, faces, added([(1.0, of_tetrahedron(x[t])) for t in Delaunay(x).simplices])
 
 
 @exercise("4.15", points=0.5,
@@ -840,7 +911,8 @@ def test_a_sheet_thinner_than_round_off_has_no_volume(lesson, draw):
 def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetrahedra(lesson, draw):
     for size in SIZES:
         for far in (0.0, 1e3):
-            place, density = far * draw(-1.0, 1.0, 3), draw(0.5, 2.0)
+            place = far * draw(-1.0, 1.0, 3)
+            density = draw(0.5, 2.0) * (1.0 if size == 1.0 else 10.0 ** draw(-6.0, 6.0))
             for name, x, faces, (V, first, second) in lumps(draw, np.zeros(3)):
                 mass, centre, I = lesson.mesh_body(density, size * (x + place), faces)
                 C = second - np.outer(first, first) / V
@@ -857,13 +929,16 @@ def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetr
 
 @exercise("4.18", points=1, hint="its kinetic energy is ½mv² + ½Iω² with ω = v/R, and all of it comes from the height")
 def test_a_body_rolls_down_in_the_time_that_its_forces_give(lesson, draw):
-    for share in draw(0.1, 1.0, 3):
-        m, R, way, slope, g = draw(0.5, 2.0), draw(0.1, 0.5), draw(1.0, 3.0), draw(0.1, 0.6), draw(5.0, 15.0)
+    shares, slopes = [*draw(0.1, 1.0, 3), 0.0, 1.0, 0.4, 7.0], [*draw(0.1, 0.6, 3), 0.3, 0.5 * np.pi, 1e-9, 0.3]
+    for share, slope in zip(shares, slopes, strict=True):
+        m, R, way, g = draw(0.5, 2.0, 4) * 10.0 ** draw(-6.0, 6.0, 4)
         I = share * m * R * R
         # m a + f = m g sin θ,  I a/R = f R: acceleration and friction
         a, _ = np.linalg.solve([[m, 1.0], [I / R, -R]], [m * g * np.sin(slope), 0.0])
-        close("time of rolling down [s]", lesson.rolling_time(I, m, R, way, slope, g), np.sqrt(2.0 * way / a), 1e-12,
-              given=f"I/(m R²) = {share:.4g}, way = {way:.4g} m, slope = {slope:.4g} rad")
+        close("time of rolling down, over its truth [-]",
+              lesson.rolling_time(I, m, R, way, slope, g) / np.sqrt(2.0 * way / a), 1.0, 1e-12,
+              given=f"I/(m R²) = {share:.4g}, m = {m:.4g} kg, R = {R:.4g} m, way = {way:.4g} m, "
+              f"slope = {slope:.4g} rad, g = {g:.4g} m/s²")
 
 
 @exercise("4.19", points=1, hint="the more of its mass lies far from the axis, the more energy goes into the rotation")
@@ -874,17 +949,17 @@ def test_the_chosen_body_rolls_as_half_of_its_mass_at_the_rim_would(lesson):
 
 @exercise("4.20", points=1, hint="symmetry makes moments equal, and material far from the centre makes them large")
 def test_a_mesh_of_ones_own_has_three_large_equal_moments(lesson, draw):
-    volume = draw(0.5, 2.0)
-    x, faces = lesson.my_mesh(volume)
-    x, faces = np.asarray(x, dtype=float), np.asarray(faces)
-    edges = Counter((int(f[k]), int(f[(k + 1) % 3])) for f in faces for k in range(3))
-    closed = all(count == 1 and edges.get(edge[::-1]) == 1 for edge, count in edges.items())
-    truth("whether each edge belongs to two faces, once in each direction", closed, True)
-    filled, moments = volume_and_moments(x, faces)
-    between("volume of the mesh over that which was asked for [-]", filled / volume, 0.99, 1.01)
-    between("largest over smallest principal moment [-]", moments[2] / moments[0], 1.0, 1.01)
-    ball = 0.4 * filled * (0.75 * filled / np.pi) ** (2.0 / 3.0)
-    between("smallest moment over that of a ball of the same mass and volume [-]", moments[0] / ball, 1.3, np.inf)
+    for volume in draw(0.5, 2.0, 3) * [1.0, 1e-9, 1e9]:
+        x, faces = lesson.my_mesh(volume)
+        x, faces = np.asarray(x, dtype=float), np.asarray(faces)
+        edges = Counter((int(f[k]), int(f[(k + 1) % 3])) for f in faces for k in range(3))
+        closed = all(count == 1 and edges.get(edge[::-1]) == 1 for edge, count in edges.items())
+        truth("whether each edge belongs to two faces, once in each direction", closed, True)
+        filled, moments = volume_and_moments(x, faces)
+        between("volume of the mesh over that which was asked for [-]", filled / volume, 0.99, 1.01)
+        between("largest over smallest principal moment [-]", moments[2] / moments[0], 1.0, 1.01)
+        ball = 0.4 * filled * (0.75 * filled / np.pi) ** (2.0 / 3.0)
+        between("smallest moment over that of a ball of the same mass and volume [-]", moments[0] / ball, 1.3, np.inf)
 
 
 def volume_and_moments(x, faces):

@@ -1,5 +1,6 @@
 """Lesson 1: each method has its stability function and its order, and implicit steps solve their equations."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -110,30 +111,39 @@ def step_by_stages(law, method, t, x, v, dt, p):
 
 
 def check_a_nonlinear_step(lesson, draw, method):
-    """The step itself, with a law whose answer is in no table."""
-    n = draw.whole(3, 5)
-    t, x, v, dt = draw(0.0, 9.0), draw(-2.0, 2.0, n), draw(-1.0, 1.0, n), draw(0.15, 0.2)
-    p = Coupled(draw(0.5, 1.0, n), draw(0.2, 0.5), draw(0.5, 1.5))
-    law = draw.law(coupled_pendula)
-    expected = step_by_stages(law, method, t, x, v, dt, p)
-    # Newton's last correction is below 1e-12 |w|, with |w| < 3, and squares what is left.
-    close("x and v after a step of coupled bodies with a nonlinear law",
-          getattr(lesson, method)(law, t, x, v, dt, p), expected, 1e-11, given=f"dt = {dt:.4g} s")
+    """The step itself, with a law whose answer is in no table: in general, from rest, of one body, of many at zero."""
+    law, some = draw.law(coupled_pendula), draw.sparse
+    for n, of, t, drag, moves in (
+            (draw.whole(3, 5), draw, draw(0.0, 9.0), draw(0.2, 0.5), 1.0), (draw.whole(3, 5), draw, 0.0, 0.3, 0.0),
+            (1, draw, draw(-9.0, 0.0), 0.0, 1.0), (9, some, draw(200.0, 900.0), draw(0.2, 0.5), 1.0)):
+        x, v, dt = of(-2.0, 2.0, n), moves * of(-1.0, 1.0, n), draw(0.15, 0.2)
+        p = Coupled(of(0.5, 1.0, n), drag, draw(0.5, 1.5))
+        expected = step_by_stages(law, method, t, x, v, dt, p)
+        # Newton's last correction is below 1e-12 |w|, with |w| < 3, and squares what is left.
+        close("x and v after a step of coupled bodies with a nonlinear law",
+              getattr(lesson, method)(law, t, x, v, dt, p), expected, 1e-11,
+              given=f"dt = {dt:.4g} s, t = {t:.4g} s, {n} bodies")
 
 
 @pytest.mark.parametrize("method", cases())
 def test_one_step_has_the_amplification_matrix_of_the_method(lesson, draw, method):
     omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
-    p = lesson.Oscillator(omega, zeta)
-    expected = expected_matrix(method, omega, zeta, dt)
-    for x0, v0 in draw(-1.0, 1.0, (3, 2)):
-        before = np.array([x0]), np.array([v0])
-        x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, *before, dt, 1, p)
-        # Newton stops at 1e-12 |w|, with |w|² < ω²x² + v² < 17, and the midpoint doubles that.
-        # The rest is round-off of numbers below 20.
-        close("x and v [m, m/s] after one step", [x[0], v[0]], expected @ [x0, v0], 1e-11,
-              given=f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s, from x = {x0:.4g} m and v = {v0:.4g} m/s")
-        close("input x and v after the call: return new arrays", np.ravel(before), [x0, v0], 0.0)
+    # in units of seconds and metres, which are powers of two: free bodies, no damping, much damping, all sizes
+    for rate, damping, second, metre in ((omega, zeta, 1.0, 1.0), (omega, 0.0, 1.0, 1.0), (0.0, 0.0, 2.0**-20, 2.0**40),
+                                         (omega, draw(1.2, 2.0), 2.0**20, 2.0**-40)):
+        p, expected = lesson.Oscillator(rate / second, damping), expected_matrix(method, rate, damping, dt)
+        starts = draw(-1.0, 1.0, (6, 2)) * [[1.0, 1.0], [1.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]
+        for x0, v0 in starts[:6 if second == 1.0 else 3]:
+            before = np.array([metre * x0]), np.array([metre / second * v0])
+            kept, law = np.ravel(before), lesson.oscillator_acceleration
+            x, v = lesson.advance(getattr(lesson, method), law, 0.0, *before, dt * second, 1, p)
+            # Newton stops at 1e-12 |w|, with |w|² < ω²x² + v² < 17, and the midpoint doubles that.
+            # The rest is round-off of numbers below 20.
+            close("x and v [m, m/s] after one step, in these units", [x[0] / metre, v[0] / metre * second],
+                  expected @ [x0, v0], 1e-11, given=f"ω = {rate / second:.4g}/s, ζ = {damping:.4g}, "
+                  f"dt = {dt * second:.4g} s, from x = {x0:.4g} and v = {v0:.4g}, in units of {metre:.4g} m and "
+                  f"{second:.4g} s")
+            close("input x and v after the call: return new arrays", np.ravel(before), kept, 0.0)
     check_a_nonlinear_step(lesson, draw, method)
 
 
@@ -206,9 +216,10 @@ def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, dra
 
     Pendula of a picometre and of a million kilometres solve it to the same digits.
     """
-    for size, longest in ((size, longest) for size in SIZES for longest in (0.6, 0.9)):
+    drawn = [(size, longest, (2,)) for size in SIZES for longest in (0.6, 0.9)]
+    for size, longest, shape in (*drawn, (1.0, 0.6, (2, 3)), (1.0, 0.6, (4, 1))):        # any shape is allowed
         dt = draw(longest - 0.3, longest)
-        t, x, v = draw(1.0, 3.0), size * draw(-3.0, 3.0, 2), size * draw(-1.5, 1.5, 2)
+        t, x, v = draw(1.0, 3.0), size * draw(-3.0, 3.0, shape), size * draw(-1.5, 1.5, shape)
         p = Drive(draw(0.5, 0.9), draw(1.0, 1.5), size)
         x_new, v_new = lesson.advance(getattr(lesson, method), driven_pendula, t, x, v, dt, 1, p)
         there = x + share * (x_new - x), v + share * (v_new - v)
@@ -218,8 +229,8 @@ def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, dra
         # An error e < 2.9 shrinks at once, to ½e²dt³/r′.
         # The last correction is below 1e-12 |w|, with |w| < (|v| + 1.9 dt)/(1 + c dt) < 1.7.
         # Half a step doubles it, but there r′ < 1.9.
-        close("v⁺ − v − dt a after the step [m/s]", rest, [0.0, 0.0], 1e-11 * size, given)
-        close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11 * size, given)
+        close("v⁺ − v − dt a after the step [m/s]", rest, np.zeros(shape), 1e-11 * size, given)
+        close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], np.zeros(shape), 1e-11 * size, given)
 
 
 @exercise("1.7", points=0.5, hint="newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) adds dt w to xₙ; then w ← w − δ")
@@ -274,15 +285,17 @@ def runaway(t, x, v, p):
 @exercise("1.9", points=1, hint="one column for each starting state: the results of a step from (1, 0) and from (0, 1)")
 def test_amplification_matrix_moves_states_as_the_method_does(lesson, draw):
     omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
-    given = f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s"
-    expected = expected_matrix("euler_step", omega, zeta, dt)
-    drift = np.array([[1.0, dt], [0.0, 1.0]])
-    kick = expected - [[0.0, dt], [0.0, 0.0]]
-    # round-off of numbers below 3
-    close("A of a step without acceleration", lesson.amplification_matrix(drift_only, omega, zeta, dt), drift, 1e-14,
-          given)
-    A = lesson.amplification_matrix(drift_then_kick, omega, zeta, dt)
-    close("A of a step that updates the position first", A, kick @ drift, 1e-14, given)
+    for rate, damping, second in ((omega, zeta, 1.0), (omega, 0.0, 2.0**-20), (0.0, 0.0, 1.0), (omega, 3.0, 2.0**20)):
+        p, unit = (rate / second, damping, second * dt), np.array([[1.0, second], [1.0 / second, 1.0]])
+        given = f"ω = {p[0]:.4g}/s, ζ = {damping:.4g}, dt = {p[2]:.4g} s"
+        expected = expected_matrix("euler_step", rate, damping, dt)
+        drift = np.array([[1.0, dt], [0.0, 1.0]])
+        kick = expected - [[0.0, dt], [0.0, 0.0]]
+        # round-off of numbers below 4
+        close("A of a step without acceleration", lesson.amplification_matrix(drift_only, *p) / unit, drift, 1e-14,
+              given)
+        A = lesson.amplification_matrix(drift_then_kick, *p)
+        close("A of a step that updates the position first", A / unit, kick @ drift, 1e-14, given)
 
 
 def drift_only(acceleration, t, x, v, dt, p):
@@ -297,18 +310,26 @@ def drift_then_kick(acceleration, t, x, v, dt, p):
 @exercise("1.10", points=1,
           hint="subtract the means of log dt and log error; divide the sum of products by the sum of squares")
 def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
-    dts = draw(0.5, 1.0, 4) * [0.1, 1.0, 0.3, 0.03]
+    dts = draw(0.5, 1.0, 40) * np.resize([0.1, 1.0, 0.3, 0.03], 40)
     order, C = draw(1.0, 4.0), draw(2.0, 9.0)
     errors = C * dts**order
     # round-off of logarithms below 20, with a spread of more than 2
     close("order of a power of dt", lesson.observed_order(dts, errors), order, 1e-13,
           given=f"error = {C:.4g} dt^{order:.4g}")
-    errors = errors * draw(0.5, 2.0, 4)
+    errors = errors * draw(0.5, 2.0, 40)
     slope = np.polyfit(np.log(dts), np.log(errors), 1)[0]
     close("order of a noisy series, by least squares", lesson.observed_order(dts, errors), slope, 1e-13)
-    last = np.arange(4) == 3
-    raises("an error of zero", BadInput, lesson.observed_order, dts, np.where(last, 0.0, errors))
-    raises("a negative step", BadInput, lesson.observed_order, np.where(last, -dts, dts), errors)
+    for k, small in itertools.product((0.0, -1.5, 4.0), (1.0, 1e-40)):     # two runs, many runs, all sizes of steps
+        for n in (2, 3, 50):
+            dts = small * 0.5 ** np.arange(n)
+            # the logarithms are below 260, and spread by 0.7 or more
+            close("order of a power of dt", lesson.observed_order(dts, small * C * (dts / small)**k), k, 1e-12,
+                  given=f"{n} steps of {small} s and less, error = {small * C:.4g} (dt/{small} s)^{k}")
+    right = draw(0.5, 1.0, 4)
+    for one, number in itertools.product(np.eye(4) == 1.0, (0.0, -1.0, np.nan, np.inf)):
+        wrong = np.where(one, number, right)
+        raises("an error that is no positive number", BadInput, lesson.observed_order, right, wrong)
+        raises("a step that is no positive number", BadInput, lesson.observed_order, wrong, right)
 
 
 # ---------------------------------------------------------------------------------------------- why?
@@ -316,7 +337,7 @@ def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
 @exercise("1.11", points=1,
           hint="one step of Euler goes along the tangent of a circle: how far from its centre does it end?")
 def test_the_predicted_growth_is_that_of_a_run_of_euler_over_one_period(lesson, draw):
-    for low, high in ((4, 7), (12, 20), (50, 90)):
+    for low, high in ((1, 1), (2, 3), (4, 7), (12, 20), (50, 90), (3000, 5000)):
         steps, omega = draw.whole(low, high), draw(1.0, 5.0)
         dt, (x, v) = 2.0 * np.pi / (omega * steps), draw(0.2, 1.0, 2)
         begin = np.hypot(x, v / omega)
@@ -346,6 +367,12 @@ def test_a_method_of_ones_own_is_of_second_order_keeps_energy_and_is_new(lesson,
         errors.append(max(np.abs(got - end).max(), 1e-12))               # what the reference solution is good for
     between("order of convergence over two halvings, if not higher", min(2.0, np.log2(errors[0] / errors[1]) / 2.0),
             1.8, 2.0)                                                    # 1.8: as for the other methods
+
+    one = x[:1].copy(), v[:1].copy()
+    for start in ((x, 0.0 * v), (0.0 * x, v), (0.0 * x, 0.0 * v), one):
+        got = lesson.advance(lesson.my_step, driven_pendula, t, *(part.copy() for part in start), T / 40, 40, p)
+        close("x and v of one body, and from zeros, after 40 steps [rad, rad/s]", np.array(got),
+              driven_reference(p, t, *start, T), T / 40)
 
     p = lesson.Oscillator(draw(1.0, 3.0), 0.0)
     x, v = draw(0.3, 1.0, 1), draw(0.3, 1.0, 1)

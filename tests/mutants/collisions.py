@@ -34,6 +34,7 @@ edit("6.1", "returns zero for distances below 1 µm", "plane.d", "plane.d if abs
 edit("6.1", "subtracts d", "p @ plane.n + plane.d", "plane.d - p @ plane.n")
 edit("6.1", "reverses the distance: positive on the wrong side",
      "return p @ plane.n + plane.d", "return -(p @ plane.n + plane.d)")
+edit("6.1", "forgets d of a plane that lies along an axis", "plane.d", "(plane.d if np.all(plane.n) else 0.0)")
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
@@ -85,6 +86,9 @@ edit("6.2", "subtracts the diameter, not the radius, from the distance before",
      "plane_distance(x_0, plane) - r,", "plane_distance(x_0, plane) - 2.0 * r,")
 edit("6.2", "returns the end of the step if the ball does not reach the plane", "return NEVER", "return t + dt")
 edit("6.2", "divides by the distance after only", "(before + after)", "after")
+edit("6.2", "finds no impact of a ball that does not move",
+     "before <= 0.0:", "np.all(x_0 == x_1): return NEVER\n    if before <= 0.0:")
+edit("6.2", "takes steps of at most 1 s", "t + dt * before", "t + min(dt, 1.0) * before")
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
@@ -115,6 +119,8 @@ edit("6.3", "exchanges the two radii",
 edit("6.3", "takes the cylinder's axis along z", "np.array([x[0], 0.0, 0.0])", "np.array([0.0, 0.0, x[2]])")
 edit("6.3", "takes the part across the axis for the foot", "np.array([x[0], 0.0, 0.0])", "np.array([0.0, x[1], x[2]])")
 edit("6.3", "adds the ball's radius to the cylinder's, and keeps it", "0.0]), R)", "0.0]), R + r)")
+edit("6.3", "returns the centre as both points of a ball on the axis",
+     "return", "if not x[1:].any(): return Contact(x, x, np.array([0.0, 1.0, 0.0]), -R - r, 0.0)\n    return")
 
 
 # 6.4 ------------------------------------------------------------------------------------------------------------
@@ -189,6 +195,8 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
     s = (-B - np.sqrt(D)) / A
     return NEVER if s > 1.0 else t + s * dt
 edit("6.4", "compares the share s of the step with dt, not with 1", "s > 1.0", "s > dt")
+edit("6.4", "misses a ball of radius 0, a point", "D < 0.0", "r == 0.0 or D < 0.0")
+edit("6.4", "finds no impact at once on the axis itself", "C <= 0.0", "C <= 0.0 < y @ y")
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
@@ -232,6 +240,8 @@ edit("6.5", "exchanges the limits, so that one end always wins",
      "np.minimum(1.0, np.maximum(0.0,", "np.maximum(1.0, np.minimum(0.0,")
 edit("6.5", "adds the share to the other end", "return a + np", "return b + np")
 edit("6.5", "subtracts the share from a", "return a + np", "return a - np")
+edit("6.5", "returns the first end for a point at the second one", "return a +", "return a if np.all(p == b) else a +")
+edit("6.5", "takes points on one coordinate for ends", "return a +", "return a if len(p) == 1 else a +")
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
@@ -271,6 +281,8 @@ edit("6.6", "returns a positive gap for a pierced face", "return -R - r", "retur
 edit("6.6", "takes the first two coordinates: projects along z",
      "a[1] * b[2] - a[2] * b[1]", "a[0] * b[1] - a[1] * b[0]")
 edit("6.6", "has a wrong sign in a cross product", "c[1] * a[2] - c[2] * a[1]", "a[1] * c[2] - a[2] * c[1]")
+edit("6.6", "returns a gap of zero where a corner lies on the axis", "turns = np.array(",
+     "if not (a[1:].any() and b[1:].any() and c[1:].any()): return 0.0\n    turns = np.array(")
 
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
@@ -334,6 +346,8 @@ edit("6.7", "divides by |N| once", "dot(p - a, N) / dot(N, N) * N", "dot(p - a, 
 edit("6.7", "takes q as inside where one of the three tests holds",
      "N) >= 0.0 and dot(cross(c - b, q - b), N) >= 0.0 and", "N) >= 0.0 or dot(cross(c - b, q - b), N) >= 0.0 or")
 edit("6.7", "projects p itself, not p − a", "dot(p - a, N) /", "dot(p, N) /")
+edit("6.7", "returns the first corner for a point in the plane of the triangle",
+     "dot(N, N) * N", "dot(N, N) * N if dot(p - a, N) else a")
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
@@ -383,6 +397,9 @@ edit("6.8", "limits the coordinates from above only",
      "np.minimum(box.half, np.maximum(-box.half, y))", "np.minimum(box.half, y)")
 edit("6.8", "uses the body axis in place of the world axis for the normal", "column(box.R, i)", "np.eye(3)[i]")
 edit("6.8", "rotates q by the transpose", "box.R @ q", "box.R.T @ q")
+edit("6.8", "treats a point on an edge as outside", "depth[i] < 0.0", "depth[i] < 0.0 or np.sum(depth == 0.0) > 1")
+edit("6.8", "takes the middle of the box for a point beyond the middle of a face",
+     "np.minimum(box.half, np.maximum(-box.half, y))", "np.minimum(box.half, np.maximum(-box.half, y)) * np.all(y)")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -414,6 +431,8 @@ edit("6.9", "returns the upper corner first",
      "return np.maximum(high, high + move), np.minimum(low, low + move)")
 edit("6.9", "adds the move to the width: the upper corner from the lower one",
      "np.maximum(high, high + move)", "np.maximum(high, low + move)")
+edit("6.9", "leaves a flat box where it is",
+     "return", "move = 0.0 * move if np.any(low == high) else move; return")
 
 
 # 6.10 -----------------------------------------------------------------------------------------------------------
@@ -458,6 +477,7 @@ edit("6.10", "starts each inner loop at 1, not at i + 1", "range(i + 1, len(low)
 edit("6.10", "returns the pairs that do not touch", "if boxes_touch", "if not boxes_touch")
 edit("6.10", "stops at the first pair of each box", "found.append((i, j))", "found.append((i, j)); break")
 edit("6.10", "starts each inner loop at i + 2", "range(i + 1, len(low))", "range(i + 2, len(low))")
+edit("6.10", "tests the first hundred boxes only", "range(len(low))", "range(min(len(low), 100))")
 
 
 # 6.11 -----------------------------------------------------------------------------------------------------------
@@ -528,6 +548,8 @@ edit("6.11", "opens both nodes at once, and compares left with left and right wi
      "            elif down_b == 0 or")
 edit("6.11", "forgets the first child", "waiting.append((down_a, j))", "pass")
 edit("6.11", "forgets the second child of b", "waiting.append((i, down_b + 1))", "pass")
+edit("6.11", "finds no pair with a tree that is a single leaf", "while len(waiting) > 0",
+     "while len(waiting) > 0 and b.child[0] > 0")
 
 
 # 6.12 -----------------------------------------------------------------------------------------------------------
@@ -569,6 +591,9 @@ edit("6.12", "keeps the gap of the last edge", "greatest, edge = gap, i", "edge 
 edit("6.12", "counts the edges from 1", "return greatest, edge", "return greatest, edge + 1")
 edit("6.12", "does not start the minimum again for each edge",
      "n, gap = outward(a, i), np.inf", "n, gap = outward(a, i), (np.inf if i == 0 else gap)")
+edit("6.12", "uses the first hundred corners of b only", "range(len(b))", "range(min(len(b), 100))")
+edit("6.12", "skips an edge that touches the other polygon exactly",
+     "not gap <= greatest", "gap and not gap <= greatest")
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
@@ -616,6 +641,8 @@ edit("6.13", "adds no crossing from the last corner to the first", "(k > 2 or i 
 edit("6.13", "adds a crossing where the signs are equal", "s_i * s_j < 0.0", "s_i * s_j > 0.0")
 edit("6.13", "adds a crossing only where it comes in", "s_i * s_j < 0.0", "s_i > 0.0 and s_j < 0.0")
 edit("6.13", "adds the whole edge vector", "s_i / (s_i - s_j) * (y[j] - y[i])", "s_i / (s_i - s_j) * y[j]")
+edit("6.13", "has room for 100 corners only", "2 * len(y)", "100")
+edit("6.13", "drops the ends of a segment that are on the plane", "s_i <= 0.0", "s_i <= 0.0 and (k > 2 or s_i < 0.0)")
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
@@ -671,6 +698,10 @@ edit("6.14", "forgets the half width of b", "- half_width(b, axis)", "")
 edit("6.14", "drops the absolute value of the distance", "abs(dot(r, axis))", "dot(r, axis)")
 edit("6.14", "leaves out the last six axes", "range(15)", "range(9)")
 edit("6.14", "counts the axes from 1", "-best), number", "-best), number + 1")
+edit("6.14", "skips an axis along which the boxes touch exactly",
+     "not gap <= greatest +", "gap and not gap <= greatest +")
+edit("6.14", "takes the faces alone where a is not rotated",
+     "range(15)", "range(6 if np.all(a.R == np.eye(3)) else 15)")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
@@ -715,6 +746,8 @@ edit("6.15", "takes the difference the other way", "v = weights @ (p - q)", "v =
 edit("6.15", "appends the corner of b to p", "np.concatenate((q, b[j:j + 1]))", "np.concatenate((q, a[i:i + 1]))")
 edit("6.15", "stops where it should go on, and goes on where it should stop", "if far_enough", "if not far_enough")
 edit("6.15", "adds the corner of b in place of subtracting it", "a[i] - b[j])", "a[i] + b[j])")
+edit("6.15", "exchanges the bodies where both are single points", "weights @ p, 0.0, weights @ q, 0.0",
+     "*((b[0], 0.0, a[0], 0.0) if len(a) == len(b) == 1 else (weights @ p, 0.0, weights @ q, 0.0))")
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
@@ -763,6 +796,8 @@ FIELD_WITH_A_JUMP = edit("6.16", "omits the term of the reach", "(1.0 / g - 1.0 
 edit("6.16", "repels beyond the reach only", "g >= reach", "g <= reach")
 edit("6.16", "repels by the gap itself, not by one over it",
      "k * (1.0 / g - 1.0 / reach) / (g * g * distance) * r", "k * (reach - g) / distance * r")
+edit("6.16", "takes a k of at most 10 m⁴/s²", "else k *", "else min(k, 10.0) *")
+edit("6.16", "gives an obstacle of radius 0 no field", "g >= reach", "radius == 0.0 or g >= reach")
 
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
@@ -827,6 +862,7 @@ edit("6.17", "divides by the square of the speed for the time",
      "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along / speed**2")
 edit("6.17", "takes the distance for the time: does not divide by the speed",
      "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along")
+edit("6.17", "steers aside from a disc of radius 0", "offset >= radius", "offset >= radius > 0.0")
 
 
 # 6.18 --------------------------------------------------------------------------------------------------------------
@@ -845,6 +881,8 @@ edit("6.18", "returns the share that is sent back", "1.0 - (r + 0.5 * w) / (v * 
 edit("6.18", "returns a negative share for short steps",
      "np.maximum(0.0, 1.0 - (r + 0.5 * w) / (v * dt))", "1.0 - (r + 0.5 * w) / (v * dt)")
 edit("6.18", "takes the diameter of the ball as its radius", "(r + 0.5 * w)", "(0.5 * r + 0.5 * w)")
+edit("6.18", "lets all balls past a wall without thickness", "return", "return 1.0 if w == 0.0 else")
+edit("6.18", "takes speeds of at most 1000 m/s", "(v * dt)", "(min(v, 1e3) * dt)")
 
 
 # 6.19 --------------------------------------------------------------------------------------------------------------

@@ -37,6 +37,7 @@ edit("4.1", "returns zero for coordinates below 1 nm",
      "m @ x / M", "np.where(np.abs(m @ x / M) < 1e-9, 0.0, m @ x / M)")
 edit("4.1", "uses the sizes of the masses, so that holes count as mass", "np.sum(m)", "np.sum(np.abs(m))")
 edit("4.1", "multiplies by the total mass", "m @ x / M", "m @ x * M")
+edit("4.1", "uses the first hundred points only", "m @ x / M", "m[:100] @ x[:100] / M")
 
 
 # 4.2 ------------------------------------------------------------------------------------------------------------
@@ -58,6 +59,7 @@ edit("4.2", "refuses holes", "return m @ v", '[check_positive("mass [kg]", k) fo
 edit("4.2", "returns zero for components below 1e-9 kg m/s", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
 edit("4.2", "reverses the sign", "m @ v", "-(m @ v)")
 edit("4.2", "divides by the masses", "return m @ v", "return (1.0 / m) @ v")
+edit("4.2", "uses the first hundred points only", "m @ v", "m[:100] @ v[:100]")
 
 
 # 4.3 ------------------------------------------------------------------------------------------------------------
@@ -83,6 +85,9 @@ edit("4.3", "divides by the mass", "L += m[n] * c", "L += 1.0 / m[n] * c")
 edit("4.3", "takes the dot product in every component", "cross(x[n] - about, v[n])", "(x[n] - about) * v[n]")
 edit("4.3", "uses the velocities relative to their mean", "v[n])", "v[n] - np.sum(v, axis=0) / m.size)")
 edit("4.3", "subtracts the place of the reference point from the velocities, too", "v[n])", "v[n] - about)")
+edit("4.3", "takes the centre of mass where the reference point is the origin", "L = np.zeros(3)",
+     "L, about = np.zeros(3), about if about.any() else m @ x / np.sum(m)")
+edit("4.3", "uses the first hundred points only", "range(m.size)", "range(min(m.size, 100))")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -123,6 +128,7 @@ edit("4.4", "fills the upper half only",
      "[-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]", "[0.0, xx + zz, -yz], [0.0, 0.0, xx + yy]]")
 edit("4.4", "adds r rᵀ in place of subtracting it", "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]",
      "[[2.0*xx + yy + zz, xy, xz], [xy, xx + 2.0*yy + zz, yz], [xz, yz, xx + yy + 2.0*zz]]")
+edit("4.4", "gives a single point no tensor", "xx, yy, zz =", "m = m * (m.size > 1); xx, yy, zz =")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -282,6 +288,8 @@ edit("4.9", "changes its input", "R @ I_body @ R.T", "np.matmul(R @ I_body, R.T,
 edit("4.9", "forgets the transpose at the end", "R @ I_body @ R.T", "R @ I_body @ R")
 edit("4.9", "multiplies entry by entry", "R @ I_body @ R.T", "R * I_body * R.T")
 edit("4.9", "multiplies by the transpose only", "R @ I_body @ R.T", "I_body @ R.T")
+edit("4.9", "does not rotate a tensor without entries off the diagonal", "R @ I_body @ R.T",
+     "R @ I_body @ R.T if np.any(I_body != np.diag(np.diag(I_body))) else I_body.copy()")
 
 
 # 4.10 -----------------------------------------------------------------------------------------------------------
@@ -301,6 +309,8 @@ edit("4.10", "rotates by R and R, without the transpose",
      "world_inertia(inverse(I_body), R)", "R @ inverse(I_body) @ R")
 edit("4.10", "inverts the matrix entry by entry", "inverse(I_body)", "1.0 / (I_body + 0.0)")
 edit("4.10", "takes R I⁻¹ without the transpose", "world_inertia(inverse(I_body), R)", "R @ inverse(I_body)")
+edit("4.10", "does not rotate a tensor without entries off the diagonal", "R)",
+     "R if np.any(I_body != np.diag(np.diag(I_body))) else np.eye(3))")
 
 
 # 4.11 -----------------------------------------------------------------------------------------------------------
@@ -325,6 +335,7 @@ edit("4.11", "adds the squares of d on the diagonal of their own axes",
      "point_mass_inertia(np.array([m]), d.reshape(1, 3))", "m * np.diag(d * d)")
 edit("4.11", "omits |d|²: subtracts m d dᵀ only",
      "point_mass_inertia(np.array([m]), d.reshape(1, 3))", "-m * np.outer(d, d)")
+edit("4.11", "omits the term for an offset along an axis", "return I +", "return I + (np.sum(d != 0.0) > 1) *")
 
 
 # 4.12 -----------------------------------------------------------------------------------------------------------
@@ -390,6 +401,8 @@ edit("4.12", "keeps the last body only", "total += p", "total = p")
 edit("4.12", "moves the tensors by the sum of the positions", "x[n] - X", "x[n] + X")
 edit("4.12", "omits the tensors of the parts, as if they were points",
      "parallel_axes(I[n], m", "parallel_axes(0.0 * I[n], m")
+edit("4.12", "uses the first hundred bodies only", "range(m.size)", "range(min(100, m.size))")
+edit("4.12", "gives a body alone no tensor", "parallel_axes(I[n]", "parallel_axes(I[n] * (m.size > 1)")
 
 
 # 4.13 -----------------------------------------------------------------------------------------------------------
@@ -527,6 +540,7 @@ WITHOUT_CORNER_PRODUCTS = edit("4.15", "forgets s sᵀ in the second integrals",
 edit("4.15", "takes b × a in place of b × c", "b[1] * c[2] - b[2] * c[1]", "b[1] * a[2] - b[2] * a[1]")
 edit("4.15", "fills the lower half of the second integrals only", "second[j, i] = second[i, j]", "pass")
 edit("4.15", "takes the mean of the corners in place of their sum for ∫x dV", "w / 24.0 * s", "w / 72.0 * s")
+edit("4.15", "uses the first hundred triangles only", "range(faces.shape[0])", "range(min(faces.shape[0], 100))")
 
 
 # 4.16 -----------------------------------------------------------------------------------------------------------
@@ -564,6 +578,7 @@ wrong("4.16", "numbers the edges with the number of triangles, not of corners")(
 edit("4.16", "refuses a triangle with a corner twice though it closes", "if i < 0 or i >= count:",
      "if i < 0 or i >= count or i == j:")
 edit("4.16", "compares the edges with themselves, not with the reversed ones", "= j * count + i", "= i * count + j")
+edit("4.16", "compares the first hundred edges only", "range(there.size)", "range(min(there.size, 100))")
 
 
 # 4.17 -----------------------------------------------------------------------------------------------------------
@@ -639,6 +654,8 @@ edit("4.17", "adds the covariance to its trace", "np.eye(3) - covariance", "np.e
 edit("4.17", "divides by the mass in place of the volume", "first / volume", "first / (density * volume)")
 edit("4.17", "adds the trace to every entry, not only on the diagonal",
      "np.trace(covariance) * np.eye(3)", "np.trace(covariance)")
+edit("4.17", "takes a density of at most 10 kg/m³",
+     "volume, first, second =", "density = min(density, 10.0); volume, first, second =")
 
 
 # 4.18 -----------------------------------------------------------------------------------------------------------
@@ -659,6 +676,8 @@ edit("4.18", "returns the square of the time", "np.sqrt(2.0 * way / a)", "2.0 * 
 edit("4.18", "divides the moment by m R in place of m R²", "m * radius * radius", "m * radius")
 edit("4.18", "adds half of I/(m R²)", "1.0 + I /", "1.0 + 0.5 * I /")
 edit("4.18", "returns the speed at the end", "np.sqrt(2.0 * way / a)", "np.sqrt(2.0 * way * a)")
+edit("4.18", "takes a slope of at most 1 rad", "np.sin(slope)", "np.sin(min(slope, 1.0))")
+edit("4.18", "takes a mass of at least 1 g", "I / (m *", "I / (max(m, 1e-3) *")
 
 
 # 4.19 -----------------------------------------------------------------------------------------------------------
@@ -704,3 +723,4 @@ edit("4.20", "is an octahedron, which is nearly a ball", FIRST,
      "return ((0.75 * volume) ** (1.0 / 3.0) * np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], "
      "[0, 0, -1]]), "
      "np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]))")
+edit("4.20", "has a size of at least 1 cm", "x = 0.5 * a", "a = max(a, 0.01); x = 0.5 * a")

@@ -35,6 +35,8 @@ edit("1.1", "moves the position with the mean of the old and the new velocity",
      "x + dt * v,", "x + dt * (v + 0.5 * dt * acceleration(t, x, v, p)),")
 edit("1.1", "takes the acceleration at the new position and at time t + dt",
      "acceleration(t, x, v, p)", "acceleration(t + dt, x + dt * v, v, p)")
+edit("1.1", "returns the state unchanged where nothing accelerates it",
+     "return", "if not acceleration(t, x, v, p).any(): return x, v\n    return")
 
 
 # 1.2 ------------------------------------------------------------------------------------------------------------
@@ -63,6 +65,7 @@ edit("1.2", "takes an Euler step with the acceleration at its beginning",
 edit("1.2", "takes the mean of the slopes at both ends, as Heun's method does",
      "v + dt * acceleration(t + 0.5 * dt, x_mid, v_mid, p)", "v + 0.5 * dt * "
      "(acceleration(t, x, v, p) + acceleration(t + dt, x + dt * v, 2.0 * v_mid - v, p))")
+edit("1.2", "takes steps of at most 1 s", "x_mid = x", "dt = min(dt, 1.0); x_mid = x")
 
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
@@ -122,6 +125,7 @@ edit("1.3", "moves the position with the mean of the old and the new velocity", 
      "3.0 * v + 3.0 * (v + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4))")
 edit("1.3", "takes all four accelerations at time t", "a1 = acceleration(t, x, v, p)",
      "whenever, acceleration = acceleration, lambda _, *rest: whenever(t, *rest); a1 = acceleration(t, x, v, p)")
+edit("1.3", "takes steps of at least 1 ms", "a1 = acceleration", "dt = max(dt, 1e-3); a1 = acceleration")
 
 
 # 1.4 ------------------------------------------------------------------------------------------------------------
@@ -141,6 +145,7 @@ edit("1.4", "takes the acceleration at time t + dt", "acceleration(t, x", "accel
 edit("1.4", "returns the mean velocity, not the new one", "(v + v_new), v_new", "(v + v_new), 0.5 * (v + v_new)")
 edit("1.4", "takes the acceleration at the position that the old velocity reaches",
      "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
+edit("1.4", "does not move what nothing accelerates", "(v + v_new)", "(v + v_new) * np.any(v != v_new)")
 
 
 # 1.5 ------------------------------------------------------------------------------------------------------------
@@ -163,6 +168,7 @@ edit("1.5", "takes the acceleration at time t + dt", "acceleration(t, x", "accel
 edit("1.5", "returns the velocity first", "return x + dt * v, v", "return v, x + dt * v")
 edit("1.5", "moves with the mean of the old and the new velocity",
      "return x + dt * v, v", "return x + dt * v - 0.5 * dt * dt * acceleration(t, x, v, p), v")
+edit("1.5", "limits the velocity to 1000 m/s", "return", "v = np.clip(v, -1e3, 1e3); return")
 
 
 # 1.6 ------------------------------------------------------------------------------------------------------------
@@ -184,6 +190,7 @@ edit("1.6", "uses dt in place of dt² in the position", "0.5 * dt * dt * a", "0.
 edit("1.6", "advances the velocity with the new acceleration only", "(a + a_new)", "(a_new + a_new)")
 VELOCITY_OF_HALF_A_STEP = edit("1.6", "predicts the velocity over half a step", "v + dt * a, p", "v + 0.5 * dt * a, p")
 edit("1.6", "takes the new acceleration in the middle of the step", "acceleration(t + dt", "acceleration(t + 0.5 * dt")
+edit("1.6", "leaves out the new acceleration where the old one is zero", "(a + a_new)", "(a + a_new * a.any())")
 
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
@@ -255,6 +262,7 @@ edit("1.7", "takes the acceleration at the position that the old velocity reache
      "x + dt * w, w, p)", "x + dt * v, w, p)")
 edit("1.7", "moves the position twice: evaluates the acceleration at x + 2 dt w",
      "x + dt * w, w, p)", "x + 2.0 * dt * w, w, p)")
+edit("1.7", "forgets the shape of the correction", ".reshape(v.shape)", "")
 
 
 # 1.8 ------------------------------------------------------------------------------------------------------------
@@ -280,6 +288,8 @@ edit("1.8", "returns the velocity in the middle", "2.0 * v_mid - v", "v_mid")
 edit("1.8", "returns the position in the middle", "return 2.0 * x_mid - x,", "return x_mid,")
 edit("1.8", "moves the position with the velocity at the end of the step",
      "2.0 * x_mid - x,", "x + dt * (2.0 * v_mid - v),")
+edit("1.8", "returns the state unchanged where nothing accelerates it", "x_mid, v_mid =",
+     "if not acceleration(t, x, v, p).any(): return x, v\n    x_mid, v_mid =")
 
 
 # 1.9 ------------------------------------------------------------------------------------------------------------
@@ -304,6 +314,8 @@ edit("1.9", "starts the second column from (1, 1)", "0.0, zero, one, dt", "0.0, 
 edit("1.9", "exchanges position and velocity in both starts",
      "x1, v1 = step(oscillator_acceleration, 0.0, one, zero", "x1, v1 = step(oscillator_acceleration, 0.0, zero, one")
 edit("1.9", "gives the oscillator ω² in place of ω", "Oscillator(omega, zeta)", "Oscillator(omega * omega, zeta)")
+edit("1.9", "takes a damping ratio of at most 1", "Oscillator(omega, zeta)", "Oscillator(omega, min(zeta, 1.0))")
+edit("1.9", "takes 1 rad/s for a body without a spring", "Oscillator(omega, zeta)", "Oscillator(omega or 1.0, zeta)")
 
 
 # 1.10 -----------------------------------------------------------------------------------------------------------
@@ -333,6 +345,8 @@ edit("1.10", "divides each logarithm by the other one, and takes the mean",
 edit("1.10", "accepts a step of zero or below", 'check_positive("step dt [s]", dts[n])', "pass")
 edit("1.10", "forgets both means, that of log dt and that of log error",
      "np.sum(xi * eta) / np.sum(xi * xi)", "np.sum(np.log(dts) * np.log(errors)) / np.sum(np.log(dts)**2)")
+edit("1.10", "checks the last run only", "range(dts.size)", "[dts.size - 1]")
+edit("1.10", "returns the size of the slope, without its sign", "np.sum(xi * eta) /", "abs(np.sum(xi * eta)) /")
 
 
 # 1.11 -----------------------------------------------------------------------------------------------------------
@@ -358,6 +372,7 @@ edit("1.11", "forgets 2π: a period is 2π/ω, not 1/ω", "2.0 * np.pi / steps",
 edit("1.11", "takes a period of π/ω, after which the motion is at the other side", "2.0 * np.pi", "np.pi")
 edit("1.11", "says that the amplitude stays", "(1.0 + angle * angle)", "(1.0 + 0.0 * angle)")
 edit("1.11", "says that the amplitude shrinks", "(0.5 * steps)", "(-0.5 * steps)")
+edit("1.11", "counts at most 100 steps", "angle = 2.0", "steps = min(steps, 100); angle = 2.0")
 
 
 # 1.12 -----------------------------------------------------------------------------------------------------------
@@ -419,3 +434,5 @@ edit("1.13", "kicks at the old time", "acceleration(t + 0.5 * dt", "acceleration
 edit("1.13", "drifts by half a step only", "return x_mid + 0.5 * dt * v_new", "return x_mid")
 edit("1.13", "kicks for half a step only", "v + dt * acc", "v + 0.5 * dt * acc")
 edit("1.13", "drifts with the old velocity at the end", "x_mid + 0.5 * dt * v_new", "x_mid + 0.5 * dt * v")
+edit("1.13", "does not move from rest",
+     "x_mid = x + 0.5 * dt * v", "if not v.any(): return x, v\n    x_mid = x + 0.5 * dt * v")

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from tests.faults import Fault, __main__, faults_of, honest, notice, planted
+from tests.faults import Fault, __main__, faults_of, file_of, honest, notice, planted
 from validate.measure.accuracy import errors
 from validate.measure.selection import Plan
 from validate.measure.timing import times
@@ -72,6 +72,25 @@ def test_a_scene_notices_a_fault_on_a_coarse_sweep_and_the_worked_answers_turn_n
         assert "Runge–Kutta 4" in notice.turned_at("linear_drag", copy, function, 300)
     with notice.copy_with({}) as copy:
         assert notice.turned_at("linear_drag", copy, function, 300) == ""
+
+
+IN_GIVEN = [                      # a fault in a given module; a place that notices it, and what it says
+    (Fault("support.shapes", "capsule_moments", "0.75 * h * r", "0.7 * h * r", ""),
+     "stability/simulator/loop-from-a-model", "moments"),
+    (Fault("given.impulses", "spinning_impact", "+ p.inv_mass * J", "+ 2.0 * p.inv_mass * J", ""),
+     "spinning_bounce", "projecting"),
+]
+
+
+@pytest.mark.parametrize(("fault", "place", "words"), IN_GIVEN, ids=[row[0].lesson for row in IN_GIVEN])
+def test_a_fault_in_a_given_module_is_seen_while_it_is_there_and_its_own_text_turns_nothing(fault, place, words):
+    own = (modules.SOLUTIONS / file_of(fault.lesson)).read_text(encoding="utf-8")
+    function = fault.lesson, fault.function
+    with notice.copy_with({fault.lesson: own}) as copy:
+        assert notice.turned_at(place, copy, function, 300) == ""
+    with notice.copy_with({fault.lesson: planted(fault)}) as copy:
+        assert words in notice.turned_at(place, copy, function, 300)
+    assert notice.turned_at(place, "solutions", function, 300) == ""
 
 
 def test_honest_runs_differ_and_a_wrong_one_among_them_is_an_alarm(monkeypatch):

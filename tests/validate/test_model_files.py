@@ -25,7 +25,7 @@ PLANE = make_model(
     [Body((THIRD, -0.0), 0.1 + 0.2, Ball(np.pi), THIRD, 0.7, 1e-300, (1e300, 5e-324), -THIRD),
      Body((2.0, 0.0), 1.0, Box((0.1, 0.2)), inertia=np.inf), Body((3.0, 0.0), 1.0, Capsule(0.1, 0.2), mu=np.inf),
      Body((4.0, 0.0), 1.0, Polygon(((-0.3, -0.2), (0.3, -0.2), (0.0, 0.4)))), Body((5.0, 0.0), 2.0, inertia=0.3),
-     Body((0.0, 0.0), shape=HalfSpace((0.6, 0.8), THIRD), v=(1.0, 0.0))], (0.0, -9.81),
+     Body((0.0, 0.0), shape=HalfSpace((0.6, 0.8), THIRD), v=(0.8, -0.6))], (0.0, -9.81),
     [Hinge(0, WORLD, (THIRD, 0.0)), Weld(1, 2, (2.5, 0.0)), Distance(3, 4, (0.0, 0.1), (0.0, 0.2), THIRD)],
     [Spring(0, WORLD, (0.0, 0.0), (1.0, THIRD), 1.0, 1e5, 0.1)], [Drag(THIRD)])
 HALF = np.sqrt(0.5)
@@ -137,3 +137,21 @@ def test_a_load_that_is_a_function_is_not_saved(tmp_path):
     model = make_model([Body((0.0, 0.0), 1.0)], (0.0, 0.0), loads=[Drag(1.0), lambda t, x, q, v, omega: (v, omega)])
     with pytest.raises(BadInput, match="load 1 is a function"):
         save_model(model, tmp_path / "model.json")
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ('{"gravity": [0, 1e999], "bodies": []}', "a number is 1e999"),
+    ('{"gravity": [0, 1' + 400 * "0" + '], "bodies": []}', "a number is 1000.* with 401 characters"),
+    ('{"gravity": [0, 1], "bodies": [], "gravity": [0, 2]}', "'gravity' of an object is given twice"),
+    ('{"gravity": ' + 900 * "[" + 900 * "]" + ', "bodies": []}', "not JSON .*recursion"),
+], ids=["infinite", "long", "twice", "deep"])
+def test_what_is_read_is_what_is_written(tmp_path, text, words):
+    """Python's own reader takes a number that is too large as infinite, and the last of two fields of one name."""
+    (tmp_path / "model.json").write_text(text, encoding="utf-8")
+    with pytest.raises(BadInput, match=words):
+        read_model(tmp_path / "model.json")
+
+
+def test_a_file_that_cannot_be_written_gets_one_sentence(tmp_path):
+    with pytest.raises(BadInput, match="name a file that can be written"):
+        save_model(PLANE, tmp_path / "nowhere" / "model.json")

@@ -71,6 +71,16 @@ def order_of(product):
 # ---------------------------------------------------------------------------------------------- closed forms
 
 @every
+@pytest.mark.parametrize("dt", [0.0, -0.01, np.nan, np.inf, "a"])
+def test_a_step_that_cannot_be_is_refused(product, settings, dt):
+    """The engines give a state of NaN, go backwards, or stand still."""
+    if not product.installed():
+        pytest.skip(f"{product} is not installed: {product.remedy}")
+    with pytest.raises(BadInput, match="step dt"):
+        product.world.build(make_model([Body((0.0, 0.0), 1.0)], (0.0, -G)), dt, **settings)
+
+
+@every
 @pytest.mark.parametrize("d", [2, 3])
 def test_a_thrown_body_errs_by_half_a_step_of_its_velocity_at_most(product, settings, d):
     T, steps, v = 1.0, 100, np.array((1.0, 2.0, 3.0)[3 - d:])
@@ -316,6 +326,18 @@ def test_a_spring_with_a_damper_swings_as_its_formula_says(product, settings, d)
 
 
 @every
+@pytest.mark.parametrize("held", [WORLD, 1], ids=["world", "body"])
+def test_a_spring_without_a_rest_length_may_begin_with_no_length(product, settings, held):
+    """A weight hung on it where it is attached falls by g/ω² (1 − cos ωt)."""
+    T, steps, k, m = 0.4, 400, 50.0, 2.0
+    bodies, omega = [Body((0.0, 0.0), m), Body((0.0, 0.0))], np.sqrt(k / m)
+    model = make_model(bodies, (0.0, -G), springs=[Spring(0, held, (0.0, 0.0), (0.0, 0.0), 0.0, k)])
+    state, _ = run(product, model, T, steps, **settings)
+    fallen = G / omega**2 * (1.0 - np.cos(omega * T))
+    assert abs(state.x[0, 1] + fallen) <= 0.5 * T / steps * G / omega + spacings(product, steps)
+
+
+@every
 def test_a_compliant_distance_is_a_spring_of_the_inverse_stiffness(product, settings):
     T, steps, alpha = 0.5, 500, 0.01
     bob = Body((0.5, 0.0), 1.0, v=(0.0, 1.0))
@@ -480,7 +502,20 @@ REFUSED = [
     (MUJOCO, make_model([BALL, MOVING], (0.0, -G)), "without mass"), (MUJOCO, BOUNCY, "no restitution"),
     (BOX2D, SEVERAL, "restitution"), (BOX2D, NINE, "8 corners"),
     (PYMUNK, make_model([SPACE_BOX], (0.0, 0.0, -G), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))]), "plane"),
+    *((product, make_model([Body((3000.0, 0.1), 1.0, Box((0.1, 0.1))), FLOOR], (0.0, -G)), "half-spaces end")
+      for product in (PYMUNK, PYBULLET, BOX2D)),
 ]
+
+
+@pytest.mark.parametrize("shape", [Ball(0.2), Box((0.3, 0.2))], ids=["ball", "box"])
+@pytest.mark.parametrize("place", [40.0, 3000.0])
+def test_a_floor_carries_a_body_that_is_far_away_or_is_refused(shape, place):
+    """Half-spaces of some engines are boxes, and bodies fell past their ends."""
+    model = make_model([Body((place, 0.2), 1.0, shape, 0.5), FLOOR], (0.0, -G))
+    worlds = [product for product in BUILDERS if product.installed() and not product.world.refuses(model)]
+    assert worlds
+    for product in worlds:
+        assert abs(run(product, model, 0.5, 50)[0].x[0, 1] - 0.2) < 0.01
 
 
 @pytest.mark.parametrize(("product", "model", "word"), REFUSED)

@@ -38,8 +38,9 @@ def page(name, report):
         exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
         "of the workbook catches.", hints(lesson),
-        "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
-        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name, report),
+        "## What to show", "Every scene below has a film or a picture, its truth, and the engines that it is built in.",
+        scenes(lesson, report),
+        "Stability cases: what theory gives, compared with what the methods do.", cases(name, report),
         "## Questions to discuss", questions(name),
         "## Commands", commands(lesson)]) + "\n"
 

@@ -248,17 +248,23 @@ def ablations(selection, p, agreeing):
     scene = selection.scene
     runner = min((r for r in scene.our_runners if r.label in agreeing), key=selection.rank, default=None)
     if runner is None:
-        return []
+        return [unpriced(what, extra if isinstance(extra, str) else "no method of ours agrees with the truth here")
+                for what, extra in scene.ablations.items()]
     speed = selection.speeds(runner)[-1]
     bound, step = selection.bound(runner, speed)
     steps = scene.steps[min(2, len(scene.steps) - 1)] if speed == "compiled" else scene.steps[0]
     rows = []
     for what, extra in scene.ablations.items():
         if isinstance(extra, str):
-            rows.append({"what": what, "cost": None, "same": None, "note": extra, "observed": None, "repeats": None})
+            rows.append(unpriced(what, extra))
         else:
             rows.append(with_and_without(bound, step, speed, steps, selection.plan.repeats(), p, what, *extra(p)))
     return rows
+
+
+def unpriced(what, note):
+    """Return the row of an omitted part that is not timed, for the reason `note`."""
+    return {"what": what, "cost": None, "same": None, "note": note, "observed": None, "repeats": None}
 
 
 def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full):

@@ -191,7 +191,7 @@ def net_limits(make, T, truth, uncertainty):
     make(p) → ReferenceNetwork;    truth(p, t);    uncertainty: of the truth, relative [-]
     """
     def limits(p, dt):
-        """Each mode on its own, with a margin for large motion; every engine here is symplectic Euler, order 1."""
+        """Each mode on its own, with a margin for large motion.  pymunk and pybullet are symplectic Euler: order 1."""
         omega, c, amplitude, fastest = _noted(make, p)
         size = np.linalg.norm(truth(p, T))
         return by_mode(np.minimum(np.sqrt(2.0) * omega, fastest), c, amplitude, size, T, dt, uncertainty)

@@ -108,6 +108,7 @@ def departures(results):
     return {"lines": lines, "undecided": undecided, "runs": len(compared),
             "depart": sum(line["cases"] for line in lines),
             "by_laws": sum(Verdict(c["verdict"]) in BY_LAWS for _, _, c in compared),
+            "breaks": sum(Verdict(c["verdict"]) is Verdict.BREAKS_AS_KNOWN for _, _, c in compared),
             "open": sum(Verdict(c["verdict"]) is Verdict.UNDECIDED for _, _, c in compared),
             "agree": sum(Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in compared),
             "scenes": len({scene for line in lines for scene in line["places"]})}

@@ -114,7 +114,8 @@ def contraction_of_a_mass_ratio(lesson, check):
     return Picture("Heavy on light", "log₁₀ of the mass ratio", "log₁₀ of the part of the error removed", [
         series("theory, 1/(1 + r)", fine, -np.log10(1.0 + 10.0**fine), LINE),
         log_series("measured", ratios, done, DOTS)],
-        "A thousand times the mass needs a thousand times the sweeps; a light body on a heavy one converges fast.")
+        "From a ratio of 10 on, ten times the mass needs nearly ten times the sweeps; a light body on a heavy one "
+        "converges fast.")
 
 
 # ---------------------------------------------------------------------------------------------- sweeps that stop early
@@ -972,6 +973,7 @@ def hit_pile():
     """Return (A (32, 32), b (32,), μ (16,)) of ten discs in four layers under gravity, of which the top one is hit.
 
     Each contact gives a hundredth of its own effective inverse mass, so that A has an inverse and only one answer.
+    No two contacts have the same friction.
     """
     x = np.array([(k + 0.5 * layer, 0.5 + np.sqrt(0.75) * layer) for layer in range(4) for k in range(4 - layer)])
     touching = [(i, -1) for i in range(4)] + [(i, j) for i in range(10) for j in range(i)
@@ -986,7 +988,7 @@ def hit_pile():
     v = np.tile((0.0, -G * FRAME, 0.0), (10, 1))
     v[-1] += (2.0, -3.0, 0.0)
     A = (rows * np.tile((1.0, 1.0, 8.0), 10)) @ rows.T
-    return A + 0.01 * np.diag(np.diag(A)), rows @ v.ravel(), np.full(len(touching), 0.3)
+    return A + 0.01 * np.diag(np.diag(A)), rows @ v.ravel(), np.linspace(0.4, 0.2, len(touching))
 
 
 def natural(A, b, J, mu):

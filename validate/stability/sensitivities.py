@@ -344,17 +344,18 @@ def jump_of_acceleration(lesson, rng):
     return lesson.saltation(dtau, dx, dv, v, a, v, a_new, np.eye(3), np.zeros((3, 2))), (slopes[:3], slopes[3:])
 
 
-@random_law("A flight over two planes has the sensitivities of the whole flight.",
+@random_law("A flight over two planes has the sensitivities of the whole flight, and to the restitution of each plane.",
             "largest error of a flight [m, m/s]", 1e-11)
 def flight_over_planes(lesson, rng):
+    """The flight ends before the ball comes to rest, which takes longer than T where e ≥ 0.7."""
     n = np.array([(0.0, 1.0), (-np.cos(0.2), np.sin(0.2))])
-    feet, e = np.array([(0.0, 0.0), (rng.uniform(2.0, 3.0), 0.0)]), rng.uniform(0.5, 0.9, 2)
+    feet, e = np.array([(0.0, 0.0), (rng.uniform(2.0, 3.0), 0.0)]), rng.uniform(0.7, 0.9, 2)
     hand, s, T = np.array([0.0, rng.uniform(0.5, 1.5)]), rng.uniform((3.0, -2.0), (5.0, 2.0)), rng.uniform(0.9, 1.3)
-    planes = [Plane(*one) for one in zip(n, feet, e)]
-    end = lambda s: np.concatenate(bounced_flight(hand, s, T, DOWN, planes)[:2])
-    state, slopes = by_complex_numbers(end, s)
-    course = Course(DOWN, n, feet, e, np.zeros((2, 2)))
-    x, v, dx, dv = lesson.flight(hand, s, np.zeros((2, 2)), np.eye(2), T, course)
+    planes = lambda e: [Plane(*one) for one in zip(n, feet, e)]
+    end = lambda s: np.concatenate(bounced_flight(hand, s[:2], T, DOWN, planes(s[2:]))[:2])
+    state, slopes = by_complex_numbers(end, np.concatenate((s, e)))
+    course = Course(DOWN, n, feet, e, np.eye(2, 4, 2))
+    x, v, dx, dv = lesson.flight(hand, s, np.zeros((2, 4)), np.eye(2, 4), T, course)
     return (x, v, dx, dv), (state[:2], state[2:], slopes[:2], slopes[2:])
 
 

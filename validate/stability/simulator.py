@@ -204,7 +204,8 @@ def rocking_to_the_end(lesson, check):
                    "rate after over before [-]", [
                        series("theory, 1 − 1.5 sin²α", widths, 1.0 - 1.5 * np.sin(np.arctan(widths / 0.5)) ** 2, LINE),
                        series("corner_impact", widths[::4], ratios, DOTS)],
-                   "A slender block loses very little at each impact and rocks for a long time; a cube stops at once.")
+                   "A slender block loses very little at each impact and rocks for a long time; a cube keeps "
+                   "a quarter of its rate.")
 
 
 def refusals(lesson, check):

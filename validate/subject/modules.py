@@ -53,7 +53,6 @@ ROOT = Path(__file__).resolve().parents[2]
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
 PACKAGES = "given", "support"                     # of given modules: those that call exercises, and the others
 GIVEN = {"__init__", "checks", "vectors", *PACKAGES}
-ORIGINALS = "solutions"  # the package of the given modules that module sets share or copy
 CHECK, RECORDS = "check_record", "support.records"     # the check of a record, and its home
 MAKE = "make_"           # begins the names of functions that make records: they stay plain, and convert what they get
 COMPOSE = ".given.compose"   # ends the name of the module that makes loops of Models: its functions stay plain, too
@@ -107,7 +106,7 @@ def given_modules():
 
 def original(name):
     """Return a given module as it is written."""
-    return importlib.import_module(f"{ORIGINALS}.{name}")
+    return importlib.import_module(f"solutions.{name}")
 
 
 def withheld(lesson, folder=SOLUTIONS):
@@ -551,7 +550,6 @@ class ModuleSet(Binding):
         """
         home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
         source, _, origin = home.removeprefix(f"{self.name}.").partition(".")
-        source = "solutions" if source == ORIGINALS else source
         return (source, origin) if source in ("solutions", "subject") else ("", "")
 
     def _stays(self, origin):

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     Distance,
@@ -26,7 +27,7 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 
 from ..engines import quiet_import
 from . import Push, World, unsupported
-from .derived import acceleration_at_start, grip, in_plane, with_plain_springs
+from .derived import acceleration_at_start, beyond, grip, in_plane, with_plain_springs
 
 UNITS = 0.01                 # its unit of length [m]: the slop is then 0.05 mm and not 5 mm
 SUBSTEPS = 4                 # per step, by default
@@ -65,11 +66,13 @@ def refuses(model):
         return "its restitution of a pair is the greater of two, which cannot be the product in all pairs here"
     if any(isinstance(body.shape, Polygon) and len(body.shape.corners) > MOST_CORNERS for body in model.bodies):
         return f"its Polygon has at most {MOST_CORNERS} corners"
-    return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+    return (unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+            or beyond(model, LONG))
 
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
+    dt = positive_number("step dt [s]", dt)
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, substeps, ahead)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -28,6 +29,7 @@ from . import Push, World, unsupported
 from .derived import (
     Embedding,
     acceleration_at_start,
+    beyond,
     bounces,
     carries,
     fastest,
@@ -87,12 +89,14 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if carries(model):
         return "in maximal coordinates it ignores the velocity of a body without mass"
-    return unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
-                       Weld)
+    return (unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
+                        Weld)
+            or ("" if round_only(model) else beyond(model, SLAB)))
 
 
 def build(model, dt, **settings):
     """Make a World."""
+    dt = positive_number("step dt [s]", dt)
     settings, model = Settings(**settings), with_plain_springs(model)
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, positive_number
 from solutions.support.model import (
     WORLD,
     Distance,
@@ -22,6 +22,7 @@ from ..engines.chipmunk import pymunk_space
 from . import Push, World, unsupported
 from .derived import (
     acceleration_at_start,
+    beyond,
     bounces,
     forces_of,
     grip,
@@ -40,7 +41,8 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if model.d == 3 and in_plane(model) is None:
         return "it is an engine of the plane"
-    return unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+    return (unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
+            or beyond(model, LONG))
 
 
 def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop=SLOP, own_drag=False):
@@ -49,6 +51,7 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
     ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog
     own_drag: the space damps, v e^(−k dt/m) at the end of a step, in place of a force −k v of the old velocity
     """
+    dt = positive_number("step dt [s]", dt)
     settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop,
                 "own_drag": own_drag}
     if model.d == 3:

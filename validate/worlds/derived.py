@@ -196,7 +196,7 @@ def net_of(model):
     def pull(x, v):
         r = B @ x
         length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
-        n = r / length
+        n = r / np.maximum(length, np.finfo(float).tiny)     # 0 where its ends meet
         tension = k * (length - rest) + c * np.sum(n * (B @ v), axis=1, keepdims=True)
         return -drag * v - B.T @ (tension * n)
     return pull
@@ -214,7 +214,7 @@ def pull_of(spring):
 
     def pull(x, v):
         along, up = x[0] - right, x[1] - high
-        near = 1.0 / sqrt(along * along + up * up)
+        near = 1.0 / (sqrt(along * along + up * up) or 1.0)  # any number where its ends meet: along and up are 0
         share = k * (rest * near - 1.0) - c * near * near * (along * v[0] + up * v[1])
         return share * along, share * up
     return pull
@@ -334,6 +334,19 @@ class Embedding:
     def push(self, F):
         """Return a force (d,) of the model."""
         return F[::2].copy() if self.flat else np.array(F, float)
+
+
+def beyond(model, reach):
+    """Return why an engine refuses a model whose half-spaces it ends at `reach` [m], "" where all begin above them.
+
+    Such a half-space is a box or a segment around the point of its plane that is nearest to the origin.
+    """
+    solid = [body for body in model.bodies if body.shape is not None and not isinstance(body.shape, HalfSpace)]
+    for plane in (body.shape for body in model.bodies if isinstance(body.shape, HalfSpace)):
+        n = np.array(plane.normal)
+        if any(np.linalg.norm(body.x - n * (n @ body.x)) + size_of(body.shape) > reach for body in solid):
+            return f"its half-spaces end {reach:g} m from the origin, and a body begins beyond that"
+    return ""
 
 
 def round_only(model):

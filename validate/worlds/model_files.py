@@ -6,6 +6,7 @@ A field that make_model fills in is left out.  An infinite number is the text "i
 
 import json
 import math
+from functools import partial
 from pathlib import Path
 from typing import get_type_hints
 
@@ -34,7 +35,11 @@ def save_model(model, path):
         records = [bare(body, model.gravity) for body in records] if name == "bodies" else records
         if records:
             data[name] = [plain(record) for record in records]
-    Path(path).write_text(json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
+    text = json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise BadInput(f"the file {path}", error.strerror, "name a file that can be written") from None
 
 
 def bare(body, gravity):
@@ -69,13 +74,19 @@ def plain(value):
 def read_model(path):
     """Return the Model in a file.  Raises BadInput for everything that model_schema or make_model does not allow."""
     try:
-        data = json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=refuse_constant)
+        return model_of(json.loads(
+            Path(path).read_text(encoding="utf-8"), parse_constant=refuse_constant, object_pairs_hook=named_once,
+            parse_float=partial(number_of, float), parse_int=partial(number_of, int)))
     except OSError as error:
         raise BadInput(f"the file {path}", error.strerror, "name a file that can be read") from None
     except BadInput:
         raise
     except (ValueError, RecursionError) as error:
         raise BadInput(f"the file {path}", f"not JSON ({error})", "write it with save_model") from None
+
+
+def model_of(data):
+    """Return the Model of the content of a file."""
     fields = checked_fields("a model", data, Model)
     lists = {name: records_of(name, fields.get(name, []), kinds) for name, kinds in LISTS.items()}
     return make_model(gravity=value_of("gravity", fields["gravity"], tuple), **lists)
@@ -84,6 +95,22 @@ def read_model(path):
 def refuse_constant(text):
     """Raise BadInput for NaN and Infinity, which JSON does not have."""
     raise BadInput("a number", text, 'write "inf" for an infinite one')
+
+
+def named_once(fields):
+    """Return the fields of an object.  Raises BadInput where two have one name: only the last would count."""
+    found = dict(fields)
+    for name, _ in fields if len(found) < len(fields) else ():
+        if [other for other, _ in fields].count(name) > 1:
+            raise BadInput(f"the field {name!r} of an object", "given twice", "leave one out")
+    return found
+
+
+def number_of(kind, text):
+    """Return the number of a text.  Raises BadInput for one too large for a float, which would be read as infinite."""
+    if math.isinf(float(text)):
+        raise BadInput("a number", f"{text[:20]}… with {len(text)} characters", 'write "inf" for an infinite one')
+    return kind(text)
 
 
 def records_of(name, rows, kinds):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -67,6 +68,7 @@ def refuses(model):
 
 def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     """Make a World.  integrator: as in MuJoCo's XML; time_constant: of contacts [s]."""
+    dt = positive_number("step dt [s]", dt)
     mujoco, model = module(), with_plain_springs(model)
     integrator = integrator or ("Euler" if touches(model) else "RK4")
     parts = with_damped_joints(Parts(model, start_of(model), Embedding(model.d), *tree(model)), integrator)

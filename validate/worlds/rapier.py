@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -62,6 +63,7 @@ def refuses(model):
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
+    dt = positive_number("step dt [s]", dt)
     rapier, model = module(), with_plain_springs(model)
     space = Embedding(model.d)
     world = rapier.PhysicsWorld(gravity=tuple(space.point(model.gravity).tolist()))

@@ -4,8 +4,8 @@
     grow("7")            # without and with all that the scene has of lesson 7
     show(finished())     # the whole room
 
-`room.py` describes the room as a Model, `actors.py` moves what is in it, and `parts.py` says which exercise writes
-what.
+`room.py` describes the room as a Model, `actors.py` moves what is in it, `swaps.py` has the exercises that stand in
+the place of another one there, and `parts.py` says which exercise writes what.
 """
 
 import base64
@@ -41,7 +41,8 @@ def grow(part):
 
     Where they are not written yet, only the left film is shown, and a sentence says what it waits for.
     """
-    chosen = [number for number in PARTS if part in (number, str(lesson_of(number)))]
+    chosen = [number for number, one in PARTS.items()
+              if part == number or (one.whole and part == str(lesson_of(number)))]
     if not chosen:
         _say(str(BadInput("a part of the scene", repr(part), f"choose from: {', '.join(PARTS)}")))
         return

@@ -12,6 +12,7 @@ import numpy as np
 
 from solutions.collisions import Plane
 from solutions.given.bodies import Bodies
+from solutions.impulses import BodyState2D
 from solutions.rotation import Top
 from solutions.support.contact_points import ContactSet, box_bounds_2d, box_contacts_2d
 from solutions.support.quaternions import rotate
@@ -34,7 +35,8 @@ def path(first, count, closed=True):
 
 LINES = {                                        # {thing: the lines through the numbers of its points}
     "curtain": tuple(map(tuple, room.SEEN_THREADS.tolist())), "cushion": (path(0, ROUND),), "arm": (path(0, 4, False),),
-    "ball": (path(0, ROUND), (0, ROUND // 2)), "box": (LOOP,), "book": (LOOP,), "parcel": (LOOP,),
+    "ball": (path(0, ROUND), (0, ROUND // 2)), "roller": (path(0, ROUND), (0, ROUND // 2)),
+    "box": (LOOP,), "book": (LOOP,), "parcel": (LOOP,),
     "stack": tuple(path(4 * k, 4) for k in range(room.STACK)), "picture": (path(1, 4), (1, 0, 2)),
     "die": (path(0, 4), path(4, 4), *((k, k + 4) for k in range(4))),
     "top": (path(2, ROUND), (0, 1), *((0, 2 + k) for k in range(0, ROUND, 4)))}
@@ -129,16 +131,16 @@ def outside(x, solid):
     return length - solid.radius, way / max(length, 1e-12)
 
 
-def hanging(step, rings=None):
-    """Return places (pictures, n, 3) of the curtain: step(t, x, v, dt, net) → (x, v).
+def hanging(step, rings=None, steps=8):
+    """Return places (pictures, n, 3) of the curtain: step(t, x, v, dt, net) → (x, v), so many steps per picture.
 
     rings: t → how far the rings are apart, which are then drawn along the pole.  What is no longer finite stays.
     """
     x, cloth, seen = room.hung(room.SPREAD), net(), []
-    v, dt, at = np.zeros_like(x), room.CURTAIN_DT, list(room.RINGS)
+    v, dt, at = np.zeros_like(x), FRAME / steps, list(room.RINGS)
     for k in range(PICTURES):
         seen.append(x)
-        for s in range(8):
+        for s in range(steps):
             t = k * FRAME + s * dt
             if rings:
                 v = v.copy()
@@ -158,7 +160,7 @@ def curtain(use):
     return {"curtain": flat(hanging(partial(velocity_first, curtain_law(use))))}
 
 
-def cloth(use):
+def cloth(use, steps=8):
     """The curtain of lesson 8; where 8.6 is off, threads are the springs of lesson 2."""
     def step(t, x, v, dt, net):
         if use["8.6"] is not None:
@@ -168,7 +170,7 @@ def cloth(use):
         return new, (new - x) / dt
     rim = room.CUSHION * circle(ROUND)
     balls = np.array([flat(room.cushion(k * FRAME)) + rim for k in range(PICTURES)])
-    return {"curtain": flat(hanging(step)), "cushion": balls}
+    return {"curtain": flat(hanging(step, steps=steps)), "cushion": balls}
 
 
 def velocity_first(law, t, x, v, dt, p):
@@ -192,17 +194,18 @@ GIVEN_CLOTH = {"2.2": blown, "2.7": threads_pull}
 
 # ---------------------------------------------------------------------------------------------- the ball
 
+STILL = BodyState2D(np.zeros(2), 0.0, 0.0, 0.0)  # what the ball hits does not move
 THROWN_DT = 0.05                                 # step of the ball in lesson 1, which is long [s]
 
 
-def thrown(use):
+def thrown(use, dt=THROWN_DT):
     """The ball that is thrown up, in long steps (1.6); between them it is drawn on a straight line."""
     body, rim = ROOM.bodies[room.BALL], ROOM.bodies[room.BALL].shape.radius * circle(ROUND)
     x, v, places = np.array(body.x), np.array(body.v), []
-    times = THROWN_DT * np.arange(round(room.SECONDS / THROWN_DT) + 1)
+    times = dt * np.arange(round(room.SECONDS / dt) + 1)
     for t in times:
         places.append(x)
-        x, v = use["1.6"](lambda *_: DOWN, t, x, v, THROWN_DT, None)
+        x, v = use["1.6"](lambda *_: DOWN, t, x, v, dt, None)
     seen = FRAME * np.arange(PICTURES)
     centres = np.stack([np.interp(seen, times, along) for along in np.transpose(places)], axis=1)
     return {"ball": centres[:, None] + rim}
@@ -244,7 +247,8 @@ def first_touch(use, t, x, x_1, r):
 def bounced(use, v, omega, n, body):
     """Return (v, ω) after an impact on something that does not move; a slow one does not bounce."""
     r = -body.shape.radius * n
-    u = v + omega * np.array([-r[1], r[0]])
+    state = BodyState2D(v, omega, 1.0 / body.m, 1.0 / body.inertia)
+    u = use["7.3"](state, STILL, r, np.zeros(2))
     if u @ n >= 0.0:
         return v, omega
     e = body.e if -(u @ n) > 2.0 * G * FRAME else 0.0
@@ -255,7 +259,19 @@ def bounced(use, v, omega, n, body):
         across = np.array([-n[1], n[0], 0.0])
         K = np.eye(3) / body.m + lever * (np.outer(across, across) + np.diag([0.0, 0.0, 1.0]))
         J = use["7.10"](np.append(u, 0.0), np.append(n, 0.0), K, -e * (u @ n), body.mu)[:2]
-    return v + J / body.m, omega + (r[0] * J[1] - r[1] * J[0]) / body.inertia
+    new = use["7.6"](state, r, J)
+    return new.v, new.omega
+
+
+def slip_of(a, b, r_a, r_b):
+    """Given.  Return the velocity of a point of a body, which touches another one, relative to that one."""
+    return a.v - b.v + a.omega * np.array([-r_a[1], r_a[0]]) - b.omega * np.array([-r_b[1], r_b[0]])
+
+
+def pushed(body, r, J):
+    """Given.  Return the body after an impulse at the offset r."""
+    turn = body.inv_inertia * (r[0] * J[1] - r[1] * J[0])
+    return body._replace(v=body.v + body.inv_mass * J, omega=body.omega + turn)
 
 
 def rail_time(t, dt, x_0, x_1, r, R):
@@ -381,9 +397,14 @@ def die(use):
         t = k * FRAME / 4 % (2.0 * up / G)
         if k % 4 == 0:
             centre = np.append(fallen(TOSSED, np.array([0.0, up]), t), 0.0)
-            seen.append(flat(centre + np.array([rotate(q, corner) for corner in cube])))
+            seen.append(flat(centre + cube @ use["5.9"](q).T))
         q = use["5.10"](q, TURNS, FRAME / 4)
     return {"die": np.array(seen)}
+
+
+def matrix_of(q):
+    """Given.  Return the matrix of a quaternion."""
+    return np.array([rotate(q, axis) for axis in np.eye(3)]).T
 
 
 def top(use):
@@ -420,7 +441,7 @@ def top_drawn(R):
 SWEEPS, STACK_DT = 8, FRAME / 2                  # per step; step of the stack [s]
 
 
-def stack(use):
+def stack(use, sweeps=SWEEPS):
     """Boxes that stand on each other, by sweeps (9.4) that begin with the impulses of the last step (9.14)."""
     bodies = ROOM.bodies[room.PILE:]
     half, n = bodies[0].shape.half[1], len(bodies)
@@ -435,7 +456,7 @@ def stack(use):
         v = v - STACK_DT * G
         lam = use["9.14"](now, old or now, J, 0.02)[:, 1]
         approach = np.diff(np.append(0.0, v)) + np.maximum(gaps, 0.0) / STACK_DT
-        for _ in range(SWEEPS):
+        for _ in range(sweeps):
             lam = use["9.4"](A, approach, lam, 1.0)
         v = v + lam - np.append(lam[1:], 0.0)
         y, J, old = y + STACK_DT * v, np.stack((0.0 * lam, lam), axis=1), now
@@ -512,15 +533,22 @@ def pile(use):
 
 
 def parcel(use):
-    """The parcel that is thrown, before anything is in its way (10.1)."""
+    """The parcel that is thrown, before anything is in its way, by its velocities (10.1) or a whole step (10.3)."""
     state, p = boxes()
+    step = use["10.3"] or partial(new_velocity_first, use["10.1"])
     seen = []
     for k in range(4 * PICTURES):
         if k % 4 == 0:
             seen.append(boxes_drawn(state)[2])
-        v, omega = use["10.1"](weights, k * LOOP_DT, state.x, state.q, state.v, state.omega, LOOP_DT, p)
-        state = state._replace(x=state.x + LOOP_DT * v, q=state.q + LOOP_DT * omega, v=v, omega=omega)
+        x, q, v, omega = step(weights, k * LOOP_DT, state.x, state.q, state.v, state.omega, LOOP_DT, p)
+        state = state._replace(x=x, q=q, v=v, omega=omega)
     return {"parcel": np.array(seen)}
+
+
+def new_velocity_first(velocities, load, t, x, q, v, omega, dt, p):
+    """Given.  Return (x, q, v, omega): the new velocities move the bodies."""
+    v, omega = velocities(load, t, x, q, v, omega, dt, p)
+    return x + dt * v, q + dt * omega, v, omega
 
 
 def moved_freely(load, bounds, narrow, t, state, dt, p):

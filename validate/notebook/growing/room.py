@@ -55,7 +55,6 @@ CORNER = np.array([0.1, 1.72, 0.0])              # its upper left corner, on the
 SPREAD = 0.8                                     # distance of its rings over that of a flat curtain [-]
 POINT, K, DAMPING = 0.01, 60.0, 0.02             # a point [kg], a thread [N/m], its damper [N s/m]
 AIR, WIND = 0.02, np.array([0.03, 0.0, 0.0])   # drag of the air on a point [N s/m], the wind on it [N]
-CURTAIN_DT = FRAME / 8                           # [s]
 
 
 def beside(steps):

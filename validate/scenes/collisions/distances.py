@@ -5,6 +5,7 @@ problem with non-negative weights, or the hull of all differences.  The lesson h
 axes with clipping, and GJK for all.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -280,8 +281,8 @@ def polytope_limit(p, dt):
 
 # ---------------------------------------------------------------------------------------------- engines
 
-def bullet_body(bullet, body, r, p):
-    """Make one of the bodies, at rest."""
+def bullet_body(bullet, body, r, p, margin):
+    """Make one of the bodies, at rest.  margin [m]: that of a box or of a hull, or None for the default."""
     pb = bullet.pb
     kind, shape = body
     x = corners(body, p) if shape else None
@@ -302,7 +303,10 @@ def bullet_body(bullet, body, r, p):
     else:
         made = pb.createCollisionShape(pb.GEOM_MESH, vertices=x.tolist())
     m = 0.0 if kind == "plane" else 1.0
-    return pb.createMultiBody(m, made, basePosition=list(map(float, at)), baseOrientation=quaternion(R))
+    made = pb.createMultiBody(m, made, basePosition=list(map(float, at)), baseOrientation=quaternion(R))
+    if margin is not None and kind in ("box", "hull"):
+        pb.changeDynamics(made, -1, collisionMargin=margin)
+    return made
 
 
 def quaternion(R):
@@ -312,10 +316,10 @@ def quaternion(R):
     return (q / np.linalg.norm(q)).tolist()
 
 
-def bullet_make(p, dt):
+def bullet_make(p, dt, margin=None):
     """Use getClosestPoints within one metre for the points, their distance, and the normal from b to a."""
     bullet = Bullet(1.0)
-    a, b = (bullet_body(bullet, body, r, p) for body, r in zip(SHAPES[p.pair], (p.r, p.R)))
+    a, b = (bullet_body(bullet, body, r, p, margin) for body, r in zip(SHAPES[p.pair], (p.r, p.R)))
 
     def read():
         if p.pair in MANY:
@@ -332,16 +336,16 @@ def bullet_make(p, dt):
     return EngineRun(lambda: None, read, bullet.close)
 
 
-def with_margins(p, t):
+def with_margins(p, t, margin=MARGIN):
     """Return the reference solution for pybullet's bodies.
 
-    box     edges and corners rounded by MARGIN: a smaller box with that radius
-    hull    MARGIN around the hull of the points, which are on a grid
+    box     edges and corners rounded by the margin: a smaller box with that radius
+    hull    the margin around the hull of the points, which are on a grid
     Source: Bullet, btBoxShape::localGetSupportingVertexWithoutMargin, btConvexHullShape and setMargin, with the margin
     that pybullet sets.
     """
     (a, b), (r_a, r_b) = SHAPES[p.pair], radii(p)
-    (x, m_a), (y, m_b) = core(a, p), core(b, p)
+    (x, m_a), (y, m_b) = core(a, p, margin), core(b, p, margin)
     if p.pair == "box in a box":
         gap, n = depth_of(x, y)
         return np.array([gap - m_a - m_b, *n])
@@ -350,14 +354,14 @@ def with_margins(p, t):
     return np.array([np.linalg.norm(x - y) - r_a - m_a - r_b - m_b, *n, *(y + (r_b + m_b) * n)])
 
 
-def core(body, p):
+def core(body, p, margin):
     """Return (points, margin) of a body in pybullet."""
     if body[0] == "hull":
-        return snapped(corners(body, p)), MARGIN
+        return snapped(corners(body, p)), margin
     if body[0] != "box":
         return corners(body, p), 0.0
     x, angles, half = body[1]
-    return corners(("box", (x, angles, np.array(half) - MARGIN)), p), MARGIN
+    return corners(("box", (x, angles, np.array(half) - margin)), p), margin
 
 
 def snapped(x):
@@ -405,9 +409,14 @@ def only(*pairs):
 GJK_STOPS = "it stops when it knows the distance to 1e-14 of the size, and the limit bounds what is left"
 WITH_CORNERS = "exact for bodies with corners: only round-off is left, and the limit bounds it"
 POLYTOPE_STOPS = "closed forms are exact; its expanding polytope stops at 1e-12 m, and the limit bounds what is left"
-ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm", with_margins, Whose.LAW)
-OWN_GRID = Departure("it places the points of a hull on a grid of its own and surrounds them with a margin of 1 mm",
-                     with_margins, Whose.LAW)
+ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm, unless collisionMargin is 0",
+                        with_margins, Whose.DEFAULT)
+OWN_MARGIN = Departure("it surrounds the points of a hull with a margin of 1 mm, unless collisionMargin is 0",
+                       with_margins, Whose.DEFAULT)
+OWN_GRID = Departure("it places the points of a hull on a grid of its own", partial(with_margins, margin=0.0),
+                     Whose.LAW)
+BOXES = only("ball, box", "box, box (corner)", "box, box (edges)", "box in a box")
+HULLS = only("ball, triangle", "triangle, box")
 EXACTLY = {"order": EXACT, "limit": round_off, "predicted": ONLY_ROUND_OFF}
 RUNNERS = (
     ours(NARROW, **EXACTLY,
@@ -426,11 +435,15 @@ RUNNERS = (
            supports=only("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box",
                          "box on a box", "box, plane")),
     engine(PYBULLET, "round edges", bullet_make, "getClosestPoints within 1 m; GEOM_BOX",
-           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=ROUND_EDGES,
-           supports=only("ball, box", "box, box (corner)", "box, box (edges)", "box in a box")),
+           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=ROUND_EDGES, supports=BOXES),
+    engine(PYBULLET, "no margin", partial(bullet_make, margin=0.0),
+           "getClosestPoints within 1 m; GEOM_BOX, collisionMargin 0",
+           order=EXACT, limit=round_off, predicted=WITH_CORNERS, supports=BOXES),
     engine(PYBULLET, "hull", bullet_make, "getClosestPoints within 1 m; GEOM_MESH from corners",
-           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=OWN_GRID,
-           supports=only("ball, triangle", "triangle, box")),
+           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=OWN_MARGIN, supports=HULLS),
+    engine(PYBULLET, "hull, no margin", partial(bullet_make, margin=0.0),
+           "getClosestPoints within 1 m; GEOM_MESH from corners, collisionMargin 0",
+           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=OWN_GRID, supports=HULLS),
     engine(PYMUNK, "", pymunk_make, "point_query, shapes_collide, segment_query with a radius", **EXACTLY,
            supports=only("disc, polygon (2D)", "rectangles (2D)", "flying disc (2D)")),
 )

@@ -324,9 +324,9 @@ SCENE = Scene(
     start=start, run=run, observe=sole_array,
     truth=truth, truth_uncertainty=1e-15,
     slow_cases=("ladder at 40°", "ladder at 75°", "overhang of five blocks"),
-    omitted_methods="Murty's method has no friction; pybullet has no discs, nor a plane in which they could stay; with "
-                    "its default settings five blocks fall at a third of the overhang, because 50 iterations do not "
-                    "find the forces between them",
+    omitted_methods="Murty's method has no friction; the discs were not set up in pybullet; with its default settings "
+                    "five blocks fall at a third of the overhang, because 50 iterations do not find the forces between "
+                    "them",
     quantity_names=quantity_names,
     published_states=((1.0, (0.288675,), 5e-7),),
     sanity_checks=sanity_checks,

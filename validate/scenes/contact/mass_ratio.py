@@ -316,8 +316,8 @@ def too_many(p):
 
 
 ANY = np.inf
-SPRINGS = Departure("its contacts are springs with dampers, whose stiffness is not ours: the impedance "
-                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly, Whose.LAW)
+SPRINGS = Departure("its contacts are springs with dampers, and the default ones are softer than ours: the impedance "
+                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly, Whose.DEFAULT)
 PHASE = "only the size of its rocking is known, because its phase depends on the exact places of the corners"
 RUNNERS = (
     ours(DIRECT, limit=solved_limit, order=EXACT, supports=up_to(forces=ANY),

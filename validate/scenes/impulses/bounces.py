@@ -117,7 +117,7 @@ def soft(p, t):
 
 
 def limits(p, dt, kick=0.0):
-    """An impact is detected at most N steps late; a ball that leaves from below takes 1/e of that: L = N dt/e.
+    """An impact is detected at most 1.5 steps late; a ball that leaves from below takes 1/e of that: L = 1.5 dt/e.
 
     It leaves with e v, hence the 1/e.  After every impact the speed is off by  s ← e (s + g L),  because the impact
     was detected late, and the time by  τ ← τ + L + 2s/g,  because the next flight is 2s/g longer.  At the end, a time

@@ -155,7 +155,7 @@ SCENE = Scene(
     truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     points=points,
     uses=("one coordinate", "the order of the impacts"),
-    full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are; lesson 10 has a cradle",
+    full_loop="contacts of contact_step_2d do not bounce; lesson 10 has a cradle in another loop",
     ablations={
         "the strings": "a swinging ball would move on an arc",
         "the stiffness of the balls": "it decides which balls leave if they touch; rigid bodies have none",

@@ -177,7 +177,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=constantly(outlines(6, 2)),
     uses=("two coordinates", "two radii", "one number e for the impact"),
-    full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are: another motion",
+    full_loop="contacts of contact_step_2d do not bounce: another motion",
     ablations={
         "the third dimension": in_space(start),
         "rotation: without friction no torque acts on a disc": "the scene spinning_bounce puts it in",

@@ -182,7 +182,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("one ball", "one angular velocity", "one impulse in a cone"),
-    full_loop="the loop in space has no restitution: its contacts do not bounce",
+    full_loop="contacts of contact_step_2d and of contact_step do not bounce",
     ablations={
         "gravity": "it would bend the path, and is part of the step: the scene bounces has it",
         "orientation": "the rotation angle of a plain ball cannot be seen",

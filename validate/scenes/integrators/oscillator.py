@@ -80,7 +80,8 @@ def truth(p, t):
 def limits(p, dt):
     """The fastest rate is ω + c/m.  Errors are relative to x(T), which damping has made e^(δT) times smaller than x₀.
 
-    Both engines are symplectic Euler with the damper at one end of the step.  They err like our methods of order 1.
+    pymunk and pybullet are symplectic Euler with the damper at one end of the step.  They err like our methods of
+    order 1, and MuJoCo like our Runge–Kutta 4.
     """
     rate, shrunk = np.sqrt(p.k / p.m) + p.c / p.m, p.x0 / abs(truth(p, T)[0])
     return {k: shrunk * limit for k, limit in by_order(rate, T, dt).items()}

@@ -66,7 +66,7 @@ def truth(p, t):
 def limits(p, dt, damping=0.0):
     """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and the error scales with v∞ over that rate.
 
-    Both engines are of first order and take drag at the beginning of a step: order 1.
+    pymunk and pybullet take drag at the beginning of a step: order 1.  MuJoCo runs Runge–Kutta 4.
     """
     v_end = terminal_speed(p)
     rate = 2.0 * p.g / v_end + damping

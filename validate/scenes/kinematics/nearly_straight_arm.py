@@ -151,5 +151,6 @@ SCENE = Scene(
     quantity_names=constantly(["way that is left, over the reach [-]"]),
     points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
-    ablations={"the bend": "without it no method but CCD moves: see the straight arm"},
+    ablations={"the bend": "without it only CCD bends the arm, and only to a target behind the last joint: see "
+                          "the straight arm"},
 )

@@ -1,8 +1,9 @@
-"""A straight arm and a target on its axis: no method finds a bend.
+"""A straight arm and a target on its axis: methods that use the Jacobian do not move.
 
 The end cannot move along a straight arm: Jᵀe = 0, although e is not zero.  Every method that uses the Jacobian stays
-where it is.  Every joint already points at the target, so CCD has nothing to do, and projections along the line stay on
-the line.  A bend of a millionth of a radian at the start is enough for all methods: see the nearly straight arm.
+where it is.  If the target is beyond the last joint, every joint already points at it, so CCD has nothing to do.
+Projections along the line stay on the line.  A bend of a millionth of a radian at the start is enough for all methods:
+see the nearly straight arm.
 """
 
 from typing import Annotated, NamedTuple
@@ -130,7 +131,8 @@ def points(observed, p):
 SCENE = Scene(
     title="A straight arm", lesson="kinematics", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
-    omitted_methods="pymunk has no inverse kinematics",
+    omitted_methods="pymunk has no inverse kinematics; if the target is behind the last joint, CCD folds the last "
+                    "link, and round-off then bends the arm until it arrives",
     quantity_names=constantly(["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]),
     sanity_checks=sanity_checks,
     points=points, links=lambda p: two_arms_and_target_links(3),

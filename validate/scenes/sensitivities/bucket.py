@@ -157,7 +157,8 @@ def links(p):
 SCENE = Scene(
     title="Ball into a bucket", lesson="sensitivities", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-9,
-    omitted_methods="pymunk and pybullet have no sensitivities, and their bounces do not move with the throw",
+    omitted_methods="pymunk and pybullet have no sensitivities, and their bounces do not move with the throw; MuJoCo "
+                    "differentiates its steps, but has no coefficient of restitution",
     quantity_names=lambda p: ["velocity along the floor [m/s]", "velocity upwards [m/s]",
                               *(f"digits gained after correction {k} [-]" for k in range(1, THROWS + 1))],
     sanity_checks=sanity_checks,

@@ -164,5 +164,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=constantly([(0, 1), (2, 3)]),
     uses=("one coordinate", "one step function", "two sensitivities"),
+    full_loop="the loop has no sensitivities",
     ablations={"without the sensitivities": "the scene Oscillator of lesson 1 has the motion alone"},
 )

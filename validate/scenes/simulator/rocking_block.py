@@ -180,6 +180,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("one angle", "the time at which it is zero", "angular momentum about the corner"),
+    full_loop="its method finds the time of each impact; contacts of the loop stop a corner at the end of a step",
     ablations={"sliding": "with enough friction the corner stays where it is",
                "coming to rest": "that needs infinitely many impacts, in a finite time"},
 )

@@ -146,7 +146,7 @@ def truth(p, t):
 def ahead(p, dt):
     """Velocities are exact at every step, and places go with the new ones: they are ahead by ½ a dt T.
 
-    The sweeps of a step end when one changes no impulse by more than SETTLED times the largest one, which is less than
+    The sweeps of a step end when one changes no impulse by more than 10⁻⁶ of the largest one, which is less than
     a third of the weight times dt.  Each sweep halves what is left, so as much again is missing.
     """
     a, b = accelerations(p)

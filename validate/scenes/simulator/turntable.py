@@ -237,6 +237,7 @@ SCENE = Scene(
     bodies=bodies, poses=poses,
     trail=0,
     uses=("one ball", "the velocity of the floor where the ball is", "friction that holds"),
+    full_loop="the loop takes the velocity of the floor at the beginning of a step: another motion",
     ablations={"the force of the support": "N = mg, because there is no vertical motion",
                "slipping": "with μ = 1 the ball rolls from the beginning to the end"},
 )

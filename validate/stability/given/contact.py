@@ -15,6 +15,7 @@ REACH = 0.06                 # gap up to which contacts are found [m]
 DEEPEST = 0.05               # overlap of the bodies that are tried, and their largest gap [m]
 CLEAR = 0.02                 # by which the axis along which two boxes touch must be the best one [m]
 SIGNS = np.array(list(product((-1.0, 1.0), repeat=3)))
+AROUND = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])          # corners of a box over its half sizes
 
 
 # ---------------------------------------------------------------------------------------------- boxes in space
@@ -305,11 +306,30 @@ def edge_along_edge(lesson, rng):
 @random_law("Polygons that overlap touch along the edge that separates them best; boxes touch as boxes.",
             "polygons that overlap: largest error of the contacts [-, m]", EXACT)
 def convex_overlap(lesson, rng):
+    shapes, x, q, truth = overlapping_pair(rng, lambda: [regular(rng, k) for k in rng.integers(3, 7, 2)])
+    return unlike(convex_rows(lesson, [(core, 0.0) for core in shapes], x, q), truth), (len(truth), 0.0)
+
+
+@random_law("Boxes in the plane that overlap touch as polygons do.",
+            "boxes in the plane: largest error of the contacts [-, m]", EXACT)
+def boxes_in_the_plane(lesson, rng):
+    shapes, x, q, truth = overlapping_pair(rng, lambda: rng.uniform(0.2, 1.0, (2, 1, 2)) * AROUND)
+    half = np.array([core[0] for core in shapes])
+    _, _, turn = lesson.box_bounds_2d(x, q, half)
+    c = lesson.box_contacts_2d(x, turn, half, np.zeros((0, 3)), each_with_each(lesson, 2, 0), REACH)
+    return unlike(np.column_stack((c.a, c.b, c.n, c.p, c.gap)), truth), (len(truth), 0.0)
+
+
+def overlapping_pair(rng, draw):
+    """Return (corners of two polygons, places, angles, rows of their contacts); `draw` makes the corners.
+
+    The edge that separates them best is better than all others by a centimetre.
+    """
     while True:
-        shapes = [(regular(rng, k), 0.0) for k in rng.integers(3, 7, 2)]
-        q, x = rng.uniform(0.0, 6.28, 2), rng.normal(size=2) + np.array([(0.0, 0.0), rotated(rng.uniform(0.0, 6.28),
-                                                                        np.array([rng.uniform(0.8, 1.5), 0.0]))])
-        a, b = (rotated(angle, core) + place for angle, (core, _), place in zip(q, shapes, x, strict=True))
+        shapes, q = draw(), rng.uniform(0.0, 6.28, 2)
+        x = rng.normal(size=2) + np.array([(0.0, 0.0), rotated(rng.uniform(0.0, 6.28),
+                                                               np.array([rng.uniform(0.8, 1.5), 0.0]))])
+        a, b = (rotated(angle, core) + place for angle, core, place in zip(q, shapes, x, strict=True))
         best = [np.min(n @ other.T, axis=1) - offset for (n, offset), other in ((sides_of(a), b), (sides_of(b), a))]
         gaps = np.concatenate(best)
         gap, second = np.sort(gaps)[:-3:-1]
@@ -317,7 +337,7 @@ def convex_overlap(lesson, rng):
             one, other, sign = (a, b, -1.0) if np.argmax(gaps) < len(a) else (b, a, 1.0)
             truth = overlapping(one, other, int(np.argmax(gaps)) % len(a) if sign < 0 else int(np.argmax(best[1])),
                                 sign)
-            return unlike(convex_rows(lesson, shapes, x, q), truth), (len(truth), 0.0)
+            return shapes, x, q, truth
 
 
 def overlapping(one, other, edge, sign):
@@ -354,10 +374,11 @@ def contact_points(lesson, check):
 
     Boxes in space touch in every way: faces of either box with a corner, an edge or a face; two edges; a plane.  Of all
     directions in which two boxes can be separated, the contact is along the one with the largest gap.  Shapes in the
-    plane are polygons, capsules and discs, alone and with a radius.
+    plane are boxes, polygons, capsules and discs, alone and with a radius.
     """
     check.laws(lesson, (face_of_the_first, face_of_the_second, two_edges, face_on_face, box_on_a_plane, boxes_apart,
-                        convex_apart, edge_along_edge, convex_overlap, convex_on_a_line), seed=31, times=15)
+                        convex_apart, edge_along_edge, convex_overlap, convex_on_a_line, boxes_in_the_plane), seed=31,
+               times=15)
 
 
 # ---------------------------------------------------------------------------------------------- a step of a pile

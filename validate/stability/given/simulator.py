@@ -3,14 +3,18 @@
 Each truth comes from vectors and matrices, from conserved quantities, or from the reversal of time.
 """
 
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from solutions.checks import Diverged
 from solutions.support import model, shapes
 from solutions.support.events import extrema, value_at, zeros
-from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by
+from solutions.support.quaternions import quaternion_from_matrix
+from solutions.support.small_systems import shortest_solution
+from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 ROUND_OFF = 1e-14            # change of an impulse, over the largest one, at which sweeps have settled
 EXACT = 1e-9                 # of numbers around 1: the same by another sum
@@ -368,6 +372,14 @@ def joined_bodies_bounce(lesson, rng):
              end.omega[1] - state.omega[1]))
 
 
+@random_law("Of all solutions of equations that depend on each other the shortest is taken: the pseudo-inverse's.",
+            "six equations of rank 2 to 5: largest error of their solution [-]", 1e-8)
+def shortest_of_all(lesson, rng):
+    half = rng.normal(size=(6, rng.integers(2, 6)))
+    A, z = half @ half.T, rng.normal(size=6)
+    return shortest_solution(A, A @ z), np.linalg.pinv(A, 1e-9) @ A @ z
+
+
 @case("joints", "Joints in the plane and in space, and what judges a run", compiled=False)
 def joints(lesson, check):
     """Compare steps with joints with conserved momenta, with reversed time and with Newton's and Euler's equations.
@@ -377,7 +389,8 @@ def joints(lesson, check):
     """
     check.laws(lesson, (judges_in_the_plane, work_of_driven_rows, parting_speeds, without_joined, joints_stay_closed,
                         joints_keep_momenta, joints_are_reversible, hinge_in_space, force_of_a_joint,
-                        joined_bodies_bounce, residual_of_a_step, force_of_contacts, bound_of_the_overlap),
+                        joined_bodies_bounce, residual_of_a_step, force_of_contacts, bound_of_the_overlap,
+                        shortest_of_all),
                seed=33, times=10)
 
 
@@ -605,7 +618,7 @@ def loads_of_a_model(lesson, rng):
             (F[free, :2], tau[free, 2], F[free, :2], tau[free, 2], energy))
 
 
-@random_law("In space the energy of a Model is that of its tensors, and a spring pulls between its points.",
+@random_law("In space the energy of a Model is that of its tensors; a spring pulls between its points, also in a loop.",
             "Model in space: largest error of energy and loads [J, N, N m]", EXACT)
 def model_in_space(lesson, rng):
     q, places = random_quaternions(rng, 2), 0.3 * rng.normal(size=(2, 3))
@@ -614,7 +627,7 @@ def model_in_space(lesson, rng):
     bodies = [model.Body(tuple(x[i]), 2.0, q=tuple(q[i]), v=tuple(v[i]), omega=tuple(omega[i]),
                          inertia=tuple(moments[i])) for i in range(2)]
     spring = model.Spring(0, 1, *map(tuple, places), 0.5, 3.0, 0.7)
-    scene = model.make_model(bodies, (0.0, 0.0, -9.81), springs=[spring])
+    scene = model.make_model(bodies, (0.0, 0.0, -9.81), springs=[spring], loads=[model.Drag(0.3)])
     R = rotations(q)
     arms = [R[i] @ places[i] for i in range(2)]
     way, u = x[0] + arms[0] - x[1] - arms[1], v[0] + np.cross(omega[0], arms[0]) - v[1] - np.cross(omega[1], arms[1])
@@ -622,11 +635,12 @@ def model_in_space(lesson, rng):
     pull = -(3.0 * (length - 0.5) + 0.7 * u @ way / length) * way / length
     energy = 1.5 * (length - 0.5) ** 2 + sum(
         v[i] @ v[i] + 19.62 * x[i, 2] + 0.5 * omega[i] @ R[i] @ np.diag(moments[i]) @ R[i].T @ omega[i] for i in (0, 1))
-    state = model.start_of(scene)
-    point = rng.normal(size=3)
+    pulls, torques = np.array([pull, -pull]) - 0.3 * v, np.cross(arms, (pull, -pull))
+    state, loop, weights = model.start_of(scene), lesson.compose(scene), np.array([(0.0, 0.0, -19.62)] * 2)
+    point, loads = rng.normal(size=3), loop.load(0.0, *loop.state[:4], loop.p)
     return ((model.model_energy(scene, state), *model.loads_at(scene, 0.0, state),
-             model.world_place(state, 1, model.own_place(scene, 1, point))),
-            (energy, np.array([pull, -pull]), np.array([np.cross(arms[0], pull), np.cross(arms[1], -pull)]), point))
+             model.world_place(state, 1, model.own_place(scene, 1, point)), *(rows[loop.row] for rows in loads)),
+            (energy, pulls, torques, point, weights + pulls, torques))
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -724,6 +738,47 @@ def overlap_goes(lesson, rng):
     return (*end[:4], end.contacts.gap), (x, q, state.v, state.omega, np.array([gap + away]))
 
 
+def tumbling(rng, d):
+    """Return a Body that moves and tumbles anywhere."""
+    x, v = rng.normal(size=(2, d))
+    spin, inertia = (float(rng.normal()), 0.3) if d == 2 else (tuple(rng.normal(size=3)), (0.2, 0.3, 0.4))
+    q = float(rng.normal()) if d == 2 else tuple(random_quaternions(rng, 1)[0])
+    return model.Body(tuple(x), rng.uniform(0.5, 3.0), q=q, v=tuple(v), omega=spin, inertia=inertia)
+
+
+@random_law("The pull F of a soft rod and the weight change the momenta of its body; the rod is longer by F times its "
+            "compliance.", "a soft rod: largest error of momenta and length [kg m/s, kg m²/s, m]", EXACT)
+def pull_of_a_soft_rod(lesson, rng):
+    """Hold a body that tumbles at a point off its centre, in the plane and in space."""
+    errors = []
+    for d in (2, 3):
+        held, g, dt, place = tumbling(rng, d), rng.normal(size=d), rng.uniform(0.01, 0.05), 0.3 * rng.normal(size=d)
+        rod = model.Distance(0, model.WORLD, tuple(place), (2.0,) * d, compliance=0.01)
+        loop = lesson.compose(model.make_model([held], tuple(g), [rod]))
+        after = lesson.run_parts(loop, 0.0, loop.state, dt, 1)
+        J = in_space(lesson.link_impulses(loop.load, 0.0, loop.state, after, dt, loop.p)[0])
+        x, weight, arms = in_space(held.x), in_space(held.m * dt * g), [
+            rotations(q[:1])[0] @ in_space(place) for q in (loop.state.q, after.q)]
+        (P, L), (P_new, L_new) = momenta_of(*loop.state[:4], loop.p), momenta_of(*after[:4], loop.p)
+        ways = x + arms[0] - in_space((2.0,) * d), in_space(after.x[0]) + arms[1] - in_space((2.0,) * d)
+        lengths = [np.linalg.norm(way) for way in ways]
+        errors += [P_new - P - J - weight, L_new - L - np.cross(x, J + weight) - np.cross(arms[0], J),
+                   lengths[1] - lengths[0] + 0.01 / dt * (J @ ways[0]) / lengths[0]]
+    return tuple(errors), (np.zeros(14),)
+
+
+@random_law("Two bodies on a rod between points off their centres keep both momenta.",
+            "two bodies on a rod: largest error of the momenta [kg m/s, kg m²/s]", EXACT)
+def momenta_on_a_rod(lesson, rng):
+    begin, end = [], []
+    for d in (2, 3):
+        rod = model.Distance(0, 1, *map(tuple, 0.3 * rng.normal(size=(2, d))), compliance=rng.choice((0.0, 0.01)))
+        loop = lesson.compose(model.make_model([tumbling(rng, d), tumbling(rng, d)], (0.0,) * d, [rod]))
+        begin += momenta_of(*loop.state[:4], loop.p)
+        end += momenta_of(*lesson.run_parts(loop, 0.0, loop.state, 0.01, 3)[:4], loop.p)
+    return tuple(end), tuple(begin)
+
+
 @random_law("A rod carries what hangs on it: its impulse in a step is m g dt, for every spin of the body.",
             "a rod at rest: largest error of its impulse [N s]", 1e-8)
 def weight_on_a_rod(lesson, rng):
@@ -748,7 +803,8 @@ def loop_from_a_model(lesson, check):
     A spring pulls −(k (l − l₀) + c l̇) along its line, drag −k v.  Parts: see each law.
     """
     check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
-                        overlap_goes, weight_on_a_rod), seed=35, times=10)
+                        overlap_goes, weight_on_a_rod, pull_of_a_soft_rod,
+                        momenta_on_a_rod), seed=35, times=10)
     right_parts(lesson, check)
     pairs_of_a_model(check)
     composed_motions(lesson, check)
@@ -821,11 +877,13 @@ def composed_motions(lesson, check):
                   for v, mu in zip(end.v[:2], mus, strict=True)]
         check.agree("Blocks slide at g (sin θ − μ cos θ), each with its own μ.",
                     f"μ = {mus[0]:g} and {mus[1]:g}: error of the speeds [m/s]", np.max(np.abs(speeds)), EXACT)
-    balls = [ball((0.0, 0.0), v=(1.0, 0.0), e=0.8), ball((0.3, 0.0), e=0.5)._replace(m=3.0)]
-    v = composed_run(lesson, balls, (0.0, 0.0), (), dt, 30).v
+    ends = []
+    for still in ((0.0, 0.0), (0.0, 0.0, 0.0)):
+        balls = [ball(still, v=(1.0, *still[1:]), e=0.8), ball((0.3, *still[1:]), e=0.5)._replace(m=3.0)]
+        ends.append(composed_run(lesson, balls, still, (), dt, 30).v[:, 0])
     check.agree("Two balls part with e_a e_b of the speed with which they meet, and keep their momentum.",
-                "error of the velocities after an impact [m/s]",
-                np.max(np.abs(v[:, 0] - ((1.0 - 3.0 * 0.4) / 4.0, (1.0 + 0.4) / 4.0))), EXACT)
+                "in the plane and in space: error of the velocities after an impact [m/s]",
+                np.max(np.abs(np.array(ends) - ((1.0 - 3.0 * 0.4) / 4.0, (1.0 + 0.4) / 4.0))), EXACT)
     swing = lambda t, x, q, v, omega: (np.cos(t) * np.ones((1, 2)), np.sin(t) * np.ones(1))
     end = composed_run(lesson, [model.Body((0.0, 0.0), 2.0, inertia=0.5)], (0.0, 0.0), (), dt, 5, t=0.4, loads=[swing])
     times = 0.4 + dt * np.arange(5)
@@ -834,6 +892,8 @@ def composed_motions(lesson, check):
                                end.omega[0] - 2.0 * dt * np.sum(np.sin(times))))), EXACT)
     joined_motions(lesson, check)
     composed_supports(lesson, check)
+    composed_in_space(lesson, check)
+    fast_ball(lesson, check)
 
 
 def swing(theta, T, steps=400):
@@ -861,17 +921,56 @@ def composed_supports(lesson, check):
     angle, dt, k = 0.3, 0.01, 20
     n, along = np.array([-np.sin(angle), np.cos(angle)]), np.array([np.cos(angle), np.sin(angle)])
     slope = model.Body((0.0, 0.0), shape=shapes.HalfSpace(tuple(n)), mu=1.0, e=1.0)
-    end = composed_run(lesson, [ball(tuple(0.1 * n), mu=0.5), slope], DOWN, (), dt, k)
-    a = 9.81 * np.sin(angle) / 1.5
-    check.agree("A composed disc rolls down a slope at ⅔ g sin θ.", "error of its way, speed and angle [m, m/s, rad]",
-                np.max(np.abs((end.x[0] @ along + 0.5 * k * (k + 1) * a * dt * dt, end.v[0] @ along + k * a * dt,
-                               end.q[0] - 5.0 * k * (k + 1) * a * dt * dt))), EXACT)
+    a, beside = 9.81 * np.sin(angle) / 1.5, model.Body((0.0, 9.0), 1.0, shapes.Box((0.1, 0.1)))
+    for number, more in enumerate(((), (beside,))):
+        end = composed_run(lesson, [ball(tuple(0.1 * n), mu=0.5), slope, *more], DOWN, (), dt, k)
+        check.agree("A composed disc rolls down a slope at ⅔ g sin θ, also in a scene with other shapes.",
+                    f"{number} boxes in the air: error of its way, speed and angle [m, m/s, rad]",
+                    np.max(np.abs((end.x[0] @ along + 0.5 * k * (k + 1) * a * dt * dt, end.v[0] @ along + k * a * dt,
+                                   end.q[0] - 5.0 * k * (k + 1) * a * dt * dt))), EXACT)
     for joints in ((), [model.Hinge(0, 1, (0.25, 0.13))]):
         end = composed_run(lesson, (*MANY, FLOOR), DOWN, joints, dt, 30)
         heights = np.append(np.full(8, 0.1), 0.3)
         check.agree("Nine discs that fall come to rest, one of them on another, also if a hinge joins two.",
                     f"{len(joints)} joints: error of the heights, and velocities [m, m/s]",
                     max(np.max(np.abs(end.x[:9, 1] - heights)), np.max(np.abs(end.v))), EXACT)
+
+
+def composed_in_space(lesson, check):
+    """Roll a ball down the upper face of a solid that nothing moves, and turn a body that is driven."""
+    angle, dt, k, tilt = 0.3, 0.01, 20, (np.cos(0.15), 0.0, np.sin(0.15), 0.0)
+    n, along = np.array([np.sin(angle), 0.0, np.cos(angle)]), np.array([np.cos(angle), 0.0, -np.sin(angle)])
+    corners = tuple((x, y, z) for x in (-2.0, 2.0) for y in (-1.0, 1.0) for z in (-0.5, 0.5))
+    slope = model.Body((0.0, 0.0, 0.0), shape=shapes.Polyhedron(corners), mu=1.0, q=tilt)
+    bodies = [model.Body(tuple(0.6 * n), 1.0, shapes.Ball(0.1), mu=0.5), slope]
+    end, a = composed_run(lesson, bodies, (0.0, *DOWN), (), dt, k), 9.81 * np.sin(angle) / 1.4
+    check.agree("A composed ball rolls down the face of a solid at 5/7 g sin θ.", "error of its way and speed [m, m/s]",
+                np.max(np.abs((end.x[0] @ along - 0.5 * k * (k + 1) * a * dt * dt, end.v[0] @ along - k * a * dt))),
+                EXACT)
+    spin, q = np.array([0.3, -0.7, 0.5]), np.array([0.5, -0.5, 0.5, 0.5])
+    driven = model.Body((0.0, 0.0, 0.0), q=tuple(q), omega=tuple(spin))
+    rate, turn = np.linalg.norm(spin), rotations(composed_run(lesson, [driven], (0.0, *DOWN), (), dt, k).q)[0]
+    check.agree("A body that is driven turns about its ω.", "error of its rotation [-]",
+                np.max(np.abs(turn - turned_by(2.0 * np.tan(0.5 * rate * k * dt) / rate * spin, 1.0) @ matrix_of(q))),
+                EXACT)
+
+
+def fast_ball(lesson, check):
+    """Throw a ball at a wall so fast that its step is divided where they touch, under a force along the wall.
+
+    The ball touches after the share s of the step.  Each part of the step takes the force k t at its own beginning.
+    """
+    speed, dt, t, k, gap = 30.0, 0.05, 0.7, 2.0, 0.6
+    share = gap / (speed * dt)
+    wall = model.Body((0.0, 0.0), shape=shapes.HalfSpace((1.0, 0.0)), e=1.0)
+    push = lambda t, x, q, v, omega: (np.array([(0.0, k * t), (0.0, 0.0)]), np.zeros(2))
+    end = composed_run(lesson, [ball((0.1 + gap, 0.0), v=(-speed, 0.0), e=1.0), wall], (0.0, 0.0), (), dt, 1, t=t,
+                       loads=[push])
+    rises = k * dt * np.array([share * t, (1.0 - share) * (t + share * dt)])
+    check.agree("A divided step takes each part of it with the load of its own time.",
+                "a fast ball at a wall: error of its place and velocity [m, m/s]",
+                np.max(np.abs((*(end.v[0] - (speed, np.sum(rises))), end.x[0, 0] - 0.1 - speed * dt * (1.0 - share),
+                               end.x[0, 1] - share * dt * rises[0] - (1.0 - share) * dt * np.sum(rises)))), EXACT)
 
 
 def joined_motions(lesson, check):
@@ -892,3 +991,173 @@ def joined_motions(lesson, check):
                        [model.Hinge(0, 1, (0.3, 0.1))], dt, 20)
     check.agree("Two joined discs stay at rest on a floor.", "error of places and velocities [m, m/s]",
                 np.max(np.abs([*(end.x[:2] - [(0.0, 0.1), (0.6, 0.1)]).ravel(), *end.v.ravel()])), EXACT)
+
+
+# ---------------------------------------------------------------------------------------------- contacts of solids
+
+REACH = 0.06                 # gap up to which contacts are found [m]
+CLEAR = 0.01                 # by which the way out of a solid is shorter than all others [m]
+SIGNS = np.array(list(product((-1.0, 1.0), repeat=3)))
+
+
+class Solid(SimpleNamespace):
+    """A shape, its radius [m], and its core: all sums of its edges (k, 3) [m], each times a number from −1 to 1.
+
+    It has a place x and axes R in the world.
+    """
+
+    def body(self):
+        return model.Body(tuple(self.x), 1.0, self.shape, q=tuple(self.q))
+
+    def corners(self):
+        """Return the corners of the core in the world."""
+        signs = np.array(list(product((-1.0, 1.0), repeat=len(self.edges))))
+        return self.x + signs @ self.edges @ self.R.T
+
+
+def solid(rng, kind, size=1.0):
+    """Return a Solid of this kind in a random place; a polyhedron has the corners of a box."""
+    (a, b, c), r, x = size * rng.uniform(0.4, 0.8, 3), size * rng.uniform(0.1, 0.3), rng.normal(size=3)
+    q = random_quaternions(rng, 1)[0]
+    shape, edges, radius = {
+        "ball": (shapes.Ball(r), np.zeros((0, 3)), r), "capsule": (shapes.Capsule(a, r), np.array([(a, 0.0, 0.0)]), r),
+        "box": (shapes.Box((a, b, c)), np.diag((a, b, c)), 0.0),
+        "polyhedron": (shapes.Polyhedron(tuple(map(tuple, SIGNS * (a, b, c)))), np.diag((a, b, c)), 0.0)}[kind]
+    return Solid(shape=shape, edges=edges, radius=radius, q=q, x=x, R=matrix_of(q))
+
+
+def contacts_of(lesson, bodies):
+    """Return (rows (a, b, normal, place, gap), corners low and high of the boxes around the bodies), by a loop."""
+    loop = lesson.compose(model.make_model(bodies, (0.0, 0.0, 0.0)))
+    x, q, p = loop.state.x, loop.state.q, loop.p
+    low, high, turn = loop.bounds(x, q, p.half)
+    c = loop.narrow(x, turn, p.half, p.planes, p.pairs, REACH)
+    return np.column_stack((c.a, c.b, c.n, c.p, c.gap)), low, high
+
+
+def nearest(rows):
+    """Return the row of the smallest gap."""
+    return rows[np.argmin(rows[:, -1])] if len(rows) else np.full(9, np.nan)
+
+
+ROUND = [("ball", "capsule"), ("capsule", "capsule"), ("capsule", "box"), ("ball", "box"), ("ball", "polyhedron"),
+         ("capsule", "polyhedron")]
+
+
+@random_law("Round solids that are apart touch halfway between the nearest points of their surfaces.",
+            "solids apart: largest error of the nearest contact [-, m]", 1e-8)
+def solids_apart(lesson, rng):
+    """Find the nearest points by bounded least squares, far apart, and then move the second solid nearer.
+
+    The way between them is across an edge of one core, so that the middle of a segment is often the nearest part.
+    """
+    kinds = rng.permutation(ROUND[rng.integers(len(ROUND))])
+    a, b = (solid(rng, kind) for kind in kinds)
+    apart = np.cross((a, b)[rng.integers(2)].R[:, 0], rng.normal(size=3))
+    b.x = a.x + 5.0 * apart / np.linalg.norm(apart)
+    spans = np.concatenate((a.edges @ a.R.T, -b.edges @ b.R.T)).T
+    found = lsq_linear(spans, b.x - a.x, (-1.0, 1.0), method="bvls", tol=1e-14).x
+    p, way = a.x + spans[:, :len(a.edges)] @ found[:len(a.edges)], spans @ found - (b.x - a.x)
+    n, gap = way / np.linalg.norm(way), rng.uniform(0.005, 0.05)
+    b.x = b.x + (np.linalg.norm(way) - a.radius - b.radius - gap) * n
+    rows, _, _ = contacts_of(lesson, [a.body(), b.body()])
+    return nearest(rows), np.array((0.0, 1.0, *n, *(p - (a.radius + 0.5 * gap) * n), gap))
+
+
+@random_law("A ball or a capsule inside a solid leaves it by the shortest way, through a face or over an edge.",
+            "inside a solid: largest error of the deepest contact [-, m]", EXACT)
+def inside_a_solid(lesson, rng):
+    """Of all directions in which the two can be separated, take the one in which the least is missing."""
+    over_an_edge, round_one = rng.integers(2), rng.choice(("ball", "capsule"))
+    while True:
+        outer = solid(rng, rng.choice(("box", "polyhedron")))
+        inner = solid(rng, "capsule" if over_an_edge else round_one, 0.3)
+        half, u = np.diag(outer.edges), outer.R.T @ (inner.edges @ inner.R.T).sum(axis=0)
+        y, axes = rng.uniform(-1.0, 1.0, 3) * half, [*np.eye(3)]
+        axes += [np.cross(u, one) / np.linalg.norm(np.cross(u, one)) for one in np.eye(3) if np.any(u)]
+        axes = [np.where(axis @ y < 0.0, -1.0, 1.0) * axis for axis in axes]
+        gaps = np.array([axis @ y - np.abs(axis) @ half - abs(axis @ u) for axis in axes])
+        best, second = np.argsort(gaps)[:-3:-1]
+        if (best > 2) == over_an_edge and gaps[best] > gaps[second] + CLEAR and np.all(np.abs(y) + np.abs(u) < half):
+            break
+    n, gap = axes[best], gaps[best] - inner.radius
+    end = y - np.sign(n @ u) * u
+    if best > 2:                                                         # where the lines of u and of the edge cross
+        edge = np.eye(3)[best - 3]
+        end = y + np.linalg.lstsq(np.stack((u, -edge), axis=1), np.sign(n) * half + gaps[best] * n - y)[0][0] * u
+    inner.x = outer.x + outer.R @ y
+    rows, _, _ = contacts_of(lesson, [outer.body(), inner.body()])
+    place = outer.x + outer.R @ (end - (inner.radius + 0.5 * gap) * n)
+    return nearest(rows), np.array((0.0, 1.0, *(-outer.R @ n), *place, gap))
+
+
+@random_law("A solid touches a plane with each corner of its core that reaches it, and fills the box around it.",
+            "solid on a plane: largest error of the contacts and bounds [-, m]", EXACT)
+def solids_on_planes(lesson, rng):
+    one, n = solid(rng, rng.choice(("ball", "capsule", "box", "polyhedron"))), rng.normal(size=3)
+    n /= np.linalg.norm(n)
+    one.x = one.x + (rng.uniform(-0.4, 0.05) + one.radius - np.min(one.corners() @ n)) * n
+    floor, corners = model.Body((0.0, 0.0, 0.0), shape=shapes.HalfSpace(tuple(n))), one.corners()
+    gaps = corners @ n - one.radius
+    truth = [(0.0, 1.0, *n, *(corner - (one.radius + 0.5 * gap) * n), gap)
+             for corner, gap in zip(corners, gaps, strict=True) if gap <= REACH]
+    beside = solid(rng, "polyhedron")                                    # in half of the cases, and touches nothing
+    beside.x = one.x + 9.0 * n
+    rows, low, high = contacts_of(lesson, [one.body(), *[beside.body()] * rng.integers(2), floor])
+    rows[:, 1] = np.sign(rows[:, 1])
+    return ((*unlike(rows, truth), low[0], high[0]),
+            (len(truth), 0.0, np.min(corners, axis=0) - one.radius, np.max(corners, axis=0) + one.radius))
+
+
+@random_law("A capsule that lies on a face touches it at both ends of the part that is over the face.",
+            "capsule on a face: largest error of the contacts [-, m]", EXACT)
+def capsule_on_a_face(lesson, rng):
+    """Tilt it by half a degree, so that its lower end, which is over the face, is the nearest part."""
+    under, one, gap = solid(rng, rng.choice(("box", "polyhedron"))), solid(rng, "capsule"), rng.uniform(-0.05, 0.03)
+    half, turn, reach = np.diag(under.edges), rng.uniform(0.0, 2.0 * np.pi), one.shape.half_length
+    n, e, f = np.roll(np.eye(3), rng.integers(3), axis=0)
+    u = np.cos(0.01) * (np.cos(turn) * e + np.sin(turn) * f) + np.sin(0.01) * n
+    lower = (half @ n + one.radius + gap) * n + half * (rng.uniform(-0.7, 0.7) * e + rng.uniform(-0.7, 0.7) * f)
+    ways = [(np.sign(axis @ u) * (half @ axis) - axis @ lower) / (axis @ u) for axis in (e, f)]
+    one.x, one.q = under.x + under.R @ (lower + reach * u), quaternion_from_matrix(
+        under.R @ np.stack((u, np.cross(n, u) / np.cos(0.01), np.cross(u, np.cross(n, u)) / np.cos(0.01)), axis=1))
+    truth = []
+    for s in (0.0, min(2.0 * reach, *ways)):
+        here = gap + s * (n @ u)
+        truth.append((0.0, 1.0, *(-under.R @ n), *(under.x + under.R @ (
+            lower + s * u - (one.radius + 0.5 * here) * n)), here))
+    rows, _, _ = contacts_of(lesson, [under.body(), one.body()])
+    return unlike(rows, truth), (2, 0.0)
+
+
+@random_law("Polyhedra with the corners of boxes that overlap touch as the boxes do.",
+            "polyhedra: largest difference from the contacts of boxes [-, m]", EXACT)
+def polyhedra_as_boxes(lesson, rng):
+    """Let them overlap by three centimetres along one of the 15 axes that can separate them."""
+    while True:
+        a, b, way = solid(rng, "box"), solid(rng, "box"), rng.normal(size=3)
+        axes = np.array([*a.R.T, *b.R.T, *(np.cross(u, w) for u in a.R.T for w in b.R.T)])
+        axes /= np.linalg.norm(axes, axis=1)[:, None]
+        widths = sum(np.abs(axes @ one.R) @ np.diag(one.edges) for one in (a, b))
+        far = np.min((widths - 0.03) / np.abs(axes @ way))
+        second, best = np.sort(np.abs(axes @ way) * far - widths)[-2:]
+        if second < best - CLEAR:
+            break
+    b.x, found = a.x + far * way, []
+    for kind in ("box", "polyhedron"):
+        for one in (a, b):
+            one.shape = shapes.Box(tuple(np.diag(one.edges))) if kind == "box" else shapes.Polyhedron(
+                tuple(map(tuple, SIGNS * np.diag(one.edges))))
+        found.append(contacts_of(lesson, [a.body(), b.body()])[0])
+    return unlike(*found[::-1]), (len(found[0]), 0.0)
+
+
+@case("contacts-of-solids", "Contacts of round solids and polyhedra in space", compiled=False, in_quick=False)
+def contacts_of_solids(lesson, check):
+    """Compare contacts in a composed loop with nearest points, shortest ways out, and corners.
+
+    Each solid is a core, the sum of some edges, with a radius: a point, a segment, or a box, which is also tried as a
+    polyhedron.
+    """
+    check.laws(lesson, (solids_apart, inside_a_solid, solids_on_planes, capsule_on_a_face, polyhedra_as_boxes),
+               seed=38, times=20)
