@@ -67,8 +67,6 @@ def our_parts(selection, p):
     if one is None:
         return {"rows": [], "note": "" if selection.scene.moves else "nothing moves here"}
     model = one.model(p)
-    if why := lesson_of(of).refuses(model):
-        return {"rows": [], "note": why}
     own_load = any(callable(load) for load in model.loads)
     note = "a force of this scene is a Python function, which is not compiled" if own_load else ""
     speeds = ("plain",) if own_load else selection.plan.speeds
