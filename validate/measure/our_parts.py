@@ -63,7 +63,7 @@ def our_parts(selection, p):
     The part TOTAL is the loop with all parts against the loop of the scene, and DIMENSION the loop of lesson 10 in
     space against the one in the plane.
     """
-    of, one = selection.plan.of, described_scene(selection.name)
+    one = described_scene(selection.name)
     if one is None:
         return {"rows": [], "note": "" if selection.scene.moves else "nothing moves here"}
     model = one.model(p)
