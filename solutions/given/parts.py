@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput
 from ..contact import kept_impulses, velocity_sweep_2d
 from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
 from ..support.contact_points import ContactSet
+from ..support.networks import pull_per_length
 from ..support.scenes import PileState
 from .joints import close_joints_2d, hold_joints_2d, without_joined
 from .rods import close_links
@@ -57,21 +57,6 @@ def model_load(t, x, q, v, omega, p):
         tau[a] += pull * (a_x * r_y - a_y * r_x)
         tau[b] -= pull * (b_x * r_y - b_y * r_x)
     return F, tau
-
-
-def pull_per_length(square, along, law):
-    """Return what times the way r from one end of a spring to the other is the force on the first end [N/m].
-
-    square: r · r [m²];    along: r · (velocity of the first end − velocity of the other) [m²/s];    law: rest, k, c
-    Where the ends meet, a spring without a rest length pulls with no force.
-    Raises BadInput where the ends of any other spring meet, because it has no direction there.
-    """
-    length = np.sqrt(square)
-    if length == 0.0:
-        if law[0] * law[1] > 0.0:
-            raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
-        return 0.0
-    return -(law[1] * (length - law[0]) + law[2] * along / length) / length
 
 
 def accelerated(load, t, state, dt, p):

@@ -16,6 +16,7 @@ from ..support.arms import (
     turn_quaternions,
 )
 from ..support.contact_points import ContactSet
+from ..support.networks import pull_per_length
 from ..support.quaternions import rotate, unrotate
 from ..support.scenes import PileState
 from ..support.tuples import minus, plus, put, row, scaled
@@ -33,7 +34,6 @@ from .parts import (
     forget_bounces,
     is_settled,
     parting_aims,
-    pull_per_length,
     pushing_aims,
     swept,
     swept_and_closed,

@@ -29,6 +29,7 @@ from .model_checks import (
     orientation,
     vector,
 )
+from .networks import pull_per_length
 from .quaternions import rotate
 from .shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron, moments_of_shape, outline_of
 
@@ -312,12 +313,7 @@ def add_spring(F, tau, spring, state):
         at.append(world_place(state, k, place))
         u.append(0.0 if k == WORLD else state.v[k] + turned_by(state.omega[k], at[-1] - state.x[k]))
     way = at[0] - at[1]
-    length = np.sqrt(way @ way)
-    if length == 0.0 and spring.rest * spring.k > 0.0:
-        raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
-    if length == 0.0:                                                       # without a rest length it pulls with -k way
-        return
-    pull = -(spring.k * (length - spring.rest) + spring.c * (way @ (u[0] - u[1])) / length) / length * way
+    pull = pull_per_length(way @ way, way @ (u[0] - u[1]), (spring.rest, spring.k, spring.c)) * way
     for k, point, force in ((spring.a, at[0], pull), (spring.b, at[1], -pull)):
         if k != WORLD:
             F[k] += force

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..checks import Diverged, WrongShape, check_indices, check_positive, one_each
+from ..checks import BadInput, Diverged, WrongShape, check_indices, check_positive, one_each
 
 VERLET_STABLE = 2.0          # ω dt up to which Verlet is stable [-]: its step has a trace of 2 − ω² dt²
 SUZUKI_STABLE = 2.7209745385 # the same for five Verlet steps with Suzuki's shares: where |trace| is first 2
@@ -18,6 +18,21 @@ def inverse_masses(thing, m, fixed, x):
     inv_mass = 1.0 / masses
     inv_mass[check_indices("the number of a fixed point", fixed, len(x))] = 0.0
     return inv_mass
+
+
+def pull_per_length(square, along, law):
+    """Given.  Return what times the way r from one end of a spring to the other is the force on the first end [N/m].
+
+    square: r · r [m²];    along: r · (velocity of the first end − velocity of the other) [m²/s];    law: rest, k, c
+    Where the ends meet, a spring without a rest length pulls with no force.
+    Raises BadInput where the ends of any other spring meet, because it has no direction there.
+    """
+    length = np.sqrt(square)
+    if length == 0.0:
+        if law[0] * law[1] > 0.0:
+            raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
+        return 0.0
+    return -(law[1] * (length - law[0]) + law[2] * along / length) / length
 
 
 def measured_links(kind, x, pairs):

@@ -166,7 +166,7 @@ def only_weight(t, x, v, net):
 def free_fall(*step):
     """Advance a curtain that no thread holds.  The last four of `step` are x, v, dt and the net."""
     x, v, dt, net = step[-4:]
-    v = v + dt * (net.inv_mass > 0.0)[:, None] * net.gravity
+    v = v + dt * only_weight(0.0, x, v, net)
     return x + dt * v, v
 
 
@@ -199,7 +199,7 @@ def corrected(correction, x, net):
 
 def weight_and_air(t, x, v, net):
     """Given.  Return the acceleration of points that no thread holds."""
-    return (net.inv_mass > 0.0)[:, None] * net.gravity + net.inv_mass[:, None] * (net.wind - net.k_v * v)
+    return only_weight(t, x, v, net) + net.inv_mass[:, None] * (net.wind - net.k_v * v)
 
 
 def predicted(predict, law, t, x, v, dt, net):
@@ -210,13 +210,11 @@ def predicted(predict, law, t, x, v, dt, net):
 
 def shortened(x, net):
     """Given.  Return the points after each thread has been brought to its length, one after the other."""
-    x, w = x.copy(), net.inv_mass
-    for i, j, long in zip(net.i, net.j, net.rest):
-        way = x[i] - x[j]
-        size = np.sqrt(way @ way)
-        part = (size - long) / size / (w[i] + w[j]) * way
-        x[i], x[j] = x[i] - w[i] * part, x[j] + w[j] * part
-    return x
+    def visit(x_i, x_j, long, w):
+        way = x_i - x_j
+        part = (1.0 - long / np.sqrt(way @ way)) / (w[0] + w[1]) * way
+        return -w[0] * part, w[1] * part
+    return sweeping(visit, x, net)
 
 
 def projected(step, law, t, x, v, dt, net):
