@@ -337,7 +337,7 @@ UNDERFLOW = 1e-150           # numbers that count as 0, because what is computed
 
 # Differences over the largest number that are allowed; elsewhere all digits are the same.
 ALLOWED = {
-    "observed_order": 1e-15,     # logarithms: a sum in place of a product
+    "observed_order": 6e-14,     # logarithms of 1e-40, 92, have a rounding error of 1e-14, and differ by 0.7 or less
     "my_mesh": 1e-14,            # a cube root
     "remainder_orders": 1e-13,   # logarithms, too
     "best_step": 1e-15,          # a cube root
