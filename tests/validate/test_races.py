@@ -89,6 +89,14 @@ def test_long_loops_are_repeated_seven_times_and_long_plain_ones_three_times():
         assert sum(timing.is_due(speed, lap, seconds) for lap in range(timing.REPEATS)) == laps
 
 
+def test_before_each_repeat_a_short_loop_runs_once_without_the_clock(monkeypatch):
+    seconds, ran = {"long": 1e-2, "short": 1e-4}, []
+    monkeypatch.setattr(timing, "clock", lambda item, inner, steps=None: ran.append(item.label) or seconds[item.label])
+    items = [timing.Timed(label, "engine", 8, 0.1, None) for label in seconds]
+    timing.interleaved(items, {"engine": 1.0}, repeats=2)
+    assert ran[-6:] == 2 * ["long", "short", "short"]
+
+
 def test_there_is_a_race_to_each_error_and_to_the_engines_best():
     found = held([engine()], [EULER, RK4])
     assert list(found) == [*LEVELS, BEST] and HEADLINE in LEVELS
