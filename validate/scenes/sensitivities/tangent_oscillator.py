@@ -126,7 +126,7 @@ def mujoco_make(p, dt, integrator="Euler"):
 
 
 RUNNERS = (
-    ours(TANGENTS, limit=limits, predicted=MOTION.predict(TANGENTS.table), compiled_in_quick=True),
+    ours(TANGENTS, limit=limits, predicted=MOTION.predict(TANGENTS.table)),
     ours(IMPLICIT_TANGENTS, limit=limits, predicted=MOTION.predict(IMPLICIT_TANGENTS.table)),
     engine(MUJOCO, "", mujoco_make, "mjd_transitionFD, central differences; stiffness and damper are the "
            "controls of two actuators; Euler",
