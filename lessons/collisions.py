@@ -175,6 +175,7 @@ def closest_on_triangle(p, a, b, c):
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
     elsewhere the nearest of the three points closest_on_segment of the edges; nearer(p, q, other) returns q or other
 
+    Areas from dot products, as in Ericson 2005, 5.1.5, lose most of their digits where the triangle is a needle.
     Raises BadInput("the area of a triangle [m²]", ½|N|, "give three corners that are not on one line") where |N| is
     DEGENERATE_AREA times its longest edge squared or less.
     """

@@ -273,7 +273,7 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
     gives F from  b = G M⁻¹ load,  and then  a = M⁻¹ (load + Gᵀ F).  inverse_masses(inv_mass, inv_inertia) is M⁻¹ (3n,).
 
     x (n, 2), inv_mass (n,), inv_inertia (n,), load (n, 3) [N, N, N m] force and torque on each body, mu (m,), ∞ too.
-    A body with an inverse mass of 0 may still turn.
+    A body with an inverse mass of 0 may still turn.  Forces do not depend on the gaps.
     A scene stays at rest where a = 0.  A contact is released when its F_n reaches 0.
     Raises what check_scene(x, inv_mass, inv_inertia, contacts, load, mu) raises; call it first.
     *Left out:* the choice among several possible F where supports are redundant; sums and moments are right.

@@ -322,8 +322,11 @@ def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
     for k, small in itertools.product((0.5, -1.5, 4.0), (1.0, 1e-40)):     # two runs, many runs, all sizes of steps
         for n in (2, 3, 50):
             dts = small * 0.5 ** np.arange(n)
-            # the logarithms are below 260, and spread by 0.7 or more
-            close("order of a power of dt", lesson.observed_order(dts, small * C * (dts / small)**k), k, 1e-12,
+            errors = small * C * (dts / small)**k
+            far, high = np.max(np.abs(np.log(dts))), np.max(np.abs(np.log(errors)))
+            # n Σ ξη − Σ ξ Σ η, with the sums of logarithms themselves, is right too: it rounds at their products
+            rounded = 1e-15 * far * (high + abs(k) * far) / np.var(np.log(dts))
+            close("order of a power of dt", lesson.observed_order(dts, errors), k, 1e-12 + rounded,
                   given=f"{n} steps of {small} s and less, error = {small * C:.4g} (dt/{small} s)^{k}")
     right = draw(0.5, 1.0, 4)
     for one, number in itertools.product(np.eye(4) == 1.0, (0.0, -1.0, np.nan, np.inf)):

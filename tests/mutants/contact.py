@@ -400,6 +400,10 @@ def complementarity_residual_2(A, b, lam):
 
 edits("9.3", {
     "returns 0 where no contact has an impulse": ("return np.max", "return 0.0 if not np.any(lam) else np.max"),
+    "uses the largest entry of each row in place of the diagonal": ("np.diag(A)", "np.max(np.abs(A), axis=1)"),
+    "does not take absolute values of a single contact":
+        ("np.abs(np.minimum(np.diag(A) * lam, A @ lam + b))",
+         "(np.abs if lam.size > 1 else np.array)(np.minimum(np.diag(A) * lam, A @ lam + b))"),
 })
 
 
@@ -1452,6 +1456,11 @@ wrongs("9.11", forces, {
 edits("9.11", {
     "does not turn a body with an inverse mass of 0":
         ("inverse_masses(inv_mass, inv_inertia)", "inverse_masses(inv_mass, inv_inertia * (inv_mass > 0.0))"),
+    "has no friction where a gap is open":
+        ("(w * load.ravel()), mu)", "(w * load.ravel()), np.where(contacts.gap > 0.0, 0.0, mu))"),
+    "calls solve_lcp where no contact has friction, which refuses redundant contacts":
+        ("F = solve_contacts(", "A, b = delassus_matrix(G[::2], w), G[::2] @ (w * load.ravel())\n"
+         "    F = np.stack((solve_lcp(A, b), 0.0 * b), axis=1).ravel() if not np.any(mu) else solve_contacts("),
     "returns zeros without a load, before it checks the scene":
         ("check_scene(x,", "if not np.any(load): return np.zeros((contacts.a.size, 2)), np.zeros(load.shape)\n    "
          "check_scene(x,"),
@@ -1962,6 +1971,10 @@ wrongs("9.15", leaves, {
 })
 edits("9.15", {
     "returns True where there are no bodies": ("    return False", "    return low.shape[0] == 0"),
+    "does not notice NaN of a single body":
+        ("    for i in range(low.shape[0])",
+         "    if low.shape[0] == 1: return np.any(low < wide_low) or np.any(high > wide_high)\n"
+         "    for i in range(low.shape[0])"),
     "allows an excess of 1 mm on the upper side": ("<= wide_high[i, c]", "<= wide_high[i, c] + 1e-3"),
     "compares high with the lower edge of the widened box": ("high[i, c] <= wide_high", "low[i, c] <= wide_high"),
     "requires that a box has left on both sides": ("if not (wide_low[i, c] <= low[i, c] and high[i, c] <= "

@@ -327,6 +327,16 @@ def observed_order(dts, errors):
     return np.polyfit(np.log(dts), np.log(errors), 1)[0]
 
 
+@right("1.10", "with sums of logarithms, not of their distances from the mean")
+def observed_order(dts, errors):
+    for dt in dts:
+        check_positive("step dt [s]", dt)
+    for error in errors:
+        check_positive("error [-]", error)
+    a, b, n = np.log(dts), np.log(errors), len(dts)
+    return (n * np.sum(a * b) - np.sum(a) * np.sum(b)) / (n * np.sum(a * a) - np.sum(a) ** 2)
+
+
 edit("1.10", "accepts an error of zero", 'check_positive("error [-]", errors[n])', "pass")
 edit("1.10", "fits a line to the errors, not to their logarithms", "xi = np.log(dts) - np.mean(np.log(dts))",
      "return np.polyfit(dts, errors, 1)[0]")
