@@ -265,7 +265,8 @@ def slip_time(v, omega, ball):
 
     *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
         u = v + ω × r,      r = (0, 0, −radius)
-    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.
+    The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.  Without
+    load there is no friction, even for μ = ∞ (cone_radius of lesson 3).
     I = I_body[0] is the same about all axes.
     Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     All numbers are finite, but μ may be ∞; advance_rigid_body has checked that.

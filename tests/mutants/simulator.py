@@ -199,12 +199,20 @@ edits("10.1 10.2",
 edits("10.1",
       ("sets no body turning that does not turn yet", TORQUE, f"{TORQUE} * (omega != 0.0)"),
       ("omits torques on bodies on which no force acts", TORQUE, f"{TORQUE} * F.any(axis=1)"),
+      ("omits torques on bodies that rest and on which no force acts", TORQUE,
+       f"{TORQUE} * (v.any(axis=1) | (omega != 0.0) | F.any(axis=1))"),
+      ("evaluates the force with the new spin", LOADS, f"{LOADS}; F = load(t, x, q, v, {TORQUE}, p)[0]"),
+      ("evaluates the force at the next angles", LOADS, f"{LOADS}; F = load(t, x, q + dt * omega, v, omega, p)[0]"),
       ("omits forces with equal coordinates", "p.inv_mass[:, None] * F",
        "p.inv_mass[:, None] * F * (F[:, :1] != F[:, 1:])"),
       ("returns omega itself where no torque acts", TORQUE, f"({TORQUE} if tau.any() else omega)"),
       ("returns v and omega themselves where no load can change them", LOADS,
        f"{LOADS}\n    if not (p.inv_mass.any() or p.inv_inertia.any()): return v, omega"))
 edits("10.2",
+      ("omits torques on bodies that rest and on which no force acts", "if p.inv",
+       "if (F[i].any() or omega[i].any()) and p.inv"),
+      ("evaluates the force at the next orientations", f"F, tau = {LOADS}",
+       f"F, tau = load(t, x, turn_quaternions(q, omega, dt), v, omega, p)[0], {LOADS}[1]"),
       ("omits the gyroscopic term where the first two moments are equal", "omega[i], tau[i], 1.0",
        WITHOUT.format("p.inv_inertia[i, 0] != p.inv_inertia[i, 1]")),
       ("omits the gyroscopic term where the last two moments are equal", "omega[i], tau[i], 1.0",
@@ -951,7 +959,7 @@ def slip_time(v, omega, ball):
     if size == 0.0:
         return 0.0
     K = 1.0 / ball.m + ball.radius**2 / ball.I_body[0]
-    force = ball.mu * ball.m * max(0.0, -ball.gravity[2])
+    force = ball.mu * ball.m * -ball.gravity[2] if ball.gravity[2] < 0.0 else 0.0
     slower = force * K - ball.gravity[:2] @ u / size
     return size / slower if slower > 0.0 else np.inf
 
@@ -1627,6 +1635,9 @@ edits("10.9",
       ("takes the velocity of the floor at the old position while the ball slips", SLIP,
        f"{SLIP}; free, _ = stop_slip(v, omega, {AHEAD}, dt, ball._replace(mu=np.inf)); pushed, turned = "
        "(pushed, turned) if norm(free - pushed) < 1e-12 else stop_slip(v, omega, support_velocity(x, ball), dt, ball)"),
+      ("leaves a ball at rest where it is if the floor rests and is level, whatever the load", SLIP,
+       "if not (v.any() or omega.any() or ball.gravity[:2].any() or ball.floor_v.any() or ball.floor_omega.any()): "
+       f"return x.copy(), q.copy(), v.copy(), omega.copy()\n    {SLIP}"),
       ("omits friction that changes v by less than 0.1 mm/s", SLIP,
        f"{SLIP}\n    if norm(pushed - v) < 1e-4: pushed, turned = v, omega"))
 edits("10.10",
@@ -1634,6 +1645,9 @@ edits("10.10",
        "if rate > 0.0 and ball.gravity[2] < 0.0"),
       ("lets the floor pull: uses |g_z| where gravity lifts the ball", RUBS,
        "cone_radius(ball.mu, abs(ball.gravity[2]))"),
+      ("returns zero where μ = ∞, even if the floor carries nothing", "size == 0.0",
+       "size == 0.0 or np.isinf(ball.mu)"),
+      ("multiplies μ by a load of 0, also where μ = ∞", RUBS, "ball.mu * max(0.0, -ball.gravity[2])"),
       ("returns zero where v = 0", "size == 0.0", "size == 0.0 or not v.any()"),
       ("loses the signs of the slip where v = 0", "dot(slip,", "dot(slip if v.any() else np.abs(slip),"),
       ("returns zero where v_z is below 0", "size == 0.0", "size == 0.0 or v[2] < 0.0"))
@@ -1643,6 +1657,10 @@ edits("10.11",
        GOES_ON.format("slip_time(v, omega, ball) == 0.0")),
       ("leaves a ball at rest where it is, also on a slope", f"first = {UNTIL}",
        GOES_ON.format("not (v.any() or omega.any())")),
+      ("leaves a ball at rest where it is if the floor is level, whatever the load", f"first = {UNTIL}",
+       GOES_ON.format("not (v.any() or omega.any() or ball.gravity[:2].any())")),
+      ("evaluates the load at t + dt where the ball does not slip", "load, t + first, x",
+       "load, t + (first if first > 0.0 else dt), x"),
       ("leaves a ball where it is that only spins about the vertical, also on a slope", f"first = {UNTIL}",
        GOES_ON.format("not (v.any() or omega[:2].any())")),
       ("leaves a ball where it is that spins with v = 0", f"first = {UNTIL}", GOES_ON.format("not v.any()")),
@@ -1686,7 +1704,11 @@ edits("10.15", ("returns zero for two times", DONE, "return gain if energies.siz
 edits("10.16",
       ("returns a ratio of 1 for one round", MEDIAN, f"{MEDIAN} if runs > 1 else 1.0"),
       ("compares the first hundred numbers only", LARGEST, "np.max(np.abs(slow - quick).ravel()[:100])"),
-      ("loses a NaN", MOST, f"max(difference, {LARGEST})"))
+      ("loses a NaN", MOST, f"max(difference, {LARGEST})"),
+      ("loses a NaN of the minimal loop", MOST,
+       "np.maximum(difference, np.max(np.abs(slow - np.where(np.isnan(quick), slow, quick))))"),
+      ("loses a NaN in which both loops end", LARGEST,
+       "np.max(np.where(np.isnan(slow) & np.isnan(quick), 0.0, np.abs(slow - quick)))"))
 
 
 # 10.1 to 10.16: right for numbers of the order of one ---------------------------------------------------------------
@@ -1740,6 +1762,7 @@ def stopping_depth(speed, gap, margin, dt):
 
 edit("10.17", "lets the body stop at the surface, however fast it is", "steps * speed * dt - gap", "0.0 * gap")
 edit("10.17", "takes a step less", "np.ceil", "np.floor")
+edit("10.17", "takes a step more", "steps * speed", "(steps + 1.0) * speed")
 edit("10.17", "takes a step more where a gap is exactly the margin", "np.ceil((gap - margin) / (speed * dt))",
      "(np.floor((gap - margin) / (speed * dt)) + 1.0)")
 edit("10.17", "takes the margin off the depth", "steps * speed * dt - gap", "steps * speed * dt - gap - margin")
