@@ -163,6 +163,18 @@ def chain(draw, n):
     return draw(-5.0, 5.0, n), np.stack([unit(draw) for _ in range(n)]), draw(-1.0, 1.0, (n, 3))
 
 
+def machine(draw):
+    """(θ, axes, offsets) of an arm as factories have them: its axes and offsets are along those of coordinates.
+
+    Some joints have the axis of the one before, or of the first, or the opposite one, and three are at one place.
+    """
+    along = np.eye(3)[np.argsort(draw(0.0, 1.0, 3))]
+    axes, offsets = along[[0, 1, 1, 0, 2, 1, 0, 0]], draw(0.3, 1.0, (8, 1)) * along[[0, 0, 2, 1, 2, 0, 1, 1]]
+    axes[2] *= -1.0
+    offsets[3:5] = 0.0
+    return draw(-5.0, 5.0, 8), axes, offsets
+
+
 def frames(theta, axes, offsets):
     """(x, a, R) by matrices: positions, axes in the world, orientation of the last link."""
     x, a, R = [np.zeros(3)], [], np.eye(3)
@@ -221,11 +233,13 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), (7, 1e6), *2 * ((2, 1.0),)):     # micrometres to 1000 km
+    for rows, size, closed in ((draw.whole(6, 8), 1.0, False), (12, 1e-6, False), (7, 1e6, False), (2, 1.0, False),
+                               (2, 1.0, False), (7, 1.0, True), (2, 1.0, True)):       # micrometres to 1000 km
         x = size * draw(-2.0, 2.0, (rows, 2))
         if rows > 2:
-            x[0, 0], x[1, 1] = -x[-1, 0], x[-1, 1]                       # joint 1 is as high as the end
+            x[0, 0], x[1, 1], x[3, 0] = -x[-1, 0], x[-1, 1], x[-1, 0]    # joint 1 is as high as the end, 3 is above it
             x[2], x[4] = x[-1], x[3]                                     # joint 2 is there, and two are at one place
+        x[0] = x[-1] if closed else x[0]                                 # the end is back at the base
         r = x[-1] - x[:-1]
         close("J of joints in any place [m/rad]", lesson.jacobian_2d(x), np.stack((-r[:, 1], r[:, 0])),
               size * ROUND_OFF, given=f"joints and end at {x} m")
@@ -443,8 +457,8 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):
-        theta, axes, offsets = chain(draw, n)
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6), (8, 1.0)):
+        theta, axes, offsets = machine(draw) if n == 8 else chain(draw, n)
         offsets *= size
         theta[n // 2] *= 1e-4 if n < 9 else 1e-8                         # this joint hardly turns
         if n == 9:                                                       # these not at all, twice, a half, and back
@@ -473,9 +487,9 @@ def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
 
 @exercise("11.7", points=1, hint="rows 0 to 2: a_k × (x_n − x_k), rows 3 to 5: a_k")
 def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
-    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):    # from a micrometre to 1000 km
-        theta, axes, offsets = chain(draw, n)
-        offsets *= size
+    for n, size in ((2, 1.0), (3, 1.0), (6, 1.0), (9, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6), (8, 1.0)):
+        theta, axes, offsets = machine(draw) if n == 8 else chain(draw, n)
+        offsets *= size                                                  # from a micrometre to 1000 km
         x, a, R = frames(theta, axes, offsets)
         J = np.asarray(lesson.jacobian_3d(x, a))
         close("shape of J [-]", J.shape, (6, n), 0.0)
@@ -518,6 +532,22 @@ def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
             assert abs(abs(2.0 * q_target[0]) - new) < 1e-6                   # the test's own two ways agree
             close("rotation vector [rad]", lesson.rotation_error(q, q_target), angle * axis, SOLVED,
                   given=f"q = {q}, q_target = {q_target}")
+    turn_between_axes(lesson, draw)
+
+
+def turn_between_axes(lesson, draw):
+    """Exercise 11.8 for orientations that are turned about axes of coordinates: each may be by half a turn."""
+    for i, k in itertools.product(range(3), repeat=2):
+        for old, new in ((draw(0.5, 3.0), draw(0.5, 3.0)), (np.pi, draw(0.5, 3.0)), (draw(0.5, 3.0), np.pi),
+                         (0.0, draw(0.5, 3.0)), (0.5 * np.pi, 0.5 * np.pi), (np.pi, np.pi)):
+            q, q_target = quaternion(np.eye(3)[i], old), quaternion(np.eye(3)[k], -new)
+            q[0], q_target[0] = (0.0 if angle == np.pi else w for angle, w in ((old, q[0]), (new, q_target[0])))
+            phi = np.asarray(lesson.rotation_error(q, q_target))
+            given, size = f"q = {q}, q_target = {q_target}", np.linalg.norm(phi)
+            between("length of the rotation vector [rad]", size, 0.0, np.pi + ROUND_OFF, given=given)
+            close("axes that the rotation vector has turned [-]",
+                  turn(phi / (size or 1.0), size) @ quaternion_matrix(*q), quaternion_matrix(*q_target), SOLVED,
+                  given=given)
 
 
 @exercise("11.8", points=0.5,
@@ -787,7 +817,7 @@ def sweep_special_arms(lesson, draw):
 @exercise("11.13", points=0.5,
           hint="stop each joint at its limit, and turn the end by the actual change of the angle")
 def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
-    for trial in range(8):                                               # both limits of a joint above 0, or both below
+    for trial in range(12):                                              # both limits of a joint above 0, or both below
         n = draw.whole(3, 6)
         lengths, theta, target = lengths_of(draw, n), draw(-0.3, 0.3, n), draw(-2.0, 2.0, 2)
         around = draw(0.9, 1.5, n) * (-1.0) ** (np.arange(n) + trial)
@@ -797,6 +827,8 @@ def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
             k = np.arange(n)
             theta = np.where(k % 3 == 0, high + 1.5, theta) if trial % 2 else np.where(k % 3 == 0, low - 1.5, theta)
             low, high = np.where(k % 3 == 1, -np.inf, low), np.where(k % 3 == 2, np.inf, high)
+        if trial > 7:                                                    # each begins exactly at a limit
+            theta = np.where((low == -np.inf) | (high < np.inf) & (k % 2 == trial % 2), high, low)
         arm = arm_of(lesson, lengths, low=low, high=high)
         got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
@@ -882,14 +914,18 @@ def hold_a_joint_that_nothing_pushes(lesson, draw):
               lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
 
 
-def step_between_far_limits(lesson, draw):
-    """The step of 11.15 for special linear tasks."""
-    damping = draw(0.5, 1.0)
-    for e, J, target in special_equations(draw):
-        n = J.shape[1]
-        got = lesson.limited_step(linear, np.zeros(n), target, arm_of(lesson, np.ones(n), damping=damping))
-        close("change of θ for a special linear task [-]", got, damped(J, e, damping), SOLVED,
-              given=f"θ = 0, e = {e}, J = {J}, λ = {damping}")
+def step_of_special_tasks(lesson, draw):
+    """The step of 11.15 for special linear tasks, between far limits, and from angles beyond or at one of them."""
+    damping, near = draw(0.5, 1.0), draw(0.2, 0.5)
+    for (e, J, target), (low, high) in itertools.product(special_equations(draw), (
+            (-np.inf, np.inf), (near, 2.0 * near), (-2.0 * near, -near), (-near, 0.0), (0.0, np.inf), (near, near))):
+        n, wish = J.shape[1], e @ J
+        got = lesson.limited_step(linear, np.zeros(n), target,
+                                  arm_of(lesson, np.ones(n), damping=damping, low=low, high=high))
+        blocked = ((low >= 0.0) & (wish < 0.0)) | ((high <= 0.0) & (wish > 0.0))
+        close("change of θ for a special linear task [-]", got,
+              np.clip(damped(np.where(blocked, 0.0, J), e, damping), low, high), SOLVED,
+              given=f"θ = 0, e = {e}, J = {J}, λ = {damping}, limits {low} to {high}")
 
 
 @exercise("11.15", points=0.5, hint="a joint inside its limits, or at one but pushed inwards, moves as in damped_step")
@@ -921,7 +957,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
               damped(np.where(first, 0.0, J), e, damping), SOLVED,
               given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows, limits {arm.low} to {arm.high}")
     hold_a_joint_that_nothing_pushes(lesson, draw)
-    step_between_far_limits(lesson, draw)
+    step_of_special_tasks(lesson, draw)
 
 
 def step_of_stiff_arms(lesson, draw, size):

@@ -1838,6 +1838,7 @@ edit("11.2", "returns zeros for the second of two joints at one place", "return 
      "J[:, 1:][:, np.all(x[1:n] == x[:n - 1], axis=1)] = 0.0; return J")
 edit("11.2", "takes the base to be at (0, 0) where there is a single joint", "return J",
      "return J if n > 1 else np.array(((-x[1, 1],), (x[1, 0],)))")
+edit("11.2", "returns zeros where the end is at the base", "return J", "return J * float(np.any(x[n] != x[0]))")
 edit("11.3", "returns atan2(σ₁² − a, b), which loses the digits of a small angle", TURN,
      "np.arctan2(longer * longer - a, b)")
 edit("11.3", "returns no number for the angle of a circle", TURN, f"({TURN} if b != 0.0 or a != c else np.nan)")
@@ -1858,6 +1859,10 @@ edit("11.6", "divides by the length of an offset, which may be 0", "plus(row(x, 
      "plus(row(x, k), 1.0 + 0.0 / np.sqrt(np.sum(offsets[k] ** 2)),")
 edit("11.6", "uses the same axis for two joints at one place", "return x, a, q",
      "k = np.flatnonzero(np.all(x[1:n] == x[:n - 1], axis=1)); a[k + 1] = a[k]; return x, a, q")
+for which, rotated in (("the first one", "np.any(axes[k] != axes[0])"),
+                       ("the one before", "k == 0 or np.any(axes[k] != axes[k - 1])")):
+    edit("11.6", f"does not rotate an axis that is the same as {which}", "put(a, k, rotate(q, axis))",
+         f"put(a, k, rotate(q, axis) if {rotated} else axis)")
 edit("11.6", "cuts the angles off at two turns", "scaled(theta[k], axis)",
      "scaled(min(max(theta[k], -4.0 * np.pi), 4.0 * np.pi), axis)")
 edit("11.6", "does not turn by exactly half a turn", "scaled(theta[k], axis)",
@@ -1866,9 +1871,18 @@ edit("11.6", "does not turn by angles below 1e-6", "scaled(theta[k], axis)",
      "scaled(theta[k] if abs(theta[k]) > 1e-6 else 0.0, axis)")
 edit("11.7", "returns no angular velocity where the end does not move", "v[c], a[k, c]",
      "v[c], (a[k, c] if any(v) else 0.0)")
+edit("11.7", "exchanges rows and columns of the axes of three joints", "v[c], a[k, c]",
+     "v[c], (a[c, k] if n == 3 else a[k, c])")
+edit("11.7", "uses the same velocity for two joints at one place", "return J",
+     "k = np.flatnonzero(np.all(x[1:n] == x[:n - 1], axis=1)); J[:3, k + 1] = J[:3, k]; return J")
 edit("11.7", "divides by the distance of the end from a joint, which may be 0", "v[c], a[k, c]",
      "v[c] + 0.0 / np.sqrt(np.sum((x[n] - x[k]) ** 2)), a[k, c]")
 edit("11.8", "divides zero by zero where q_target is −q", "2.0 if size == 0.0", "2.0 if np.all(q == q_target)")
+edit("11.8", "rotates in the frame of the link where q is a rotation about x, y or z", "if d[0] < 0.0:",
+     "if np.sum(q[1:] == 0.0) == 2:\n"
+     "        d = quaternion_product(np.array((q[0], -q[1], -q[2], -q[3])), q_target)\n    if d[0] < 0.0:")
+edit("11.8", "returns zeros where q and q_target are rotations by half a turn", "return factor * d[1:]",
+     "return factor * d[1:] * float(q[0] != 0.0 or q_target[0] != 0.0)")
 edit("11.9", "takes a gain of 0 for 1", "arm.gain *", "(arm.gain or 1.0) *")
 SVD = "u, sigma, v = np.linalg.svd(J, False)"
 edit("11.10", "divides a single row by its square, which may be 0", SVD,
@@ -1893,6 +1907,8 @@ edit("11.13", "does nothing where the end is at the target, whatever the limits 
 edit("11.13", "does not keep the limits of a joint that is at the target", NEW, f"{NEW} if s_x or s_y else wish")
 edit("11.13", "does not keep the limits of a joint that need not turn", NEW, f"{NEW} if wish != theta[k] else wish")
 edit("11.13", "does not keep limits that are equal", NEW, f"{NEW} if arm.low[k] < arm.high[k] else wish")
+edit("11.13", "does not turn a joint that is exactly at a limit, not even back", NEW,
+     f"{NEW} if theta[k] != arm.low[k] and theta[k] != arm.high[k] else theta[k]")
 edit("11.13", "does not turn a joint that is exactly between the end and the target", "np.arctan2(r_x * s_y",
      "(r_x * s_y != r_y * s_x) * np.arctan2(r_x * s_y")
 edit("11.14", "moves only the first six links on the way back", "range(n - 1, -1, -1)", "range(min(n, 6) - 1, -1, -1)")
@@ -1904,6 +1920,8 @@ edit("11.14", "takes joints nearer than 1e-6 m for one on the way back", "point_
      "point_at(x[k + 1], x[k] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k + 1],")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way forth", "point_at(x[k], x[k + 1],",
      "point_at(x[k], x[k + 1] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k],")
+edit("11.15", "does nothing where e is 0, whatever the limits are", "wish, J =",
+     "if not np.any(e): return theta.copy()\n    wish, J =")
 edit("11.15", "adds the step to angles that it has set to the limits", "theta + sum_of_rows",
      "np.clip(theta, arm.low, arm.high) + sum_of_rows")
 edit("11.15", "blocks joints beyond a limit, whatever the direction", "if (theta[k] >= arm.high[k]",
