@@ -106,11 +106,26 @@ def equations(draw, rows, size, n=5):
     return e, J, np.column_stack((size * e, J))
 
 
+def special_matrices(draw):
+    """Matrices with columns of 0, equal or perpendicular ones, or equal rows; one that is symmetric, and square ones.
+
+    In the plane a joint at the end has a column of 0, and joints at one place have equal columns.
+    """
+    a, b, c = draw(0.3, 1.0, 3)
+    square, _ = with_singular_values(draw, draw(0.5, 2.0, 6), 6)
+    _, u = with_singular_values(draw, np.ones(3), 3)
+    symmetric = (u * draw(0.5, 2.0, 3)) @ u.T
+    return (np.array([[a, 0.0, c, c, -b], [b, 0.0, a, a, a]]), np.array([[a, b, c], [a, b, c]]),
+            np.array([[a, -2.0 * b], [b, 2.0 * a]]), np.array([[2.0 * a, -b], [2.0 * b, a]]),
+            symmetric + symmetric.T, square)
+
+
 def special_equations(draw):
-    """[(e, J, target)] of that task: no error, no joint that moves anything, one joint, and rows that depend."""
+    """[(e, J, target)] of that task: no error, no joint that moves anything, one joint, dependent rows, and others."""
     many, one, rank = draw(-1.0, 1.0, (2, 5)), draw(0.3, 1.0, (3, 1)), np.outer((1.0, 0.0, -2.0), draw(0.3, 1.0, 2))
     e = draw(0.3, 1.0, 3)
-    pairs = ((0.0 * e[:2], many), (0.0 * e, one), (e[:2], 0.0 * many), (e[:1], np.zeros((1, 1))), (e, one), (e, rank))
+    pairs = ((0.0 * e[:2], many), (0.0 * e, one), (e[:2], 0.0 * many), (e[:1], np.zeros((1, 1))), (e, one), (e, rank),
+             *((draw(0.3, 1.0, len(J)), J) for J in special_matrices(draw)))
     return [(e, J, np.column_stack((e, J))) for e, J in pairs]
 
 
@@ -163,6 +178,18 @@ def chain(draw, n):
     return draw(-5.0, 5.0, n), np.stack([unit(draw) for _ in range(n)]), draw(-1.0, 1.0, (n, 3))
 
 
+def machine(draw):
+    """(θ, axes, offsets) of an arm as factories have them: its axes and offsets are along those of coordinates.
+
+    Some joints have the axis of the one before, or of the first, or the opposite one, and three are at one place.
+    """
+    along = np.eye(3)[np.argsort(draw(0.0, 1.0, 3))]
+    axes, offsets = along[[0, 1, 1, 0, 2, 1, 0, 0]], draw(0.3, 1.0, (8, 1)) * along[[0, 0, 2, 1, 2, 1, 1, 0]]
+    axes[2] *= -1.0
+    offsets[3:5] = 0.0
+    return draw(-5.0, 5.0, 8), axes, offsets
+
+
 def frames(theta, axes, offsets):
     """(x, a, R) by matrices: positions, axes in the world, orientation of the last link."""
     x, a, R = [np.zeros(3)], [], np.eye(3)
@@ -184,10 +211,12 @@ def with_singular_values(draw, sigma, columns):
 
 @exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
 def test_links_add_up_from_the_base(lesson, draw):
-    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9), (5, 1e6)):   # from nanometres to 1000 km
-        theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)
+    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9), (5, 1e6), (9, 1.0)):
+        theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)   # from nanometres to 1000 km
         theta[6:8] = 0.0                                                 # two links that go straight on
         theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
+        if n == 9:                                                       # along both axes, and folded back
+            theta = 0.5 * np.pi * np.array([-1.0, 2.0, 1.0, -2.0, 0.0, 1.0, 4.0, -1.0, 3.0])
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
               size * ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
@@ -221,11 +250,13 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size in ((draw.whole(6, 8), 1.0), (12, 1e-6), (7, 1e6), *2 * ((2, 1.0),)):     # micrometres to 1000 km
+    for rows, size, closed in ((draw.whole(6, 8), 1.0, False), (12, 1e-6, False), (7, 1e6, False), (2, 1.0, False),
+                               (2, 1.0, False), (7, 1.0, True), (2, 1.0, True)):       # micrometres to 1000 km
         x = size * draw(-2.0, 2.0, (rows, 2))
         if rows > 2:
-            x[0, 0], x[1, 1] = -x[-1, 0], x[-1, 1]                       # joint 1 is as high as the end
+            x[0, 0], x[1, 1], x[3, 0] = -x[-1, 0], x[-1, 1], x[-1, 0]    # joint 1 is as high as the end, 3 is above it
             x[2], x[4] = x[-1], x[3]                                     # joint 2 is there, and two are at one place
+        x[0] = x[-1] if closed else x[0]                                 # the end is back at the base
         r = x[-1] - x[:-1]
         close("J of joints in any place [m/rad]", lesson.jacobian_2d(x), np.stack((-r[:, 1], r[:, 0])),
               size * ROUND_OFF, given=f"joints and end at {x} m")
@@ -242,6 +273,12 @@ def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
             close("half axes of the ellipse [m]", (longer, shorter), sigma, size * ROUND_OFF, given=f"J = {mirrored}")
             close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - y * np.cos(angle), 0.0,
                   ROUND_OFF, given=f"J = {mirrored}")
+    for J in special_matrices(draw)[:4]:
+        u, sigma, _ = np.linalg.svd(J)
+        longer, shorter, angle = lesson.velocity_ellipse(J)
+        close("half axes of the ellipse of special joints [m]", (longer, shorter), sigma, MANY, given=f"J = {J}")
+        close("sine of the angle from its longer axis [-]", u[0, 0] * np.sin(angle) - u[1, 0] * np.cos(angle), 0.0,
+              MANY, given=f"J = {J}")
 
 
 def shown(ellipse):
@@ -306,8 +343,9 @@ def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson
                "θ₂")
 def test_both_elbows_reach_the_target(lesson, draw):
     for elbow in (1.0, -1.0):
-        for _ in range(6):
+        for trial in range(7):
             lengths, theta = lengths_of(draw, 2), np.array([draw(-3.1, 3.1), elbow * draw(0.1, 3.0)])
+            lengths = lengths if trial else lengths[[0, 0]]
             target = joints(theta, lengths)[-1]
             given = f"target {target} m, lengths {lengths} m, elbow {elbow:g}"
             close("θ [rad]", lesson.solve_2r(target, lengths, elbow), theta, SOLVED, given=given)
@@ -406,8 +444,9 @@ def reach_special_targets(lesson, draw):
     """Exercise 11.5 for a target or a wrist at the base, for a target nearer than the hand is long, and for φ = 0."""
     drawn, some = draw(0.8, 1.2, 3), draw(-3.0, 3.0)
     hand = drawn[2] * np.array([np.cos(some), np.sin(some)])
+    along = draw(0.1, 0.3) * np.vstack((np.eye(2), -np.eye(2)))
     for lengths, place, phi in ((drawn, np.zeros(2), some), (drawn, 0.3 * hand, some), (drawn[[0, 0, 2]], hand, some),
-                                (drawn, draw(0.5, 1.3, 2), 0.0)):
+                                (drawn, draw(0.5, 1.3, 2), 0.0), *((drawn, one, 0.0) for one in along)):
         for elbow in (1.0, -1.0):
             got = np.asarray(lesson.solve_3r(np.append(place, phi), lengths, elbow))
             given = f"target {place} m, φ = {phi}, lengths {lengths} m, elbow {elbow:g}"
@@ -443,8 +482,8 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):
-        theta, axes, offsets = chain(draw, n)
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6), (8, 1.0)):
+        theta, axes, offsets = machine(draw) if n == 8 else chain(draw, n)
         offsets *= size
         theta[n // 2] *= 1e-4 if n < 9 else 1e-8                         # this joint hardly turns
         if n == 9:                                                       # these not at all, twice, a half, and back
@@ -473,9 +512,9 @@ def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
 
 @exercise("11.7", points=1, hint="rows 0 to 2: a_k × (x_n − x_k), rows 3 to 5: a_k")
 def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
-    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6)):    # from a micrometre to 1000 km
-        theta, axes, offsets = chain(draw, n)
-        offsets *= size
+    for n, size in ((2, 1.0), (3, 1.0), (6, 1.0), (9, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6), (8, 1.0)):
+        theta, axes, offsets = machine(draw) if n == 8 else chain(draw, n)
+        offsets *= size                                                  # from a micrometre to 1000 km
         x, a, R = frames(theta, axes, offsets)
         J = np.asarray(lesson.jacobian_3d(x, a))
         close("shape of J [-]", J.shape, (6, n), 0.0)
@@ -502,6 +541,10 @@ def test_an_axis_through_the_end_moves_it_nowhere(lesson, draw):
         r = x[4] - x[k]
         expected = (a[k, 1] * r[2] - a[k, 2] * r[1], a[k, 2] * r[0] - a[k, 0] * r[2], a[k, 0] * r[1] - a[k, 1] * r[0])
         close("velocity of the end [m/s]", J[:3, k], expected, ROUND_OFF, given=f"axis {a[k]}, end at {r} m from it")
+    x, a = draw(-2.0, 2.0, (7, 3)), np.vstack((np.eye(3), -np.eye(3)))
+    x[0] = x[6]                                                          # the end is back at the base
+    close("J of axes along those of coordinates [m/rad, -]", lesson.jacobian_3d(x, a),
+          np.vstack((np.cross(a, x[6] - x[:6]).T, a.T)), ROUND_OFF, given=f"joints and end at {x} m, axes {a}")
 
 
 @exercise("11.8", points=0.5, hint="d = q_target ∘ q̄ and not the other way round: the rotation is in the world")
@@ -518,6 +561,23 @@ def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
             assert abs(abs(2.0 * q_target[0]) - new) < 1e-6                   # the test's own two ways agree
             close("rotation vector [rad]", lesson.rotation_error(q, q_target), angle * axis, SOLVED,
                   given=f"q = {q}, q_target = {q_target}")
+    turn_between_axes(lesson, draw)
+
+
+def turn_between_axes(lesson, draw):
+    """Exercise 11.8 for orientations that are turned about axes of coordinates: each may be by half a turn."""
+    for i, k in itertools.product(range(3), repeat=2):
+        for old, new in ((draw(0.5, 3.0), draw(0.5, 3.0)), (np.pi, draw(0.5, 3.0)), (draw(0.5, 3.0), np.pi),
+                         (0.0, draw(0.5, 3.0)), (0.5 * np.pi, 0.5 * np.pi), (np.pi, np.pi),
+                         (draw(3.5, 6.0), draw(0.5, 3.0)), (draw(0.5, 3.0), draw(3.5, 6.0))):
+            q, q_target = quaternion(np.eye(3)[i], old), quaternion(np.eye(3)[k], -new)
+            q[0], q_target[0] = (0.0 if angle == np.pi else w for angle, w in ((old, q[0]), (new, q_target[0])))
+            phi = np.asarray(lesson.rotation_error(q, q_target))
+            given, size = f"q = {q}, q_target = {q_target}", np.linalg.norm(phi)
+            between("length of the rotation vector [rad]", size, 0.0, np.pi + ROUND_OFF, given=given)
+            close("axes that the rotation vector has turned [-]",
+                  turn(phi / (size or 1.0), size) @ quaternion_matrix(*q), quaternion_matrix(*q_target), SOLVED,
+                  given=given)
 
 
 @exercise("11.8", points=0.5,
@@ -575,6 +635,12 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
     close("θ after a step with the gain 0 [rad]",
           lesson.transpose_step(pose, theta, target, arm_of(lesson, lengths, gain=0.0)), theta, 0.0,
           given=f"θ = {theta}, target {target}, α = 0")
+    for e, J, target in special_equations(draw):                         # each joint is at both of its limits
+        n = J.shape[1]
+        got = lesson.transpose_step(linear, np.zeros(n), target,
+                                    arm_of(lesson, np.ones(n), gain=gain, low=0.0, high=0.0, rest=1.0))
+        close("change of θ for a special linear task, over the gain [-]", np.asarray(got) / gain, e @ J, ROUND_OFF,
+              given=f"θ = 0, e = {e}, J = {J}, α = {gain}")
     for (rows, size), small in itertools.product(EQUATIONS, (1.0, 1e-5)):
         (e, J, target), gain = equations(draw, rows, size), small * draw(0.7, 3.0)
         got = lesson.transpose_step(linear, np.zeros(5), target, arm_of(lesson, np.ones(5), gain=gain, **NARROW))
@@ -604,6 +670,10 @@ def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
         J = np.ascontiguousarray(J if m <= n else J.T)
         expected = np.stack([np.linalg.lstsq(J, e, rcond=None)[0] for e in np.eye(m)], axis=1)
         close("J⁺", np.asarray(lesson.pseudo_inverse(J)) * size, size * expected, SOLVED, given=f"J = {J}")
+    for one in special_matrices(draw):
+        for J in (one, np.ascontiguousarray(one.T)):
+            expected = np.stack([np.linalg.lstsq(J, e, rcond=1e-10)[0] for e in np.eye(len(J))], axis=1)
+            close("J⁺ of a special J", lesson.pseudo_inverse(J), expected, SOLVED, given=f"J = {J}")
     J = draw(0.5, 2.0) * np.eye(5)[[3, 0, 4]]
     close("J⁺, with singular values that are equal", lesson.pseudo_inverse(J), J.T / np.max(J) ** 2, SOLVED,
           given=f"J = {J}")
@@ -664,7 +734,8 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
               SOLVED, given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows")
     for e, J, target in special_equations(draw):
         n = J.shape[1]
-        got = lesson.damped_step(linear, np.zeros(n), target, arm_of(lesson, np.ones(n), damping=damping, **NARROW))
+        got = lesson.damped_step(linear, np.zeros(n), target,
+                                 arm_of(lesson, np.ones(n), damping=damping, low=0.0, high=0.0, rest=1.0))
         close("change of θ for a special linear task [-]", got, damped(J, e, damping), SOLVED,
               given=f"θ = 0, e = {e}, J = {J}, λ = {damping}")
     lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
@@ -694,13 +765,14 @@ def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
 
 @exercise("11.12", points=0.5, hint="return 1 − α σ² and λ²/(σ² + λ²) for every σ")
 def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
-    sigma, gain, damping = np.sort(draw(0.2, 3.0, 3))[::-1].copy(), draw(0.05, 0.5), draw(0.1, 1.0)
-    J, u = with_singular_values(draw, sigma, 4)
-    stay = [np.eye(3) - J @ P for P in (gain * J.T, np.stack([damped(J, e, damping) for e in np.eye(3)], axis=1))]
-    expected = [[one @ u[:, i] @ u[:, i] for i in range(3)] for one in stay]
-    got = lesson.contraction_factors(sigma, gain, damping)
-    for name, one, factors in zip(("transpose", "damped"), got, expected, strict=True):
-        close(f"factors of the {name} [-]", one, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
+    drawn, damping = np.sort(draw(0.2, 3.0, 3))[::-1].copy(), draw(0.1, 1.0)
+    for gain, sigma in ((draw(0.05, 0.5), drawn), (0.0, drawn), (draw(0.05, 0.5), drawn[[0, 0, 2]])):
+        J, u = with_singular_values(draw, sigma, 4)
+        stay = [np.eye(3) - J @ P for P in (gain * J.T, np.stack([damped(J, e, damping) for e in np.eye(3)], axis=1))]
+        expected = [[one @ u[:, i] @ u[:, i] for i in range(3)] for one in stay]
+        got = lesson.contraction_factors(sigma, gain, damping)
+        for name, one, factors in zip(("transpose", "damped"), got, expected, strict=True):
+            close(f"factors of the {name} [-]", one, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
 
 
 @exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
@@ -766,11 +838,12 @@ def sweep_special_arms(lesson, draw):
     end = np.array([lengths.sum(), 0.0])                                 # of few binary digits: exactly there
     for side in (1.0, -1.0):
         near = side * draw(0.2, 0.8, n)                                  # the limit that all joints are beyond
-        low, high = np.minimum(near, 2.0 * near), np.maximum(near, 2.0 * near)
-        got = lesson.ccd_step(reach, theta, end, arm_of(lesson, lengths, low=low, high=high))
-        close("θ after a sweep of an arm that is at the target, but beyond its limits [rad]", got,
-              coordinate_descent(theta, end, lengths, low, high), 1e-9,
-              given=f"θ = {theta}, target {end} m, limits {low} to {high}")
+        for target in (end, *draw(-2.0, 2.0, (5, 2))):                   # joints come to the one limit or the other
+            low, high = np.minimum(near, 1.1 * near), np.maximum(near, 1.1 * near)
+            got = lesson.ccd_step(reach, theta, target, arm_of(lesson, lengths, low=low, high=high))
+            close("θ after a sweep of an arm that is beyond its limits [rad]", got,
+                  coordinate_descent(theta, target, lengths, low, high), 1e-9,
+                  given=f"θ = {theta}, target {target} m, limits {low} to {high}")
         for target in (end, np.zeros(2), draw(-2.0, 2.0, 2)):
             close("θ after a sweep of joints whose two limits are equal [rad]",
                   lesson.ccd_step(reach, theta, target, arm_of(lesson, lengths, low=near, high=near)), near,
@@ -787,7 +860,7 @@ def sweep_special_arms(lesson, draw):
 @exercise("11.13", points=0.5,
           hint="stop each joint at its limit, and turn the end by the actual change of the angle")
 def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
-    for trial in range(8):                                               # both limits of a joint above 0, or both below
+    for trial in range(12):                                              # both limits of a joint above 0, or both below
         n = draw.whole(3, 6)
         lengths, theta, target = lengths_of(draw, n), draw(-0.3, 0.3, n), draw(-2.0, 2.0, 2)
         around = draw(0.9, 1.5, n) * (-1.0) ** (np.arange(n) + trial)
@@ -797,6 +870,8 @@ def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
             k = np.arange(n)
             theta = np.where(k % 3 == 0, high + 1.5, theta) if trial % 2 else np.where(k % 3 == 0, low - 1.5, theta)
             low, high = np.where(k % 3 == 1, -np.inf, low), np.where(k % 3 == 2, np.inf, high)
+        if trial > 7:                                                    # each begins exactly at a limit
+            theta = np.where((low == -np.inf) | (high < np.inf) & (k % 2 == trial % 2), high, low)
         arm = arm_of(lesson, lengths, low=low, high=high)
         got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
@@ -848,10 +923,12 @@ def test_a_sweep_projects_there_and_back(lesson, draw):
     last = np.array([-half, 1.0 - half]) / np.hypot(half, 1.0 - half)         # coincide: point_at goes along axis 0
     for way, expected in (((1.0, 0.0), ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0))),
                           ((0.0, 1.0), ((0.0, 0.0), (half, half), (half + last[0], half + last[1])))):
-        x = size * np.outer((0.0, 1.0, 2.0), way)
-        close("positions after a sweep to a target at a joint [m]",
-              lesson.fabrik_sweep(x, x[1].copy(), np.array([size, size])), size * np.array(expected), ROUND_OFF,
-              given=f"joints at {x} m, target {x[1]} m")
+        for d in (2, 3):
+            x, there = (np.pad(size * np.array(one), ((0, 0), (0, d - 2)))
+                        for one in (np.outer((0.0, 1.0, 2.0), way), expected))
+            close("positions after a sweep to a target at a joint [m]",
+                  lesson.fabrik_sweep(x, x[1].copy(), np.array([size, size])), there, ROUND_OFF,
+                  given=f"joints at {x} m, target {x[1]} m")
 
 
 @exercise("11.14", points=0.5, hint="every link has its length after the sweep, and the base is where it was")
@@ -882,14 +959,22 @@ def hold_a_joint_that_nothing_pushes(lesson, draw):
               lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
 
 
-def step_between_far_limits(lesson, draw):
-    """The step of 11.15 for special linear tasks."""
-    damping = draw(0.5, 1.0)
-    for e, J, target in special_equations(draw):
-        n = J.shape[1]
-        got = lesson.limited_step(linear, np.zeros(n), target, arm_of(lesson, np.ones(n), damping=damping))
-        close("change of θ for a special linear task [-]", got, damped(J, e, damping), SOLVED,
-              given=f"θ = 0, e = {e}, J = {J}, λ = {damping}")
+def step_of_special_tasks(lesson, draw):
+    """The step of 11.15 for special linear tasks, from θ = 0, which is inside, beyond or at limits, or at their only
+    place.
+    """
+    damping, near = draw(0.5, 1.0), draw(0.2, 0.5)
+    limits = np.array([(-np.inf, np.inf), (near, 2.0 * near), (-near, -near), (-2.0 * near, -near), (-near, 0.0),
+                       (0.0, np.inf), (near, near)])
+    for (e, J, target), first in itertools.product(special_equations(draw), range(len(limits))):
+        n, wish = J.shape[1], e @ J
+        low, high = limits[(np.arange(n) + first) % len(limits)].T.copy()
+        got = lesson.limited_step(linear, np.zeros(n), target,
+                                  arm_of(lesson, np.ones(n), damping=damping, low=low, high=high))
+        blocked = ((low >= 0.0) & (wish < 0.0)) | ((high <= 0.0) & (wish > 0.0))
+        close("change of θ for a special linear task [-]", got,
+              np.clip(damped(np.where(blocked, 0.0, J), e, damping), low, high), SOLVED,
+              given=f"θ = 0, e = {e}, J = {J}, λ = {damping}, limits {low} to {high}")
 
 
 @exercise("11.15", points=0.5, hint="a joint inside its limits, or at one but pushed inwards, moves as in damped_step")
@@ -921,7 +1006,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
               damped(np.where(first, 0.0, J), e, damping), SOLVED,
               given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows, limits {arm.low} to {arm.high}")
     hold_a_joint_that_nothing_pushes(lesson, draw)
-    step_between_far_limits(lesson, draw)
+    step_of_special_tasks(lesson, draw)
 
 
 def step_of_stiff_arms(lesson, draw, size):
@@ -1041,7 +1126,8 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
               given=f"θ = 0, e = {size * e}, J = {J}, {rows} rows, κ (rest − θ) = {size * z}")
     for e, J, target in special_equations(draw):
         n = J.shape[1]
-        z, arm = pull * rest[:n], arm_of(lesson, np.ones(n), rest=rest[:n], pull=pull, **NARROW)
+        away = np.where(np.arange(n) == 1, 0.0, rest[:n])                # the second joint is at rest
+        z, arm = pull * away, arm_of(lesson, np.ones(n), rest=away, pull=pull, low=0.0, high=0.0)
         close("change of θ for a special linear task [-]", lesson.null_space_step(linear, np.zeros(n), target, arm),
               z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9,
               given=f"θ = 0, e = {e}, J = {J}, κ (rest − θ) = {z}")
@@ -1109,14 +1195,15 @@ def test_damped_steps_leave_the_predicted_distance(lesson, draw):
         # 3000 iterations are enough for six digits: the slowest error shrinks by a hundredth per iteration
         close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping), left, 1e-6 * reach,
               given=f"lengths {lengths}, {away} m away, λ = {damping}")
+    ways = itertools.cycle(((np.cos(turn), np.sin(turn)), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)))
     for lengths in arms_of_all_sizes(draw):
         least, most = ring(lengths)
         for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most, draw(20.0, 30.0) * most),
                                0.0):
-            target, damping = away * np.array([np.cos(turn), np.sin(turn)]), draw(0.7, 1.2) * most
+            target, damping = away * np.array(next(ways)), draw(0.7, 1.2) * most
             close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
                   max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
-                  given=f"lengths {lengths}, {away} m away, λ = {damping}")
+                  given=f"lengths {lengths}, target {target} m, λ = {damping}")
 
 
 @exercise("11.18", points=1,

@@ -1832,32 +1832,53 @@ edit("11.16", "uses a pull of at most ½", "arm.pull *", "min(arm.pull, 0.5) *")
 
 # special cases --------------------------------------------------------------------------------------------------
 # Joints at one place or at the end, angles and arms of 0, a single joint or more than six, no damping, equal limits.
+edit("11.1", "does not turn by exactly half a turn", "phi += theta[k]", "phi += theta[k] * (abs(theta[k]) != np.pi)")
+edit("11.1", "points a link up that points along y, or against it", "np.sin(phi)",
+     "(np.sin(phi) if abs(np.cos(phi)) > 1e-12 else 1.0)")
 edit("11.2", "divides by the distance of the end from a joint, which may be 0", "x[k, 1] - x[n, 1],",
      "x[k, 1] - x[n, 1] + 0.0 / np.hypot(x[n, 0] - x[k, 0], x[n, 1] - x[k, 1]),")
 edit("11.2", "returns zeros for the second of two joints at one place", "return J",
      "J[:, 1:][:, np.all(x[1:n] == x[:n - 1], axis=1)] = 0.0; return J")
 edit("11.2", "takes the base to be at (0, 0) where there is a single joint", "return J",
      "return J if n > 1 else np.array(((-x[1, 1],), (x[1, 0],)))")
+edit("11.2", "returns zeros where the end is at the base", "return J", "return J * float(np.any(x[n] != x[0]))")
 edit("11.3", "returns atan2(σ₁² − a, b), which loses the digits of a small angle", TURN,
      "np.arctan2(longer * longer - a, b)")
+edit("11.3", "stops at a joint that the end is at", "for k in range(J.shape[1])",
+     "for k in range(np.argmin(np.append(np.any(J, axis=0), False)))")
+edit("11.3", "counts joints at one place only once", "a, b, c, squared",
+     "J = J * np.append(True, np.any(J[:, 1:] != J[:, :-1], axis=0)); a, b, c, squared")
+edit("11.3", "returns the lengths of two columns at right angles in their order", "return longer",
+     "if J.shape[1] == 2 and J[0, 0] * J[0, 1] == -J[1, 0] * J[1, 1]: "
+     f"return np.hypot(J[0, 0], J[1, 0]), np.hypot(J[0, 1], J[1, 1]), {TURN}\n    return longer")
 edit("11.3", "returns no number for the angle of a circle", TURN, f"({TURN} if b != 0.0 or a != c else np.nan)")
 edit("11.4", "refuses a target nearer to the base than 1e-9 m", "r < least - EDGE * most",
      "0.0 < r < 1e-9 or r < least - EDGE * most")
+edit("11.4", "takes half the size of θ₂ as the correction where the two links are equal", "back = ",
+     "back = 0.5 * abs(theta_2) if lengths[0] == lengths[1] else ")
 for refused, what in (("a target nearer to the base than l₃", "np.hypot(target[0], target[1]) < lengths[2]"),
                       ("a target at the base", "np.hypot(target[0], target[1]) == 0.0"),
                       ("a last joint at the base", "np.hypot(wrist[0], wrist[1]) < 1e-9")):
     edit("11.5", f"refuses {refused}", "theta = solve_2r(wrist,",
          f"if {what}: raise BadInput('distance of the target [m]', 0.0, 'go away')\n    theta = solve_2r(wrist,")
+edit("11.5", "takes the size of x of a last joint that is as high as the base", "theta = solve_2r(wrist,",
+     "wrist[0] *= 1.0 if wrist[1] != 0.0 else np.sign(wrist[0])\n    theta = solve_2r(wrist,")
 edit("11.5", "takes the direction of the target where φ is exactly 0", "phi = target[2]",
      "phi = target[2] if target[2] != 0.0 else np.arctan2(target[1], target[0])")
 edit("11.6", "leaves out the offset of a joint whose angle is 0", "rotate(q, row(offsets, k))",
      "scaled(float(theta[k] != 0.0), rotate(q, row(offsets, k)))")
 edit("11.6", "does not rotate the axis of a joint whose angle is 0", "put(a, k, rotate(q, axis))",
      "put(a, k, rotate(q, axis) if theta[k] != 0.0 else axis)")
+edit("11.6", "does not rotate an offset along the joint's own axis", "rotate(q, row(offsets, k))",
+     "(rotate(q, row(offsets, k)) if any(across(axis, row(offsets, k))) else row(offsets, k))")
 edit("11.6", "divides by the length of an offset, which may be 0", "plus(row(x, k), 1.0,",
      "plus(row(x, k), 1.0 + 0.0 / np.sqrt(np.sum(offsets[k] ** 2)),")
 edit("11.6", "uses the same axis for two joints at one place", "return x, a, q",
      "k = np.flatnonzero(np.all(x[1:n] == x[:n - 1], axis=1)); a[k + 1] = a[k]; return x, a, q")
+for which, rotated in (("the first one", "np.any(axes[k] != axes[0])"),
+                       ("the one before", "k == 0 or np.any(axes[k] != axes[k - 1])")):
+    edit("11.6", f"does not rotate an axis that is the same as {which}", "put(a, k, rotate(q, axis))",
+         f"put(a, k, rotate(q, axis) if {rotated} else axis)")
 edit("11.6", "cuts the angles off at two turns", "scaled(theta[k], axis)",
      "scaled(min(max(theta[k], -4.0 * np.pi), 4.0 * np.pi), axis)")
 edit("11.6", "does not turn by exactly half a turn", "scaled(theta[k], axis)",
@@ -1866,33 +1887,71 @@ edit("11.6", "does not turn by angles below 1e-6", "scaled(theta[k], axis)",
      "scaled(theta[k] if abs(theta[k]) > 1e-6 else 0.0, axis)")
 edit("11.7", "returns no angular velocity where the end does not move", "v[c], a[k, c]",
      "v[c], (a[k, c] if any(v) else 0.0)")
+edit("11.7", "takes an axis against z for one along z, in the velocity of the end", "minus(row(x, n), row(x, k))",
+     "scaled(1.0 if any(a[k, :2]) else a[k, 2], minus(row(x, n), row(x, k)))")
+edit("11.7", "returns no velocity where the end is at the base", "return J",
+     "J[:3] *= float(np.any(x[n] != x[0])); return J")
+edit("11.7", "exchanges rows and columns of the axes of three joints", "v[c], a[k, c]",
+     "v[c], (a[c, k] if n == 3 else a[k, c])")
+edit("11.7", "uses the same velocity for two joints at one place", "return J",
+     "k = np.flatnonzero(np.all(x[1:n] == x[:n - 1], axis=1)); J[:3, k + 1] = J[:3, k]; return J")
 edit("11.7", "divides by the distance of the end from a joint, which may be 0", "v[c], a[k, c]",
      "v[c] + 0.0 / np.sqrt(np.sum((x[n] - x[k]) ** 2)), a[k, c]")
 edit("11.8", "divides zero by zero where q_target is −q", "2.0 if size == 0.0", "2.0 if np.all(q == q_target)")
+edit("11.8", "reverses the vector where both axes are the same and w of q is below 0", "return factor * d[1:]",
+     "return factor * d[1:] * (1.0 if q[0] >= 0.0 or any(across(q[1:], q_target[1:])) else -1.0)")
+edit("11.8", "rotates in the frame of the link where q is a rotation about x, y or z", "if d[0] < 0.0:",
+     "if np.sum(q[1:] == 0.0) == 2:\n"
+     "        d = quaternion_product(np.array((q[0], -q[1], -q[2], -q[3])), q_target)\n    if d[0] < 0.0:")
+edit("11.8", "returns zeros where q and q_target are rotations by half a turn", "return factor * d[1:]",
+     "return factor * d[1:] * float(q[0] != 0.0 or q_target[0] != 0.0)")
+edit("11.9", "multiplies with J, not its transpose, where it is square and has more than two rows", "(e @ J)",
+     "(J @ e if 2 < e.size == theta.size else e @ J)")
+edit("11.9", "uses only the first row of the task for a single joint", "(e @ J)",
+     "(e @ J if theta.size > 1 else e[0] * J[0])")
+edit("11.9", "does not move joints at a limit further out", f"return {PUSHED}",
+     f"return (lambda new: np.where(((theta == arm.high) & (new > theta)) | ((theta == arm.low) & (new < theta)), "
+     f"theta, new))({PUSHED})")
 edit("11.9", "takes a gain of 0 for 1", "arm.gain *", "(arm.gain or 1.0) *")
 SVD = "u, sigma, v = np.linalg.svd(J, False)"
 edit("11.10", "divides a single row by its square, which may be 0", SVD,
      f"if len(J) == 1: return J.T / (J @ J.T)\n    {SVD}")
 edit("11.10", "divides a single column by its square, which may be 0", SVD,
      f"if J.shape[1] == 1: return J.T / (J.T @ J)\n    {SVD}")
+edit("11.10", "divides by the diagonal of a symmetric J", SVD, "if J.shape[0] == J.shape[1] and np.all(J == J.T) "
+     f"and np.all(np.diag(J) != 0.0): return np.diag(1.0 / np.diag(J))\n    {SVD}")
+edit("11.10", "counts equal rows only once", SVD, f"J = J.copy(); J[1:][np.all(J[1:] == J[:-1], axis=1)] = 0.0; {SVD}")
+edit("11.10", "counts equal columns only once", SVD,
+     f"J = J.copy(); J[:, 1:][:, np.all(J[:, 1:] == J[:, :-1], axis=0)] = 0.0; {SVD}")
 edit("11.10", "adds only one of several σ_i that are equal", f"not sigma[i] <= {CUTOFF}",
      f"not (sigma[i] <= {CUTOFF} or i > 0 and sigma[i] == sigma[i - 1])")
 edit("11.11", "uses only the first row of the task for a single joint", SUM,
      f"if theta.size == 1: return theta + J[0] * e[0] / (J[0, 0] ** 2 + arm.damping**2)\n    {SUM}")
+edit("11.11", "moves joints to rest that do not move the end", f"return {SOLVED}",
+     f"return np.where(np.any(J, axis=0), {SOLVED}, arm.rest)")
 edit("11.11", "divides by the size of the step, which may be 0", f"return {SOLVED}",
      f"return (lambda new: new + 0.0 / np.sqrt((new - theta) @ (new - theta)))({SOLVED})")
 edit("11.12", "uses a damping that is not below 1e-3 m", "damping**2 / (sigma**2 + damping**2)",
      "max(damping, 1e-3)**2 / (sigma**2 + max(damping, 1e-3)**2)")
 edit("11.12", "does not let σ² + λ² be below 1e-12", "(sigma**2 + damping**2)",
      "np.maximum(sigma**2 + damping**2, 1e-12)")
+edit("11.12", "takes only the first of several equal σ, and 0 for the others", FACTORS,
+     f"sigma = sigma * np.append(True, sigma[1:] != sigma[:-1]); {FACTORS}")
+edit("11.12", "returns 1 for the damped step, too, where the gain is 0", FACTORS,
+     f"if gain == 0.0: return 0.0 * sigma + 1.0, 0.0 * sigma + 1.0\n    {FACTORS}")
 edit("11.12", "limits the gain to 10", "gain * sigma**2", "min(gain, 10.0) * sigma**2")
 edit("11.13", "takes the end from the task, which is not used", ENDS,
      "e, _ = task(theta, target, arm); end_x, end_y = target[0] - e[0], target[1] - e[1]")
 edit("11.13", "does nothing where the end is at the target, whatever the limits are", ENDS,
      f"{ENDS}\n    if end_x == target[0] and end_y == target[1]: return theta")
+edit("11.13", "does not move a joint from beyond one limit further than to that limit", NEW,
+     f"{NEW} if arm.low[k] <= theta[k] <= arm.high[k] or arm.low[k] <= wish <= arm.high[k] "
+     "else np.minimum(np.maximum(theta[k], arm.low[k]), arm.high[k])")
 edit("11.13", "does not keep the limits of a joint that is at the target", NEW, f"{NEW} if s_x or s_y else wish")
 edit("11.13", "does not keep the limits of a joint that need not turn", NEW, f"{NEW} if wish != theta[k] else wish")
 edit("11.13", "does not keep limits that are equal", NEW, f"{NEW} if arm.low[k] < arm.high[k] else wish")
+edit("11.13", "does not turn a joint that is exactly at a limit, not even back", NEW,
+     f"{NEW} if theta[k] != arm.low[k] and theta[k] != arm.high[k] else theta[k]")
 edit("11.13", "does not turn a joint that is exactly between the end and the target", "np.arctan2(r_x * s_y",
      "(r_x * s_y != r_y * s_x) * np.arctan2(r_x * s_y")
 edit("11.14", "moves only the first six links on the way back", "range(n - 1, -1, -1)", "range(min(n, 6) - 1, -1, -1)")
@@ -1900,12 +1959,18 @@ edit("11.14", "moves only the first six links on the way forth", "range(n):", "r
 edit("11.14", "leaves the end of a single link where it coincides with the base",
      "point_at(x[k], x[k + 1], lengths[k])",
      "point_at(x[k], x[k + 1], lengths[k]) if n > 1 or np.any(x[1] != x[0]) else x[1]")
+edit("11.14", "moves the second of two points that coincide along axis 2, in space", "point_at(x[k], x[k + 1],",
+     "point_at(x[k], x[k + 1] + np.eye(3)[2] if x.shape[1] == 3 and np.all(x[k] == x[k + 1]) else x[k + 1],")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way back", "point_at(x[k + 1], x[k],",
      "point_at(x[k + 1], x[k] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k + 1],")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way forth", "point_at(x[k], x[k + 1],",
      "point_at(x[k], x[k + 1] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k],")
+edit("11.15", "does nothing where e is 0, whatever the limits are", "wish, J =",
+     "if not np.any(e): return theta.copy()\n    wish, J =")
 edit("11.15", "adds the step to angles that it has set to the limits", "theta + sum_of_rows",
      "np.clip(theta, arm.low, arm.high) + sum_of_rows")
+edit("11.15", "blocks joints whose two limits are equal, whatever the direction", "if (theta[k] >= arm.high[k]",
+     "if arm.low[k] == arm.high[k] or (theta[k] >= arm.high[k]")
 edit("11.15", "blocks joints beyond a limit, whatever the direction", "if (theta[k] >= arm.high[k]",
      "if theta[k] > arm.high[k] or theta[k] < arm.low[k] or (theta[k] >= arm.high[k]")
 wrongs("11.15", between_limits, {"sets joints beyond a limit to the limit, without a step": {
@@ -1913,6 +1978,8 @@ wrongs("11.15", between_limits, {"sets joints beyond a limit to the limit, witho
                                                 clipped(theta, arm))}})
 edit("11.16", "does not pull where the task has more rows than there are joints", "arm.pull *",
      "arm.pull * (theta.size >= e.size) *")
+edit("11.16", "does not move a joint that is at rest while others are not", f"return {PULLED}",
+     f"return np.where((z == 0.0) & np.any(z), theta, {PULLED})")
 edit("11.16", "does not pull where J is 0", "arm.pull *", "arm.pull * np.any(J) *")
 edit("11.16", "does not pull a single joint", "arm.pull *", "arm.pull * (theta.size > 1) *")
 
@@ -1977,6 +2044,8 @@ edit("11.17", "takes a distance below 0.01 m for 0", LEFT, f"hole -= 1e-2; reach
      "    return left + 1e-2 if left > 0.0 else 0.0")
 edit("11.17", "takes a distance below 0.1 m in the hole for 0", LEFT, f"{LEFT} if not 0.0 < hole - away < 0.1 else 0.0")
 edit("11.17", "returns at most 5 m", LEFT, f"return min(5.0, {LEFT[7:]})")
+edit("11.17", "takes y of a target on the y axis for its distance", "np.sqrt(target @ target)",
+     "(np.sqrt(target @ target) if target[0] != 0.0 else target[1])")
 edit("11.17", "computes in single precision", "np.sum(lengths)", "np.float64(np.float32(np.sum(lengths)))")
 edit("11.17", "takes the longest link as the reach", "reach, away = np.sum(lengths)", "reach, away = np.max(lengths)")
 edit("11.17", "omits links below a twentieth of the reach in the hole", "2.0 * np.max(lengths) - reach",
