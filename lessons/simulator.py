@@ -325,10 +325,10 @@ def gain_without_source(energies, work):
 def compare(full, minimal, runs, clock):
     """Return (largest difference, ratio of times) of a full loop and a minimal one, which leaves something out.
 
-    full() and minimal() return arrays of the same shape.  Run full and then minimal, `runs` times, and time each run
-    with clock() [s].  The difference is the largest |full − minimal| of neighbouring runs, over all entries and all
-    rounds, and NaN where one of them is NaN.  The ratio is the median, over the rounds, of the time of full over that
-    of minimal.
+    full() and minimal() return arrays of the same shape.  In each of `runs` rounds, run full and then minimal, and time
+    each run with clock() [s].  The difference is the largest |full − minimal| of the two runs of a round, over all
+    entries and all rounds, and NaN where one of them is NaN.  The ratio is the median, over the rounds, of the time of
+    full over that of minimal.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.16: compare")

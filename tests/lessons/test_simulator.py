@@ -1771,7 +1771,7 @@ def compared(lesson, full_times, minimal_times, full_ends, minimal_ends):
 
 @pytest.mark.counts_calls
 @exercise("10.16", points=0.5,
-          hint="clock() directly before and after each run; the median of the ratios of neighbouring runs")
+          hint="clock() directly before and after each run; the median of the ratios of all rounds")
 def test_the_ratio_is_the_median_of_neighbours(lesson, draw):
     """The median is neither the first nor the last ratio, nor that of the run in the middle, nor one of four."""
     for order in ([1, 3, 0, 5, 6, 2, 4], [1, 3, 0, 2], [1, 0], [0]):

@@ -328,7 +328,7 @@ def observed_order(dts, errors):
 
 
 @right("1.10", "with sums of logarithms, not of their distances from the mean")
-def observed_order(dts, errors):
+def observed_order_2(dts, errors):
     for dt in dts:
         check_positive("step dt [s]", dt)
     for error in errors:
