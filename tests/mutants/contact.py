@@ -182,6 +182,8 @@ edits("9.1", {
 
 
 edits("9.1", {
+    "lets the tangent of a normal along an axis point along x or y": ("(2 * k + 1, -n_y, n_x)",
+        "(2 * k + 1, *((-n_y, n_x) if n_x and n_y else (abs(n_y), abs(n_x))))"),
     "leaves out a second contact of the same two bodies":
         ("n_x, n_y = contacts", "if k and contacts.a[k] == contacts.a[k - 1] and contacts.b[k] == contacts.b[k - 1]: "
          "continue\n        n_x, n_y = contacts"),
@@ -279,6 +281,9 @@ wrongs("9.2", delassus, {
 
 
 wrongs("9.2", delassus, {
+    "adds one part in 1e6 to the diagonal of a row that another one repeats":
+        {"result": lambda A: A + 1e-6 * np.diag([row[k] * any(np.array_equal(row, other) for other in A[:k])
+                                                for k, row in enumerate(A)])},
     "has 1 on the diagonal where no body can be moved": {"result": lambda A: A + np.diag(1.0 * (np.diag(A) == 0.0))},
     "takes a body for fixed that is a million times heavier than the lightest one":
         {"masses": lambda w: np.where(w < 1e-6 * np.max(w), 0.0, w)},
@@ -400,6 +405,9 @@ def complementarity_residual_2(A, b, lam):
 
 edits("9.3", {
     "returns 0 where no contact has an impulse": ("return np.max", "return 0.0 if not np.any(lam) else np.max"),
+    "returns the size of the smallest minimum, if that is below zero":
+        ("np.abs(np.minimum(np.diag(A) * lam, A @ lam + b))",
+         "(lambda y: np.abs(y) if np.min(y) >= 0.0 else -np.min(y))(np.minimum(np.diag(A) * lam, A @ lam + b))"),
     "uses the largest entry of each row in place of the diagonal": ("np.diag(A)", "np.max(np.abs(A), axis=1)"),
     "does not take absolute values of a single contact":
         ("np.abs(np.minimum(np.diag(A) * lam, A @ lam + b))",
@@ -472,6 +480,9 @@ edits("9.4", {
     "leaves out the diagonal in the sum": ("A[k] @ lam + b[k]", "A[k] @ lam - A[k, k] * lam[k] + b[k]"),
     "uses the impulses of earlier contacts only": ("A[k] @ lam + b[k]", "A[k, :k + 1] @ lam[:k + 1] + b[k]"),
     "uses the impulses of later contacts only": ("A[k] @ lam + b[k]", "A[k, k:] @ lam[k:] + b[k]"),
+    "uses the old impulses of all others where none is given":
+        ("lam = float_copy(lam)", "if not np.any(lam): return np.maximum(0.0, -omega * b / np.diag(A))\n"
+         "    lam = float_copy(lam)"),
     "uses the impulses of the neighbours only":
         ("A[k] @ lam + b[k]", "A[k, max(0, k - 1):k + 2] @ lam[max(0, k - 1):k + 2] + b[k]"),
     "corrects only contacts that push": ("lam[k] = np.maximum", "if lam[k] > 0.0: lam[k] = np.maximum"),
@@ -1080,6 +1091,10 @@ edits("9.9", {
     "slides to the side of the given friction":
         ("np.minimum(np.maximum(J[t] - u[t] / A[t, t], -limit), limit)",
          "J[t] - u[t] / A[t, t] if abs(J[t] - u[t] / A[t, t]) <= limit else limit * np.sign(J[t])"),
+    "judges ten contacts at most": ("range(0, J.size, 2)", "range(0, min(J.size, 20), 2)"),
+    "takes 99 % of the limit for the limit where a contact slides":
+        ("worst = np.maximum(worst", "J_t = J[t] if limit > abs(J[t]) > 0.99 * limit and J[t] * u[t] < 0.0 else J_t\n"
+         "        worst = np.maximum(worst"),
     "leaves out contacts that separate": ("limit = mu", "if u[n] > 0.0: continue\n        limit = mu"),
 })
 
@@ -1670,6 +1685,7 @@ edits("9.13", {
     "returns two components": ("scaled(limit / size, J)", "scaled(limit / size, J)[:2]"),
     "rounds": ("scaled(limit / size, J)", "tuple(round(c, 6) for c in scaled(limit / size, J))"),
     "divides where there is no J and no limit": ("size <= limit", "size < limit"),
+    "returns an impulse along z as it is": ("size <= limit", "size <= limit or J[2] == size"),
     "returns J for a limit of zero": ("size <= limit", "size <= limit or limit == 0.0"),
     "overflows: squares large components": ("np.sqrt(dot(J, J))", "np.sqrt(dot(J, J) ** 1.0 * 1e300) / 1e150"),
 })
@@ -1971,6 +1987,7 @@ wrongs("9.15", leaves, {
 })
 edits("9.15", {
     "returns True where there are no bodies": ("    return False", "    return low.shape[0] == 0"),
+    "looks at eight bodies at most": ("range(low.shape[0])", "range(min(8, low.shape[0]))"),
     "does not notice NaN of a single body":
         ("    for i in range(low.shape[0])",
          "    if low.shape[0] == 1: return np.any(low < wide_low) or np.any(high > wide_high)\n"
@@ -2095,6 +2112,8 @@ wrong("9.16", "uses μ = 1000 for infinite friction")(velocity_swept(most=1000.0
 edit("9.16", "changes its input", "float_copy(v), float_copy(omega), float_copy(J)", "v, omega, J")
 edit("9.16", "uses the mass of a for b", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] -= inv_mass[a] * d_x")
 edit("9.16", "omits impulses below 1 nN s", "0.0 if J_n <= 0.0", "0.0 if J_n <= 1e-9")
+edit("9.16", "limits aim to −1 m/s where a contact does not approach", "(aim[k] - u_n -",
+     "((aim[k] if u_n < 0.0 else max(aim[k], -1.0)) - u_n -")
 edit("9.16", "omits the softness in the denominator", "k_n * (1.0 + give[k])", "k_n")
 edit("9.16", "adds the normal velocity in place of subtracting it", "(aim[k] - u_n -", "(aim[k] + u_n -")
 edit("9.16", "has the wrong sign in front of u_t: adds the tangential velocity", "J_t - u_t /", "J_t + u_t /")
@@ -2415,6 +2434,8 @@ edits("9.19", {
     "keeps the impulse where both are equal":
         ("matrix[k], right[k] = A[k], -b[k]", "matrix[k], right[k] = A[k], -b[k]\n"
          "        elif u[k] == A[k, k] * lam[k]:\n            right[k] = A[k, k] * lam[k]"),
+    "solves for contacts without an impulse that approach without impulses":
+        ("u[k] < A[k, k] * lam[k]", "u[k] < A[k, k] * lam[k] or (lam[k] == 0.0 > b[k])"),
     "takes almost equal for equal": ("u[k] < A[k, k] * lam[k]", "u[k] < A[k, k] * lam[k] - 1e-6 * abs(u[k])"),
     "goes half of the way where the largest minimum grows":
         ("return solve(matrix, right)",
