@@ -1221,7 +1221,8 @@ def half_sizes(lesson, rng):
     """
     found, truth = [], []
     for d in (2, 3):
-        h, r, half, places = *rng.uniform(0.2, 1.0, 2), rng.uniform(0.2, 1.0, d), rng.normal(size=(d + 1, d))
+        h, r = rng.uniform(0.2, 1.0, 2)
+        half, places = rng.uniform(0.2, 1.0, d), rng.normal(size=(d + 1, d))
         sides = places[1:] - places[0]
         if np.linalg.det(sides) < 0.0:
             places = places[::-1]
