@@ -1303,6 +1303,16 @@ def soft_contact(lesson, rng):
     return (impulse, *lesson.soft_contact(gap, hertz, zeta, dt)), (dt * force, -gap / dt, 0.0)
 
 
+@random_law("A step of Newton's method for the minimum map stops contacts at which u is the smaller number, and frees "
+            "all others.", "largest error of a step of the minimum map [N s, m/s]", 1e-9)
+def step_of_minimum_map(lesson, rng):
+    """Where u < A_kk λ at the start, u is 0 afterwards; at all others λ is."""
+    A, b = contact_problem(rng)
+    A, before = A * rng.uniform(0.1, 10.0), rng.normal(size=8)
+    after, pushes = lesson.minimum_map_step(A, b, before), A @ before + b < np.diag(A) * before
+    return np.where(pushes, A @ after + b, after), np.zeros(8)
+
+
 @case("laws-of-contact", "Laws of contact", compiled=False)
 def laws_of_contact(lesson, check):
     """Compare rows, sweeps and complementarity with independent computations.
@@ -1313,7 +1323,7 @@ def laws_of_contact(lesson, check):
     """
     check.laws(lesson, (rows_of_contacts, delassus_matrix, sweep_of_normals, direct_solver, residual_of_normals,
                         sweep_with_friction, arms, quick_sweep, sweep_in_space, free_turn, residual_with_friction,
-                        kept_impulses, soft_contact), seed=9, times=50)
+                        kept_impulses, soft_contact, step_of_minimum_map), seed=9, times=50)
     stops_in_a_substep(lesson, check)
 
 

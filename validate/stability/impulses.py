@@ -12,6 +12,7 @@ from scipy.linalg import block_diag
 from scipy.optimize import minimize_scalar, nnls
 
 from solutions.checks import Diverged
+from solutions.given import impact_modes
 from solutions.impulses import cross_2d
 from validate.reference.contact import enumerated
 from validate.reference.impulses import COPIES, inverse_matrix, point_rows
@@ -932,6 +933,23 @@ def shares_of_the_loss(lesson, rng):
     return least / lost, 1.0 - one.e**2
 
 
+@random_law("A body that sticks with one point is held there, whatever pushes it at the others.",
+            "velocities of its points: largest error [m/s]", 1e-9)
+def held_where_it_sticks(lesson, rng):
+    """Push the other points, and then stop the one that sticks: K J = u_sep n − u."""
+    one, modes = landing(lesson, rng), rng.permutation((impact_modes.STICKS, impact_modes.SLIDES, impact_modes.OPEN))
+    impact = impact_modes.impact_of(lesson.contact_matrix, lesson.apply_impulse, one.body, one.r, one.n, one.e, one.mu)
+    u, A, _, _ = impact_modes.held_points(impact, modes)
+    J, s, y = rng.normal(size=(3, 3)), np.argmax(modes == impact_modes.STICKS), one.y
+    J[s] = 0.0
+    rows = [point_rows(arm) for arm in one.r]
+    for k in range(3):
+        y = y + one.W @ rows[k].T @ impact.frames[k].T @ J[k]
+    u_sep = max(0.0, -one.e * one.G[s] @ one.y) * one.n[s]
+    y = y + one.W @ rows[s].T @ np.linalg.solve(rows[s] @ one.W @ rows[s].T, u_sep - rows[s] @ y)
+    return u + A @ J.ravel(), np.concatenate([impact.frames[k] @ rows[k] @ y for k in range(3)])
+
+
 def pushes_of_the_law(body, r, y, u_sep, mu):
     """Return the changes (6, k) of (v, ω) by which the points of a body that stands on z = 0 may push it, after y.
 
@@ -976,8 +994,8 @@ def several_points(lesson, check):
     if all points approach: ½ m v² is then a parabola in that factor, and 1 − e² of the largest loss is lost.  Its
     gradient steps converge slowly if a body rotates easily: after 2,000 sweeps some 1e-6 of 2 m/s are left.
     """
-    check.laws(lesson, (speeds_of_separation, approaches, pairs_of_cones, frictionless_impacts, shares_of_the_loss),
-               seed=79, times=4)
+    check.laws(lesson, (speeds_of_separation, approaches, pairs_of_cones, frictionless_impacts, shares_of_the_loss,
+                        held_where_it_sticks), seed=79, times=4)
     hit_by_four(lesson, check)
 
 

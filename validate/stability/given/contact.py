@@ -8,6 +8,7 @@ from itertools import combinations, product
 import numpy as np
 
 from solutions.support.convex_2d import Cores, convex_bounds_2d, convex_contacts_2d
+from solutions.support.kept_contacts import begin_ways, have_moved, unknown_ways
 from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 EXACT = 1e-9                 # of numbers around 1: the same by another sum
@@ -476,7 +477,32 @@ def forces_under_torques(lesson, rng):
     return (a, np.array(aside)), (truth, np.zeros(6))
 
 
+@random_law("Bodies move and turn with their velocities, and the way of a body is that of its fastest point.",
+            "motion: largest error of places, turns and ways [m, -]", EXACT)
+def ways_of_bodies(lesson, rng):
+    """In the plane, and in space if v is at right angles to ω, some point of the ball around a body moves along v as it
+    turns.  Contacts are found anew as soon as this way is longer than 1/500 of the smallest half size.
+    """
+    d, dt, half = rng.choice((2, 3)), rng.uniform(1e-3, 3e-3), rng.uniform(0.1, 1.0, (4, 2))
+    half = np.append(half, half[:, :1], axis=1)[:, :d]
+    x, v, q = rng.normal(size=(4, d)), 0.1 * rng.normal(size=(4, d)), (
+        rng.normal(size=4) if d == 2 else random_quaternions(rng, 4))
+    omega = 0.1 * rng.normal(size=4) if d == 2 else np.cross(v, rng.normal(size=(4, 3)))
+    way = dt * (np.linalg.norm(v, axis=1) + np.linalg.norm(half, axis=1) * (
+        np.abs(omega) if d == 2 else np.linalg.norm(omega, axis=1)))
+    ways = unknown_ways(half, 0, 100.0)
+    begin_ways(ways, have_moved(ways))
+    end = (lesson.move_2d if d == 2 else lesson.move)(x, q, v, omega, ways, dt)
+    found, turned = end[1], q + dt * omega if d == 2 else np.zeros(0)
+    if d == 3:
+        found = np.array([matrix_of(one) for one in end[1]])
+        turned = np.array([turned_by(w, dt) @ matrix_of(one) for w, one in zip(omega, q, strict=True)])
+    return ((end[0], found, ways.length, 1.0 * have_moved(ways)),
+            (x + dt * v, turned, way, 1.0 * (way > 2e-3 * np.min(half, axis=1))))
+
+
 @case("steps-of-a-pile", "A step of a pile, and forces under torques", compiled=False)
 def steps_of_a_pile(lesson, check):
-    """Compare a flight, its margin, a separation and forces with Euler's equation and with the laws of contact."""
-    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques), seed=32, times=15)
+    """Compare flights, margins, separation, ways and forces with Euler's equation and with the laws of contact."""
+    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies), seed=32,
+               times=15)

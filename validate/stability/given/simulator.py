@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from solutions.checks import Diverged
+from solutions.given import passing
 from solutions.support import model, shapes
 from solutions.support.events import extrema, value_at, zeros
 from solutions.support.quaternions import quaternion_from_matrix
@@ -1152,6 +1153,29 @@ def polyhedra_as_boxes(lesson, rng):
     return unlike(*found[::-1]), (len(found[0]), 0.0)
 
 
+def axes_along(first, rng):
+    """Return right-handed axes (3, 3), as columns, of which the first one points along `first`."""
+    u, across = first / np.linalg.norm(first), np.cross(first, rng.normal(size=3))
+    w = across / np.linalg.norm(across)
+    return np.stack((u, w, np.cross(u, w)), axis=1)
+
+
+@random_law("Two polyhedra that point at each other touch halfway between their nearest corners.",
+            "corner to corner: largest error of the contact [-, m]", 1e-8)
+def corner_to_corner(lesson, rng):
+    """Let a corner of each look along n at the other's, within a few degrees of the diagonal of a cube.
+
+    So no part of one solid is over a face of the other.
+    """
+    n, gap, bodies = axes_along(rng.normal(size=3), rng)[:, 0], rng.uniform(0.02, 0.05), []
+    for sign, place in ((1.0, 0.0 * n), (-1.0, gap * n)):
+        corner, half = rng.choice((-1.0, 1.0), 3), rng.uniform(0.4, 0.8, 3)
+        R = axes_along(sign * n, rng) @ axes_along(corner + 0.1 * rng.normal(size=3), rng).T
+        bodies.append(model.Body(tuple(place - R @ (corner * half)), 1.0, shapes.Polyhedron(
+            tuple(map(tuple, SIGNS * half))), q=tuple(quaternion_from_matrix(R))))
+    return nearest(contacts_of(lesson, bodies)[0]), np.array((0.0, 1.0, *-n, *(0.5 * gap * n), gap))
+
+
 @case("contacts-of-solids", "Contacts of round solids and polyhedra in space", compiled=False, in_quick=False)
 def contacts_of_solids(lesson, check):
     """Compare contacts in a composed loop with nearest points, shortest ways out, and corners.
@@ -1159,5 +1183,227 @@ def contacts_of_solids(lesson, check):
     Each solid is a core, the sum of some edges, with a radius: a point, a segment, or a box, which is also tried as a
     polyhedron.
     """
-    check.laws(lesson, (solids_apart, inside_a_solid, solids_on_planes, capsule_on_a_face, polyhedra_as_boxes),
-               seed=38, times=20)
+    check.laws(lesson, (solids_apart, inside_a_solid, solids_on_planes, capsule_on_a_face, polyhedra_as_boxes,
+                        corner_to_corner), seed=38, times=20)
+
+
+# ---------------------------------------------------------------------------------------------- shapes, links, ways
+
+@random_law("Solids of places in space have the centre and the tensor of the tetrahedra that they are made of.",
+            "solid of places: largest error of its corners, centre and tensor [-, m, kg m²]", EXACT)
+def solids_of_places(lesson, rng):
+    """Take two tetrahedra with a common face, and places inside them, which do not count.
+
+    A tetrahedron with corners v has its centre at their mean, and the mean of (x − centre) (x − centre)ᵀ is
+    Σ (v − centre) (v − centre)ᵀ/20.
+    """
+    face, way, (up, down) = rng.normal(size=(3, 3)), rng.normal(size=3), rng.uniform(0.5, 2.0, 2)
+    under = rng.dirichlet((3.0, 3.0, 3.0)) @ face
+    corners = np.array([*face, under + up * way, under - down * way])
+    solid, x, q = shapes.polyhedron_of(np.concatenate((corners, rng.dirichlet(np.full(5, 3.0), 4) @ corners)))
+    parts = corners[:4], corners[[0, 1, 2, 4]]
+    shares = np.abs([np.linalg.det(part[1:] - part[0]) for part in parts])
+    shares, centres = shares / np.sum(shares), np.mean(parts, axis=1)
+    centre, spread = shares @ centres, np.zeros((3, 3))
+    for share, middle, part in zip(shares, centres, parts, strict=True):
+        spread += share * ((part - middle).T @ (part - middle) / 20.0 + np.outer(middle - centre, middle - centre))
+    R = matrix_of(q)
+    return ((*unlike(x + np.array(solid.corners) @ R.T, corners), x,
+             R @ np.diag(shapes.moments_of_shape(solid, 2.0, 3)) @ R.T),
+            (5, 0.0, centre, 2.0 * (np.trace(spread) * np.eye(3) - spread)))
+
+
+@random_law("The half sizes of a shape hold all of it, and the least one is its thickness: that of the largest ball "
+            "inside.", "half sizes: largest error [m]", EXACT)
+def half_sizes(lesson, rng):
+    """The centre of a triangle or of a tetrahedron is at a third or a quarter of its heights, so over its longest side
+    or largest face it is 2 A/(3 side), or 3 V/(4 A).
+    """
+    found, truth = [], []
+    for d in (2, 3):
+        h, r = rng.uniform(0.2, 1.0, 2)
+        half, places = rng.uniform(0.2, 1.0, d), rng.normal(size=(d + 1, d))
+        sides = places[1:] - places[0]
+        if np.linalg.det(sides) < 0.0:
+            places = places[::-1]
+        places = places - np.mean(places, axis=0)
+        faces = [np.delete(places, k, axis=0) for k in range(d + 1)]
+        sizes = [np.sqrt(np.linalg.det((one[1:] - one[0]) @ (one[1:] - one[0]).T)) for one in faces]     # (d − 1)! A
+        pointed = shapes.Polygon(tuple(map(tuple, places))) if d == 2 else shapes.polyhedron_of(places)[0]
+        bodies = [model.Body((4.0 * k,) * d, 1.0, shape) for k, shape in enumerate(
+            (shapes.Ball(r), shapes.Box(tuple(half)), shapes.Capsule(h, r), pointed))]
+        loop, inside = lesson.compose(model.make_model(bodies, (0.0,) * d)), abs(np.linalg.det(sides)) / np.max(sizes)
+        found.append(loop.p.half.half)
+        truth.append([(r,) * d, half, (h + r, *(r,) * (d - 1)),
+                      (np.max(np.linalg.norm(places, axis=1)), *(inside / (d + 1.0),) * (d - 1))])
+    return tuple(found), tuple(map(np.array, truth))
+
+
+def linked(rng, kind, apart):
+    """Return (bodies, joint) of two bodies in space, with centres up to `apart` [m] from the joint's place."""
+    place, axis = rng.normal(size=(2, 3))
+    bodies = [tumbling(rng, 3)._replace(x=tuple(place + apart * rng.normal(size=3))) for _ in range(2)]
+    axis /= np.linalg.norm(axis)
+    joint = {"BallJoint": model.BallJoint(0, 1, tuple(place)), "Weld": model.Weld(0, 1, tuple(place)),
+             "Hinge": model.Hinge(0, 1, tuple(place), tuple(axis))}[kind]
+    return bodies, joint
+
+
+@random_law("In space a joint of a Model keeps its place on both bodies and both momenta, a hinge its axis, and a weld "
+            "all of their rotation.", "joints of a Model: largest error [m, -, kg m/s, kg m²/s]", EXACT)
+def links_keep(lesson, rng):
+    kind = rng.choice(("BallJoint", "Hinge", "Weld"))
+    bodies, joint = linked(rng, kind, 0.4)
+    loop = lesson.compose(model.make_model(bodies, (0.0, 0.0, 0.0), [joint]))
+    after = lesson.run_parts(loop, 0.0, loop.state, 0.01, 3)
+    begin, end = (lesson.state_of(loop, state) for state in (loop.state, after))
+    R, turned = rotations(begin.q), rotations(end.q)
+    own = [R[i].T @ (np.array(joint.place) - begin.x[i]) for i in (0, 1)]
+    held = {"BallJoint": np.zeros((3, 0)), "Weld": np.eye(3),
+            "Hinge": np.reshape(getattr(joint, "axis", (0.0, 0.0, 0.0)), (3, 1))}[kind]
+    moved = [turned[i] @ R[i].T @ held for i in (0, 1)]
+    return ((end.x[0] + turned[0] @ own[0], moved[0], *momenta_of(*after[:4], loop.p)),
+            (end.x[1] + turned[1] @ own[1], moved[1], *momenta_of(*loop.state[:4], loop.p)))
+
+
+@random_law("Bodies with their centres at one joint share the part of their spins that it holds: none at a ball joint, "
+            "all in a weld, and what is across the axis of a hinge.",
+            "spins at a joint of a Model: largest error [rad/s]", EXACT)
+def links_share(lesson, rng):
+    """What they share is Σ I ω/Σ I, for the same moment I about all axes.  A hinge has spins along or across it."""
+    kind, across = rng.choice(("BallJoint", "Hinge", "Weld")), rng.integers(2)
+    bodies, joint = linked(rng, kind, 0.0)
+    moments, spins = rng.uniform(0.2, 0.5, 2), rng.normal(size=(2, 3))
+    if kind == "Hinge":
+        along = np.outer(spins @ joint.axis, joint.axis)
+        spins = spins - along if across else along
+    bodies = [body._replace(inertia=(float(moment),) * 3, omega=tuple(spin), v=(0.1, 0.2, 0.3))
+              for body, moment, spin in zip(bodies, moments, spins, strict=True)]
+    loop = lesson.compose(model.make_model(bodies, (0.0, 0.0, 0.0), [joint]))
+    end = lesson.state_of(loop, lesson.run_parts(loop, 0.0, loop.state, 0.01, 2))
+    shares = kind == "Weld" or (kind == "Hinge" and across)
+    return end.omega, np.tile(moments @ spins / np.sum(moments), (2, 1)) if shares else spins
+
+
+@random_law("A loop with joints takes half of the load at both ends of a step.",
+            "torque on a jointed body of a Model: largest error of its spin [rad/s]", EXACT)
+def loads_at_both_ends(lesson, rng):
+    """Hold a body at its centre, and turn it by the torque τ sin t for some steps."""
+    d, dt, moment, place = rng.choice((2, 3)), 0.1, rng.uniform(0.2, 0.5), rng.normal(size=3)
+    tau, x = rng.normal(size=1 if d == 2 else (1, 3)), tuple(place[:d])
+    joint = model.Hinge(0, model.WORLD, x) if d == 2 else model.BallJoint(0, model.WORLD, x)
+    body = model.Body(x, 1.0, inertia=float(moment) if d == 2 else (float(moment),) * 3)
+    twist = lambda t, x, q, v, omega: (0.0 * x, np.sin(t) * tau)
+    loop = lesson.compose(model.make_model([body], (0.0,) * d, [joint], loads=[twist]))
+    end = lesson.state_of(loop, lesson.run_parts(loop, 0.3, loop.state, dt, 3))
+    times = 0.3 + dt * np.arange(4)
+    return end.omega, 0.5 * dt * np.sum(np.sin(times[:-1]) + np.sin(times[1:])) * tau / moment
+
+
+@random_law("A step is divided where fast bodies touch, or where those that overlap do so by a quarter of the smaller "
+            "radius more.", "share of a step at which balls touch: largest error [-]", EXACT)
+def share_of_a_touch(lesson, rng):
+    """Let two balls pass each other at a distance, or a ball fly into a plane; u is its way in the step as seen there.
+
+    They touch where |x + s u| is the sum of the radii, or, for those that overlap, less a quarter of the smaller one.
+    """
+    d, plane, overlap = rng.choice((2, 3)), rng.integers(2), rng.choice((0.0, 0.1))
+    radii, (n, aside) = rng.uniform(0.1, 3.0, 2), np.linalg.qr(rng.normal(size=(d, 2)))[0].T
+    least = np.min(radii[:1] if plane else radii)
+    far = radii[0] if plane else np.sum(radii)
+    beside = 0.0 if plane else rng.uniform(0.0, far - 1.2 * least)
+    begin = np.sqrt((far - overlap * least) ** 2 - beside**2) + (rng.uniform(0.1, 2.0) if overlap == 0.0 else 0.0)
+    touch = begin - np.sqrt((far - (overlap + 0.25) * least if overlap else far) ** 2 - beside**2)
+    way, drift = begin + 0.2 * least + rng.uniform(0.0, 2.0), rng.normal(size=d)
+    other = model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(n))) if plane else model.Body(
+        (0.0,) * d, 1.0, shapes.Ball(radii[1]))
+    loop = lesson.compose(model.make_model(
+        [model.Body(tuple(begin * n + beside * aside), 1.0, shapes.Ball(radii[0])), other], (0.0,) * d))
+    moves = np.zeros(loop.state.x.shape)
+    moves[loop.row] = (drift - (drift @ n + way) * n, 0.0 * n) if plane else (drift - way * n, drift)
+    after = loop.state._replace(x=loop.state.x + moves, v=moves / 0.1)
+    return loop.touch(loop.bounds, loop.narrow, loop.state, after, 0.1, loop.p), touch / way
+
+
+@random_law("A step is divided where the end of a bar that turns beside a plane touches it.",
+            "share of a step at which a bar touches: largest error [-]", EXACT)
+def share_of_a_turn(lesson, rng):
+    """Turn a bar about its centre, at a height h over a plane that it is parallel to at first:  a sin θ + b cos θ = h.
+
+    In a step the angle grows evenly in the plane, and tan ½θ in space.
+    """
+    d, dt, (a, b), wide = rng.choice((2, 3)), 0.1, rng.uniform((0.8, 0.2), (1.2, 0.3)), rng.uniform(0.4, 0.8)
+    h, turn, side = rng.uniform(1.5 * b, a - b), rng.uniform(0.5, 0.8) * np.pi, rng.choice((-1.0, 1.0))
+    q = rng.normal() if d == 2 else random_quaternions(rng, 1)[0]
+    R = rotations([q])[0]
+    n = R[:2, 1] if d == 2 else R[:, 2]
+    bar = shapes.Box((a, b) if d == 2 else (a, wide, b))
+    loop = lesson.compose(model.make_model([
+        model.Body(tuple(h * n), 1.0, bar, q=q if d == 2 else tuple(q)),
+        model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(n)))], (0.0,) * d))
+    now, omega = loop.state.q.copy(), loop.state.omega.copy()
+    omega[0] = side * (turn if d == 2 else 2.0 * np.tan(0.5 * turn) * R[:, 1]) / dt
+    now[0] = q + dt * omega[0] if d == 2 else quaternion_from_matrix(turned_by(omega[0], dt) @ R)
+    share = loop.touch(loop.bounds, loop.narrow, loop.state, loop.state._replace(q=now, omega=omega), dt, loop.p)
+    touch = np.arcsin(h / np.hypot(a, b)) - np.arctan2(b, a)
+    return share, touch / turn if d == 2 else np.tan(0.5 * touch) / np.tan(0.5 * turn)
+
+
+@random_law("A step is tested where the way and the turn of a body may take a point farther than half of the smallest "
+            "half size, and not where they are less than 0.35 of it.", "steps that are tested: wrong answers [-]", 0.0)
+def steps_that_are_tested(lesson, rng):
+    """Share a way between the motion of the centre and a turn of the farthest point about it."""
+    d, dt, i = rng.choice((2, 3)), 0.1, rng.integers(3)
+    state = random_bodies(lesson, rng, d, 3)[0]
+    half, share, n = rng.uniform(0.1, 0.5, (3, d)), rng.choice((0.0, rng.uniform(), 1.0)), rng.normal(size=d)
+    found = []
+    for way in (0.35, 0.505):
+        way *= np.min(half)
+        x, omega, turn = state.x.copy(), 0.0 * state.omega, (1.0 - share) * way / np.linalg.norm(half[i])
+        x[i] += share * way * n / np.linalg.norm(n)
+        omega[i] = turn / dt * (1.0 if d == 2 else rng.permutation((1.0, 0.0, 0.0)))
+        q = state.q + dt * omega if d == 2 else state.q
+        found.append(passing.may_pass(state, state._replace(x=x, q=q, omega=omega), dt, half))
+    return np.array(found, float), np.array([0.0, 1.0])
+
+
+@random_law("In space a fifth of each overlap beyond the slop goes per step; a body that turns for it takes its spin "
+            "along.", "overlap in space: largest error of places, turns and velocities [m, -, m/s, rad/s]", EXACT)
+def overlap_goes_in_space(lesson, rng):
+    """Let a single contact overlap by more or by less than the slop.
+
+    J = away/(dt k_n) along n, with k_n = Σ 1/m + n · (I⁻¹ (r × n)) × r, moves and turns both bodies for dt.
+    """
+    state, p = random_bodies(lesson, rng, 3, 3)
+    slop, dt, (n, place) = 0.02, rng.uniform(0.01, 0.1), rng.normal(size=(2, 3))
+    n, gap = n / np.linalg.norm(n), -rng.choice((0.5, 3.0)) * slop
+    contacts = lesson.ContactSet(np.array([0, 1, 1, 1]), np.array([0]), np.array([2]), n[None], place[None],
+                                 np.array([gap]))
+    state, away = state._replace(contacts=contacts, J=np.zeros((1, 3))), 0.2 * max(0.0, -gap - slop)
+    record = SimpleNamespace(inv_mass=p.inv_mass, inv_inertia=p.inv_inertia, slop=slop, sweeps=200, settled=1e-12)
+    R, tensor = rotations(state.q), tensors(state.q, p)
+    spins = {i: np.linalg.solve(tensor[i], np.cross(place - state.x[i], n)) for i in (0, 2)}
+    J = away / dt / sum(p.inv_mass[i] + n @ np.cross(spins[i], place - state.x[i]) for i in (0, 2))
+    x, omega, turned = state.x.copy(), state.omega.copy(), R.copy()
+    for i, sign in ((0, 1.0), (2, -1.0)):
+        x[i] += sign * dt * p.inv_mass[i] * J * n
+        if away > 0.0:
+            turned[i] = turned_by(sign * J * spins[i], dt) @ R[i]
+        omega[i] = turned[i] @ R[i].T @ omega[i]
+    end = lesson.separate_in_space(None, None, None, 0.0, state, dt, record)
+    return ((end.x, rotations(end.q), end.v, end.omega, end.contacts.gap),
+            (x, turned, state.v, omega, np.array([gap + away])))
+
+
+@case("joints-of-a-model", "Joints that a Model has in space", compiled=False)
+def joints_of_a_model(lesson, check):
+    """Compare what ball joints, hinges and welds hold and what they leave free with conserved momenta."""
+    check.laws(lesson, (links_keep, links_share, loads_at_both_ends), seed=39, times=10)
+
+
+@case("shapes-and-ways", "Shapes, steps that are divided, and overlap in space", compiled=False)
+def shapes_and_ways(lesson, check):
+    """Compare shapes with the tetrahedra that they are made of, and ways in a step with the times at which balls touch.
+    """
+    check.laws(lesson, (solids_of_places, half_sizes, share_of_a_touch, share_of_a_turn, steps_that_are_tested,
+                        overlap_goes_in_space), seed=40, times=10)
