@@ -326,7 +326,7 @@ def advance_adaptive(step, acceleration, t, x, v, share, duration, p):
     """Given.  Return the state (x, v) after `duration` [s], in steps that adapt to the distance from the origin.
 
     On a circle, an attraction −μ x/|x|³ turns a motion at the rate ρ = √(|a|/|x|) = √(μ/|x|³) [1/s].  A step lasts
-    dt = share/ρ: there, share is the angle of a step [rad].  ρ belongs to the middle of the step.  Its rate of change is
+    dt = share/ρ: there, share is the angle of a step [rad].  ρ belongs to the middle of the step.  Its rate is
     ρ̇ = −3/2 ρ x·v/x², so over the time dt from one middle to the next it changes by −3/2 ρ dt x·v/x²:
 
         ρ ← √(|a|/|x|) − ½ share 3/2 x·v/x²            at the start, half a step ahead
