@@ -231,7 +231,7 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
 
 
 def implicit_midpoint_step(acceleration, t, x, v, dt, p):
-    """Advance one step along the slope at the middle of the step itself; second order, exact energy of an oscillator.
+    """Advance one step along the slope at its own middle; second order, exact energy of an undamped oscillator.
 
     x½ = ½(xₙ + xₙ₊₁),   v½ = ½(vₙ + vₙ₊₁)
     xₙ₊₁ = xₙ + dt v½
@@ -290,8 +290,8 @@ def inner_product(a, b):
 def advance_adaptive(step, acceleration, t, x, v, share, duration, p):
     """Given.  Return the state (x, v) after `duration` [s], in steps that adapt to the distance from the origin.
 
-    An attraction −μ x/|x|³ turns a motion at the rate ρ = √(|a|/|x|) = √(μ/|x|³) [1/s].  A step lasts dt = share/ρ: on
-    a circle, share is the angle of a step [rad].  ρ belongs to the middle of the step.  Its rate of change is
+    On a circle, an attraction −μ x/|x|³ turns a motion at the rate ρ = √(|a|/|x|) = √(μ/|x|³) [1/s].  A step lasts
+    dt = share/ρ: there, share is the angle of a step [rad].  ρ belongs to the middle of the step.  Its rate is
     ρ̇ = −3/2 ρ x·v/x², so over the time dt from one middle to the next it changes by −3/2 ρ dt x·v/x²:
 
         ρ ← √(|a|/|x|) − ½ share 3/2 x·v/x²            at the start, half a step ahead
@@ -347,7 +347,7 @@ def amplification_matrix(step, omega, zeta, dt):
     *Find* the columns of A: from which two states must you take a step to see them?
 
     States are arrays of shape (1,).  The acceleration is oscillator_acceleration, and its parameters are an Oscillator.
-    The method is stable if no eigenvalue of A has an absolute value above 1.
+    The motion grows at every step if an eigenvalue of A has an absolute value above 1.
     *Source:* Hairer and Wanner 1996, IV.2.
     """
     # YOUR CODE HERE

@@ -353,7 +353,8 @@ def mesh_body(density, x, faces):
         m = ρ V,   centre = o + c,  c = S/V,   C = Q − V c cᵀ,   I = ρ (tr C 1 − C)
 
     If the integrals were about the origin of the world, each tetrahedron would extend from there to its triangle.  At
-    the distance D, terms of size D⁵ would cancel, and a body of one metre would lose half of its digits at D = 30 m.
+    the distance D, products of size D³ cancel in w, and squares of size D² multiply what rounding leaves.  A body of
+    one metre would lose half of its digits at D = 30 m.
 
     Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
     (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all

@@ -39,7 +39,7 @@ GRAVITY = 9.81                # g [m/s²], near the ground; the first lecture de
 G = 6.67430e-11               # gravitational constant [m³/(kg s²)], CODATA 2018
 
 STRUCTURAL = ((0, 1), (1, 0))     # (rows, columns) from a node of a grid to its partner: along the threads
-SHEAR = ((1, 1), (1, -1))    # across each network, both diagonals
+SHEAR = ((1, 1), (1, -1))         # across each square, both diagonals
 BEND = ((0, 2), (2, 0))           # over the next node
 
 CG_TOLERANCE = 1e-10          # residual over right-hand side [-]: far below the error of a first-order step

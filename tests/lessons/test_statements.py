@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from validate.notebook.live.hand import HERTZ, ZETA
+from validate.reference.integrators import Planet, kepler_position, perihelion
 from validate.reference.rotation import HeavyTop
 from validate.subject.modules import bind
 
@@ -42,7 +44,60 @@ def test_verlet_retraces_its_path_unless_the_acceleration_depends_on_the_velocit
         assert (abs(x[0] - 1.0) < 1e-12) == (zeta == 0.0)
 
 
+def test_at_one_step_per_frame_symplectic_euler_is_wrong_by_a_tenth_and_verlet_by_one_per_cent():
+    """Of the amplitude of a swing at 5 rad/s, during the first swing: the first by up to ω dt/2 as its phase allows."""
+    p = integrators.Oscillator(5.0, 0.0)
+    for method, least, most in (("symplectic_euler_step", 0.09, 0.12), ("verlet_step", 0.005, 0.012)):
+        ts, xs, _ = integrators.trajectory(getattr(integrators, method), integrators.oscillator_acceleration, 0.0,
+                                           np.ones(1), np.zeros(1), 1.0 / 24.0, 30, p)
+        assert least < np.abs(xs[:, 0] - np.cos(5.0 * ts)).max() < most
+
+
+@pytest.mark.parametrize(("method", "first", "then"), [("euler_step", 6.0, 10.0), ("midpoint_step", 50.0, 100.0)])
+def test_ten_times_the_steps_miss_a_tenth_or_a_hundredth_only_where_steps_are_short(method, first, then):
+    """Of v̇ = v after 1 s, in 1, 10 and 100 steps."""
+    missed = [np.e - integrators.advance(getattr(integrators, method), lambda t, x, v, p: v, 0.0, np.zeros(1),
+                                         np.ones(1), 1.0 / n, n, None)[1][0] for n in (1, 10, 100)]
+    assert abs(missed[0] / missed[1] / first - 1.0) < 0.05
+    assert abs(missed[1] / missed[2] / then - 1.0) < 0.08
+
+
+def test_adaptive_steps_miss_a_comet_by_a_millionth_of_what_equal_steps_miss_with_as_much_work():
+    comet = Planet(e=0.9)
+    begin, end = perihelion(comet), kepler_position(comet, 3.0 * np.pi)
+    calls = []
+
+    def pull(t, x, v, p):
+        calls.append(t)
+        return -x / np.sum(x * x) ** 1.5
+
+    step = integrators.blanes_moan_step
+    adaptive = integrators.advance_adaptive(step, pull, 0.0, *begin, 0.1, 3.0 * np.pi, None)[0]
+    work = len(calls)
+    assert work < 1000
+    equal = integrators.advance(step, pull, 0.0, *begin, 3.0 * np.pi / 143, 143, None)[0]
+    assert len(calls) - work > 1000
+    assert np.linalg.norm(equal - end) > 1e6 * np.linalg.norm(adaptive - end)
+
+
 # ---------------------------------------------------------------------------------------------- 2 springs
+
+def test_a_push_just_beyond_the_edge_grows_90000_fold_in_100_steps_and_just_below_it_22_fold():
+    """Of symplectic Euler at ω dt = 2 (1 ± 0.001), from rest."""
+    for z, most in ((2.002, 90e3), (1.998, 22.0)):
+        xs = integrators.trajectory(integrators.symplectic_euler_step, integrators.oscillator_acceleration, 0.0,
+                                    np.ones(1), np.zeros(1), z, 100, integrators.Oscillator(1.0, 0.0))[1]
+        assert abs(np.abs(xs).max() / most - 1.0) < 0.03
+
+
+def test_a_hand_by_the_force_at_the_beginning_of_a_step_throws_its_node_eight_times_as_fast_the_other_way():
+    """A node of 20 g in a net of 36, pulled by the hand of the live scene in steps of 1/240 s."""
+    felt, m, dt, rate = 0.02 * 34, 0.02, 1.0 / 240.0, 2.0 * np.pi * HERTZ
+    k, c = felt * rate**2, 2.0 * ZETA * felt * rate
+    assert abs(c * dt / m - 9.0) < 0.2
+    step = np.array([[1.0 - dt * dt * k / m, dt * (1.0 - dt * c / m)], [-dt * k / m, 1.0 - dt * c / m]])
+    assert -8.6 < min(np.linalg.eigvals(step)) < -8.0
+
 
 def ripple_left(k_d, k_v, height, along, seconds=2.0, dt=5e-4):
     """The share of a half sine along or across a taut string of ten links that is left in the end."""

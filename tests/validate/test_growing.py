@@ -126,6 +126,13 @@ def test_points_without_threads_fall_freely():
     assert 0.7 * fall < off[0, 1] - off[k, 1] < fall * 1.05 and np.ptp(on[:, 1]) < 0.09
 
 
+def test_the_hem_hangs_2_to_8_cm_lower_in_the_end():
+    use = {**borrowed(2), **{number: growing.worked()[number] for number in ("2.2", "2.7")}}
+    hem = PARTS["2.7"].actor(use)["curtain"][:, -room.COLS:, 1]
+    lower = hem[0] - hem[-1]
+    assert 0.02 < lower.min() < 0.03 and 0.07 < lower.max() < 0.08
+
+
 def test_wind_leans_the_curtain():
     off, on = films("2.2", "curtain")
     assert abs(off[60:, 0].mean() - off[0, 0]) < 0.01 and on[-1, 0] - on[0, 0] > 0.04
