@@ -77,7 +77,7 @@ def network_gravity(t, x, v, network):
 
 
 def rattle_step(acceleration, t, x, v, dt, network):
-    """Given.  Advance a network by RATTLE: gradients at the start of the step, a velocity that obeys the links; order 2.
+    """Given.  Advance a network by RATTLE: gradients at the start of a step, velocities that obey the links; order 2.
 
     x' = x + dt v + ½dt² a + W J(x)ᵀΛ  with C(x') = 0,      v' = (x' − x)/dt + ½dt a' + W J(x')ᵀμ  with J(x') v' = 0
 
