@@ -8,7 +8,7 @@ singular values of J · α [1/m²] gain · λ [m] damping · q (4,) = (w, x, y, 
 An arm is an Arm2D or an Arm3D (support/chains.py).  Its base is at the origin.
 
 A task is a function  task(θ, target, arm) → (e, J).  A method is a function  step(task, θ, target, arm) → θ.
-*Left out:* sliding joints and closed chains; the eight solutions of six joints in closed form; collisions of the links.
+*Left out:* sliding joints and closed chains; six joints in closed form; collisions of the links.
 """
 
 import numpy as np

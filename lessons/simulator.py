@@ -252,7 +252,7 @@ def corner_impact(v, omega, r, inv_mass, inv_inertia):
 
     *Find* what the impulse, which acts at that point, leaves unchanged.  Afterwards the body turns about that point.
     v is the velocity of the centre, and r × v = cross_2d(r, v).  inv_mass and inv_inertia are above zero.  For a
-    slender block the result is Housner's ratio ω⁺/ω = 1 − 1.5 sin²α.
+    uniform block the result is Housner's ratio ω⁺/ω = 1 − 1.5 sin²α.
     *Source:* Housner 1963, “The behavior of inverted pendulum structures during earthquakes”.
     """
     # YOUR CODE HERE

@@ -77,11 +77,11 @@ def network_gravity(t, x, v, network):
 
 
 def rattle_step(acceleration, t, x, v, dt, network):
-    """Given.  The same, with the gradients at the start of the step and a velocity that obeys the links: second order.
+    """Given.  Advance a network by RATTLE: gradients at the start of a step, velocities that obey the links; order 2.
 
     x' = x + dt v + ½dt² a + W J(x)ᵀΛ  with C(x') = 0,      v' = (x' − x)/dt + ½dt a' + W J(x')ᵀμ  with J(x') v' = 0
 
-    It loses no energy.  It is not in the lecture; it serves as the standard for the projection method.
+    Its energy does not run down.  It is not in the lecture; it serves as the standard for the projection method.
     *Source:* Ryckaert et al. 1977 (SHAKE), Andersen 1983 (RATTLE).
     """
     _, J = constraints(x, network)

@@ -52,7 +52,7 @@ def move_along_links(y, x, z, right, w):
 
 
 def rope_step(acceleration, t, x, v, dt, network):
-    """Advance a rope by one step of RATTLE with one Newton correction; second order, and it loses no energy.
+    """Advance a rope by one step of RATTLE with one Newton correction; second order; its energy does not run down.
 
     The first end of a rope may be fixed, or any other point that leaves every link a movable end.
     Raises Diverged where a light point between taut links swings faster than dt allows, ω dt > 2: check_taut_points.
