@@ -19,6 +19,7 @@ from validate.book import api, course, execute, pages, plan, sheets, weeks
 from validate.book.site import files
 from validate.grading import choice, release
 from validate.notebook import growing
+from validate.stability.examine import all_cases
 from validate.subject import modules
 from validate.subject.modules import ROOT
 
@@ -117,7 +118,7 @@ def test_docstrings_keep_their_formulas_and_their_words():
 def test_every_lesson_adds_up_to_twenty_points_and_has_a_sheet():
     for name, lesson in course.lessons().items():
         assert lesson.points == 20.0
-        sheet = sheets.page(name, report=False)
+        sheet = sheets.page(name, report=None)
         assert all(f"| {one.number} |" in sheet for one in lesson.exercises) and "1. " in sheet
         assert f"--lesson {name} " in sheet and leaks([sheet]) == []
 
@@ -129,7 +130,7 @@ def test_the_hours_are_the_same_on_every_page_and_near_the_estimate():
         assert abs(head.reading - reading) <= ESTIMATED and abs(head.writing - writing) <= ESTIMATED, name
         told = f"about {head.whole:g} hours: {head.reading:g} to read and run, {head.writing:g} to write"
         assert f"| **Time** | {told} |" in course.notebook_of(name).read_text(encoding="utf-8")
-        assert f"| hours | {told.removeprefix('about ').replace(' hours', '')} |" in sheets.page(name, report=False)
+        assert f"| hours | {told.removeprefix('about ').replace(' hours', '')} |" in sheets.page(name, report=None)
         assert f"| {head.whole:g}: {head.reading:g} + {head.writing:g} |" in plan.lesson_table()
         assert sum(float(week[4]) for week in weeks if f"({'notebooks/' + course.notebook_of(name).stem})" in week[1]) \
             == head.whole
@@ -161,7 +162,7 @@ def test_a_lesson_names_every_lesson_whose_exercises_it_calls_as_one_before_it()
 def test_a_sheet_shows_the_stars_of_the_notebook():
     for name in course.lessons():
         notebook = dict(re.findall(r"`\w+` \((\d+\.\d+) (★+)\)", course.notebook_of(name).read_text(encoding="utf-8")))
-        sheet = dict(re.findall(r"^\| (\d+\.\d+) \| [^|]+ \| (★+) \|", sheets.page(name, report=False), re.M))
+        sheet = dict(re.findall(r"^\| (\d+\.\d+) \| [^|]+ \| (★+) \|", sheets.page(name, report=None), re.M))
         assert sheet == notebook, name
 
 
@@ -198,7 +199,7 @@ def test_the_weeks_of_a_lesson_hold_every_exercise_once_in_whole_sections_and_it
         assert numbers == list(range(1, len(lesson.exercises) + 1)), name
         assert sum(weeks.hours(name, *part) for part in parts) == lesson.head.writing, name
         assert all(weeks.hours(name, *part) > 0.0 for part in parts), name
-        told = weeks.table(name, report=False)
+        told = weeks.table(name, report=None)
         sections = weeks.sections(name)
         assert sections and all(f"*{title}*" in told for _, _, title in sections), name
         assert all(set(week.show) <= set(lesson.scenes) for week in weeks.WEEKS[name])
@@ -214,9 +215,19 @@ def test_two_weeks_with_a_lesson_are_those_of_the_long_course():
             [[chosen[0].number, chosen[-1].number] for chosen in planned]
 
 
-def test_a_sheet_links_every_case_and_scene_and_names_the_paths_of_the_answers():
+def report_of(cases, scenes, folder):
+    """Write the pages of a report with these stability cases and scenes; return the folder."""
+    folder.mkdir()
+    for scene in scenes:
+        (folder / f"{scene}.html").write_text("")
+    (folder / "stability.html").write_text("".join(f'<h3 id="{case.lesson}-{case.slug}">' for case in cases))
+    return folder
+
+
+def test_a_sheet_links_every_case_and_scene_and_names_the_paths_of_the_answers(tmp_path):
+    report = report_of(all_cases(), modules.scene_names(), tmp_path / "report")
     for name, lesson in course.lessons().items():
-        sheet = sheets.page(name, report=True)
+        sheet = sheets.page(name, report)
         assert sheet.count(f'<a href="../report/stability.html#{name}-') == lesson.cases > 0
         assert all(f'<a href="../report/{scene}.html">' in sheet for scene in lesson.scenes)
         assert all(f"`{path}/{name}.py`" in sheet for path in ("solutions", "tests/mutants"))
@@ -224,12 +235,22 @@ def test_a_sheet_links_every_case_and_scene_and_names_the_paths_of_the_answers()
         assert f"({'sheets/' + name})" in plan.lesson_table()
 
 
+def test_a_sheet_names_without_a_link_what_a_report_has_left_out(tmp_path):
+    quick = [case for case in all_cases() if case.in_quick]
+    scenes = [name for name in modules.scene_names() if name != "kepler"]
+    report = report_of(quick, scenes, tmp_path / "report")
+    for name in course.lessons():
+        sheet = sheets.page(name, report)
+        assert sheet.count("stability.html#") == sum(case.lesson == name for case in quick)
+        assert "report/kepler.html" not in sheet + pages.about(name, "01_integrators", report)["source"]
+
+
 def documents():
     """{name: text} of what an instructor or a student reads: docs, README, the first notebook, sheets, the plan."""
     paths = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "notebooks" / "00_start_here.ipynb"]
     texts = {path.name: path.read_text(encoding="utf-8") for path in paths}
     return texts | {"plan.md": plan.filled(texts["plan.md"])} | {
-        name: sheets.page(name, report=False) for name in course.lessons()}
+        name: sheets.page(name, report=None) for name in course.lessons()}
 
 
 def test_every_page_gives_a_command_in_the_same_words():
@@ -286,7 +307,8 @@ def test_a_notebook_loses_its_sliders_and_loads_its_player_once(tmp_path):
     said = "# One\nWrite `euler_step` (1.1 ★), not `euler_step` (1.2); see `02_springs.ipynb`."
     text = nbformat.v4.new_markdown_cell(said)
     (tmp_path / "_static").mkdir()
-    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {}, report=True)
+    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {},
+                          report=report_of([], ["oscillator"], tmp_path / "report"))
     shown = [output["data"]["text/html"] for output in made.cells[2].outputs]
     assert len(shown) == 2 and shown[0].count("<script") == 1 and shown[1] == "<div>film</div>"
     assert [path.read_text() for path in (tmp_path / "_static").iterdir()] == ["let player = 1;" * 400]

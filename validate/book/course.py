@@ -220,3 +220,20 @@ def used_by():
             for number in exercise.uses:
                 found[number].append(exercise.number)
     return found
+
+
+def link_into(report, address, words):
+    """Return a link to a place of the report, as HTML; None if there is no report, or if it does not have this place.
+
+    report: its folder, or None.  A quick run leaves some stability cases out, and a run of some scenes the others.
+    """
+    page, _, place = address.partition("#")
+    if not report or not (report / page).is_file() or (place and place not in places_of(report / page)):
+        return None
+    return f'<a href="../report/{address}">{words}</a>'
+
+
+@cache
+def places_of(page):
+    """Return the names of all places of a page."""
+    return frozenset(re.findall(r'\bid="([^"]+)"', page.read_text(encoding="utf-8")))

@@ -38,7 +38,7 @@ def write_all(folder, numbers, report, say, live=False):
         if numbers and path.stem[:2] not in numbers:
             write(folder / "notebooks" / f"{path.stem}.md", LEFT_OUT.format(path.stem))
             continue
-        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts, bool(report), live),
+        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts, report, live),
                           ensure_ascii=False)
         (folder / "notebooks" / path.name).write_text(text, encoding="utf-8")
     (folder / "alts.json").write_text(json.dumps(alts, ensure_ascii=False), encoding="utf-8")
@@ -50,7 +50,7 @@ def write_all(folder, numbers, report, say, live=False):
         write(folder / f"{name}.md", plan.with_address(linked(text)))
     write(folder / "plan.md", plan.filled(linked((ROOT / "docs" / "plan.md").read_text(encoding="utf-8"))))
     for name in course.lessons():
-        write(folder / "sheets" / f"{name}.md", sheets.page(name, bool(report)))
+        write(folder / "sheets" / f"{name}.md", sheets.page(name, report))
     write(folder / "index.md", front(paths, live))
     write_report(folder, report)
 
@@ -81,7 +81,7 @@ def with_pages_for_sources(page):
 
 # ---------------------------------------------------------------------------------------------- notebooks
 
-def prepared(book, stem, folder, alts, report=False, live=False):
+def prepared(book, stem, folder, alts, report=None, live=False):
     """Return an executed notebook as the book shows it.
 
     Sliders, which need a kernel, are removed, and the figure that they drew stays.  Long code is folded.  A player's
@@ -114,8 +114,8 @@ def prepared(book, stem, folder, alts, report=False, live=False):
 def about(lesson, stem, report, live=False):
     """Return what the book adds to a lesson's first screen: where to work, and its scenes in the report."""
     facts = course.lessons()[lesson]
-    scenes = ", ".join(f'<a href="../report/{name}.html">{name}</a>' for name in facts.scenes)
-    runs = f" All runs of its scenes are in the report: {scenes}." if report else ""
+    links = [link for name in facts.scenes if (link := course.link_into(report, f"{name}.html", name))]
+    runs = f" Runs of its scenes are in the report: {', '.join(links)}." if links else ""
     here = hosted.buttons(stem, live, plan.repository())
     where = "press a button, or install the workbook and" if here else "yourself,"
     text = (f"```{{admonition}} This page is the notebook as the worked answers run it\n:class: note\n{here}To work on "

@@ -76,7 +76,7 @@ def scenes(lesson, report):
     rows = []
     for name in lesson.scenes:
         scene = modules.bind_scene(name)
-        title = f'<a href="../report/{name}.html">{scene.title}</a>' if report else scene.title
+        title = course.link_into(report, f"{name}.html", scene.title) or scene.title
         story = plain(" ".join(scene.story.split("\n\n")[0].split()))
         rows.append((title, story, f"`.venv/bin/validate --scene {name}`"))
     return plan.table(("scene", "what it is", "command"), rows)
@@ -84,8 +84,8 @@ def scenes(lesson, report):
 
 def cases(name, report):
     found = [case for case in all_cases() if case.lesson == name]
-    return "\n".join(f'- <a href="../report/stability.html#{name}-{case.slug}">{html.escape(case.title)}</a>' if report
-                     else f"- {plain(case.title)}" for case in found)
+    return "\n".join("- " + (course.link_into(report, f"stability.html#{name}-{case.slug}", html.escape(case.title))
+                             or plain(case.title)) for case in found)
 
 
 def path(file):

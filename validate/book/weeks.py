@@ -179,8 +179,8 @@ def table(name, report):
     weeks, parts = WEEKS[name], []
     for number, week in enumerate(weeks, 1):
         before, after = week.parts(name)
-        shown = ", ".join(f'<a href="../report/{scene}.html">{modules.bind_scene(scene).title}</a>' if report
-                          else modules.bind_scene(scene).title for scene in week.show)
+        titles = {scene: modules.bind_scene(scene).title for scene in week.show}
+        shown = ", ".join(course.link_into(report, f"{scene}.html", title) or title for scene, title in titles.items())
         rows = [
             ("Monday, 90 minutes", f"Lecture. {week.lecture}", f"{notebook}, *The idea*; report: {shown}"),
             ("Tuesday, Wednesday", f"Students write {work(name, *before)}.", f"[functions](../lessons/{name})"),
