@@ -20,6 +20,7 @@ from .model_checks import (
     check_force,
     check_joint,
     check_moments,
+    check_own_force,
     check_own_load,
     check_shape_of,
     check_sliding,
@@ -233,7 +234,7 @@ def check_own_loads(model, start):
     """Raise BadInput for a load that is a function unless it returns what a load does, at the start."""
     for k, load in enumerate(model.loads):
         if isinstance(load, Force):
-            vector(f"the force of load {k} [N]", load.now(0.0, start.x, start.v), model.d)
+            check_own_force(f"the force of load {k}", load, start, model.d)
         elif not isinstance(load, Drag):
             check_own_load(f"load {k}", load, start)
 

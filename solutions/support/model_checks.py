@@ -221,14 +221,30 @@ def not_negative(thing, value):
     return value
 
 
+def answered(thing, ask, remedy):
+    """Return what a function of the user's answers.  Raises BadInput where it raises anything."""
+    try:
+        return ask()
+    except Exception as error:
+        raise BadInput(thing, f"a function that fails at the start ({type(error).__name__}: {error})",
+                       remedy) from error
+
+
+def check_own_force(thing, load, start, d):
+    """Raise BadInput unless a Force returns d finite numbers at the start."""
+    F = answered(thing, lambda: load.now(0.0, start.x, start.v),
+                 f"take what of = {load.of!r} names, in this order, and return {d} numbers")
+    vector(f"{thing} [N]", F, d)
+
+
 def check_own_load(thing, load, start):
     """Raise BadInput unless a function returns (F, tau) of these bodies at the start, and leaves the start as it is."""
     given = [rows.copy() for rows in start]
-    try:
+
+    def ask():
         F, tau = load(0.0, *given)
-    except (TypeError, ValueError) as error:
-        raise BadInput(thing, f"a function that fails at the start ({error})",
-                       "take (t, x, q, v, omega), and return two arrays, F and tau") from error
+        return F, tau
+    F, tau = answered(thing, ask, "take (t, x, q, v, omega), and return two arrays, F and tau")
     for name, values, like in (("F [N]", F, start.x), ("tau [N m]", tau, start.omega)):
         check_shape(f"{name} of {thing}", finite_array(f"{name} of {thing}", values), like.shape)
     if any(np.any(now != before) for now, before in zip(given, start)):
