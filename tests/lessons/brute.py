@@ -1,13 +1,22 @@
 """Geometry by brute force: slow, simple, and independent of the lessons."""
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear
 from scipy.spatial import ConvexHull
 
 
 def differences(a, b):
     """All a_i − b_j (k m, d): two bodies touch if the hull of these contains 0."""
     return (a[:, None] - b[None]).reshape(-1, a.shape[1])
+
+
+def not_negative(rows, goal):
+    """The x ≥ 0 (n,) with the least |rows x − goal|.
+
+    SciPy's nnls 1.17 stops short of it for some rows, as for differences of points of which three lie on a line.
+    *Source:* bounded variables, Stark and Parker 1995.
+    """
+    return lsq_linear(rows, goal, (0.0, np.inf), method="bvls", tol=1e-15).x
 
 
 def nearest_to_zero(y):
@@ -17,7 +26,7 @@ def nearest_to_zero(y):
     Its minimum over s is |Σ μ y|²/(1 + |Σ μ y|²). This grows with |Σ μ y|, so the μ are those of the nearest point.
     """
     size = np.abs(y).max() or 1.0
-    weights, _ = nnls(np.vstack((y.T / size, np.ones(len(y)))), np.append(np.zeros(y.shape[1]), 1.0))
+    weights = not_negative(np.vstack((y.T / size, np.ones(len(y)))), np.append(np.zeros(y.shape[1]), 1.0))
     return weights @ y / weights.sum()
 
 

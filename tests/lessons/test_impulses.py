@@ -4,11 +4,13 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, nnls
+from scipy.optimize import brentq
 
 from solutions.checks import BadInput, Diverged
 from validate.grading.expect import between, choice, close, numbers, raises
 from validate.reference import choices
+
+from .brute import not_negative
 
 exercise = pytest.mark.exercise
 # All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
@@ -1171,7 +1173,7 @@ def least_change(body, r, n, e):
     u = G @ before
     rows = np.vstack(((G @ half).T, np.maximum(0.0, -e * u) - u))
     goal = np.append(np.zeros(6), 1.0)
-    left = rows @ nnls(rows, goal)[0] - goal
+    left = rows @ not_negative(rows, goal) - goal
     return before - half @ left[:6] / left[6]
 
 
