@@ -142,6 +142,7 @@ BODIES = {
     "raise BadInput with every number": naming, "the first right answer": First, "a table of public answers": Table,
 }
 LEARNED = First, Table       # these count only if they pass with the public seed, too
+FINITE = "10.19",            # exercises whose arguments have few values, all of them tested: a table is an answer
 
 
 def passed(graded):
@@ -157,7 +158,7 @@ def test_senseless_answers_earn_nothing(name):
         count = len(inspect.signature(module[function]).parameters)
         arguments = {f"return argument {n}": argument(n) for n in range(count)}
         for text, make in {**BODIES, **arguments}.items():
-            if make in LEARNED and not count:                # there is one answer for every seed: to know it is right
+            if make in LEARNED and (not count or exercise in FINITE):        # to know all answers is right
                 continue
             body, key = make(module[function]), f"{exercise}: {text}"
             changed = types.SimpleNamespace(**{**module, function: body})
