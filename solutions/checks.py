@@ -13,7 +13,14 @@ COUNTABLE = 1e15             # integers up to this size are exact in floats [-]
 UNIT = 1e-9                  # allowed error of the length of a unit vector [-]: far above round-off
 
 
-class BadInput(ValueError):
+class Sentence:
+    """Part of errors whose only argument is the sentence that they say: they can be sent to another process."""
+
+    def __reduce__(self):
+        return self.__class__.__new__, (self.__class__, *self.args), self.__dict__
+
+
+class BadInput(Sentence, ValueError):
     """A value that makes no physical sense: names the thing, its value and the remedy."""
 
     def __init__(self, thing, value, remedy):
@@ -30,7 +37,7 @@ class WrongShape(BadInput):
         super().__init__(f"the shape of {thing}", shape, f"give {wanted}{empty}")
 
 
-class Diverged(ArithmeticError):
+class Diverged(Sentence, ArithmeticError):
     """A computation that gave no finite or no converged result: says what happened, at which value, and the remedy."""
 
     def __init__(self, what, value, remedy):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import nbformat
 import pytest
 
+from solutions import checks, simulator  # noqa: F401      simulator: for the errors of its given functions
 from validate import notebook
 from validate.grading import example, marking, sandbox
 from validate.notebook.pytest_process import quiet
@@ -315,6 +316,14 @@ def test_an_alarm_inside_another_leaves_that_one_running():
         time.sleep(60.0)
 
 
-def test_what_cannot_be_loaded_may_be_told_by_another_process():
-    e = pickle.loads(pickle.dumps(loading.Unloadable("lessons/pbd.py", "no reason (line 1)", "do nothing")))
-    assert str(e) == "lessons/pbd.py cannot be loaded: no reason (line 1). Do nothing." and e.remedy == "do nothing"
+def kinds(error):
+    """All kinds of an error that the given code and the workbook have."""
+    return {error}.union(*map(kinds, error.__subclasses__()))
+
+
+@pytest.mark.parametrize("kind", sorted(kinds(checks.BadInput) | kinds(checks.Diverged), key=str))
+def test_another_process_may_raise_an_error_of_any_kind(kind):
+    error = kind.__new__(kind, "speed [m/s] = inf: take shorter steps")
+    error.remedy = "take shorter steps"
+    back = pickle.loads(pickle.dumps(error))
+    assert (type(back), str(back), back.__dict__) == (kind, str(error), {"remedy": "take shorter steps"})

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from solutions.checks import Diverged
 from validate import __main__ as cli
 from validate import measure, report
 from validate.measure import record, traces
@@ -21,6 +22,7 @@ from validate.products import PYMUNK, Product
 from validate.report import plots, summary
 from validate.run import processes, store
 from validate.run import run as validation
+from validate.speed import piles
 from validate.subject import modules
 from validate.subject.generate import exercises, stub
 
@@ -59,6 +61,14 @@ def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_pa
     code, _, error = run(capsys, *arguments, "--out", str(out))
     assert code == 2 and names in error and len(error.strip().splitlines()) == 1 and "Traceback" not in error
     assert not out.exists()
+
+
+def test_a_computation_that_diverges_is_told_in_one_sentence(capsys, monkeypatch):
+    def sink(*arguments):
+        raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", 0.6, "take shorter steps")
+    monkeypatch.setattr(piles, "measure", sink)
+    code, _, error = run(capsys, "piles", "discs")
+    assert code == 2 and "sink into each other" in error and len(error.strip().splitlines()) == 1
 
 
 @pytest.mark.parametrize(("change", "says"), [

@@ -49,3 +49,11 @@ def test_growth_and_races_are_printed_and_drawn(monkeypatch, tmp_path, capsys):
                                                                              "2 × 160 Hz"]
     piles.draw(races, 100, tmp_path / "races.png")
     assert all((tmp_path / f"{name}.png").stat().st_size > 10_000 for name in ("growth", "races"))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["discs", "boxes"])
+def test_a_pile_of_thirty_thousand_bodies_lands_without_bodies_that_pass_each_other(name):
+    pile = piles.landed(piles.compiled_lesson(), name, 31_623)
+    assert len(pile.state.contacts.a) > 1.5 * 31_623
+    assert np.ptp(pile.state.x[:31_623, 1]) < piles.ROWS[2] * KINDS[name].pitch

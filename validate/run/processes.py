@@ -4,7 +4,6 @@ Workers do all the measuring; the run itself only waits and writes, so it can en
 SIGTERM raises Ended in it, and its workers are killed. If the run itself is killed, its workers end as well.
 """
 
-import copyreg
 import ctypes
 import gc
 import os
@@ -17,7 +16,7 @@ from contextlib import contextmanager
 from itertools import product
 from multiprocessing import connection, get_context, parent_process, resource_tracker
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 
 try:
     import fcntl
@@ -27,9 +26,6 @@ except ImportError:                                                  # Windows
 ENDING = (signal.SIGINT, signal.SIGTERM)
 QUIET = 2.0  # after Ctrl-C, another one is ignored for this long [s]
 PR_SET_PDEATHSIG = 1                                                 # of Linux's <sys/prctl.h>
-
-# BadInput is constructed from the parts of its sentence; an exception is unpickled from the sentence itself
-copyreg.pickle(BadInput, lambda e: (BadInput.__new__, (BadInput, *e.args)))
 
 
 class Ended(BaseException):
@@ -48,7 +44,7 @@ def one_sentence(program):
     except Ended as e:
         print(f"{program}: interrupted", file=sys.stderr)
         sys.exit(e.code)
-    except (BadInput, OSError, MemoryError) as e:
+    except (BadInput, Diverged, OSError, MemoryError) as e:
         print(f"{program}: {e}", file=sys.stderr)
         sys.exit(2)
 

@@ -34,6 +34,7 @@ BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
 SIZES = (100, 316, 1000, 3162, 10_000, 31_623, 100_000)  # bodies of the piles whose cost is compared
 ENGINE_UP_TO = 10_000        # of these, the largest pile with which the tuned engine is timed
+ROWS = {2: 30, 3: 10}        # {dimension: of the highest pile}: bodies that land from above would pass each other [-]
 LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
 GROWTH = (0.9, 1.1)          # goal: the power of n with which the cost of a step grows [-]
 ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
@@ -157,9 +158,10 @@ def alone(function, *arguments):
 
 
 def landed(lesson, name, n):
-    """Return the lesson's pile of n bodies after a while, as wide as it is high."""
+    """Return the lesson's pile of n bodies after a while: as wide as it is high, but of at most ROWS rows."""
     kind = KINDS[name]
-    kind = kind._replace(across=max(2, round(n ** (1.0 / kind.d))))
+    wide, low = n ** (1.0 / kind.d), (n / ROWS[kind.d]) ** (1.0 / (kind.d - 1))
+    kind = kind._replace(across=max(2, round(wide), round(low)))
     ours = Ours(lesson, kind, *fallen(kind, n))
     ours.run(round(LANDING / DT))
     return ours

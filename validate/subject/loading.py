@@ -28,9 +28,6 @@ class Unloadable(BadInput):
         ValueError.__init__(self, f"{file} cannot be loaded: {reason}. {remedy[:1].upper()}{remedy[1:]}.")
         self.file, self.reason, self.remedy = file, reason, remedy
 
-    def __reduce__(self):                                            # it may come from another process
-        return Unloadable, (self.file, self.reason, self.remedy)
-
 
 class AsSaved(SourceFileLoader):
     """Loads a file as it is saved now.
