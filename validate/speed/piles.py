@@ -7,7 +7,8 @@ ours takes the fewest substeps with which its bodies overlap no more than the en
 Overlaps are judged by `reference/overlaps.py`, which uses no code of the lessons.
 
 The cost of a step should grow as n to the power of 1, within a tenth, from 100 to 10,000 bodies; all sizes are timed in
-turn.  The memory is that of the whole process, compiler included, with 10,000 spheres: at most 4 GiB.
+turn.  Larger piles do not fit into the processor's memory, and a contact costs more there.  The memory shown is that of
+the whole process, compiler included: with 10,000 spheres at most 4 GiB.
 """
 
 import sys
@@ -223,16 +224,28 @@ def grow(names, most, rounds, figure=None):
 def draw_growth(found, path):
     """Draw the time per contact and step against the number of bodies: a level line is a cost that grows as n."""
     import matplotlib.pyplot as plt
-    chart, axis = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
+    chart, axis = plt.subplots(figsize=(8.4, 4.0), layout="constrained")
     for k, (name, rows) in enumerate(found.items()):
         n, ms, engine, contacts = (np.array(column) for column in zip(*((r.bodies, r.ms, r.engine, r.contacts)
                                                                           for r in rows)))
-        axis.plot(n, 1e6 * ms / contacts, "o-", color=f"C{k}", label=f"{name}: n to the power of {power(rows):.2f}")
-        axis.plot(n, 1e6 * engine / contacts, "x:", color=f"C{k}", label=f"{name}, tuned engine")
+        axis.plot(n, 1e6 * ms / contacts, "os^D"[k % 4] + "-", color=f"C{k}",
+                  label=f"{name}: step ~ n to the power of {power(rows):.2f}")
+        axis.plot(n, 1e6 * engine / contacts, "os^D"[k % 4] + ":", color=f"C{k}", fillstyle="none",
+                  label=f"{name}, tuned engine")
     axis.set(xscale="log", yscale="log", xlabel="bodies", ylabel="CPU time per contact and step [ns]")
-    axis.legend(fontsize=9)
+    plain_ticks(axis.yaxis)
+    chart.legend(loc="outside right upper", fontsize=9)
     chart.savefig(path)
     plt.close(chart)
+
+
+def plain_ticks(*axes):
+    """Write 0.5, 1, 2, 5, 10 … on logarithmic axes."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    for axis in axes:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def peak_memory():
@@ -285,7 +298,6 @@ def show(races, bodies):
 def draw(races, bodies, path):
     """Draw time against overlap of all engines and of ours, one picture for each kind: the lower left is best."""
     import matplotlib.pyplot as plt
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
     figure, panels = plt.subplots(1, len(races), figsize=(5.2 * len(races), 4.2), squeeze=False, layout="constrained")
     for panel, (name, rows) in zip(panels[0], races.items()):
         points = [("ours", our_settings(rival, name), "#0072B2", "o", one.overlap[1], one.ours)
@@ -299,10 +311,7 @@ def draw(races, bodies, path):
         panel.set(xscale="log", yscale="log", title=f"{bodies:,} {name}", xlabel="mean overlap [mm]",
                   ylabel="CPU time of a step [ms]")
         panel.margins(0.3)
-        for axis in (panel.xaxis, panel.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+        plain_ticks(panel.xaxis, panel.yaxis)
     figure.savefig(path)
     plt.close(figure)
 
