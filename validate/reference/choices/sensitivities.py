@@ -14,4 +14,4 @@ def bounced_curve_is():
     h = np.linspace(0.9, 1.0, 41)
     ideas = [2.0 * (1.0 + e) * np.sqrt(h) - (1.0 + 2.0 * e) * h for e in (0.5, 1.0)] + [0.0 * h, h]
     return Choice(h, tuple(y - y[0] for y in ideas), "Where are the balls just after their bounce?",
-                  "dropped from h [m]", "height, less that of the first ball [m]")
+                  "dropped from h [m]", "height, less that of the ball from 0.9 m [m]")
