@@ -9,8 +9,8 @@ n unit normal or direction, from b (or j) to a (or i).
 
 A method for points is a function  step(acceleration, t, x, v, dt, network) → (x, v)  at t + dt, as in lesson 1.
 The step passes network on unchanged.
-Given in support/pbd.py: make_constraint_network, network_gravity, the standard rattle_step, and objects that consist of
-parts of this lesson: a cloth, a balloon, a rigid body on a pivot.
+Given in solutions/given/pbd.py: make_constraint_network, network_gravity, the standard rattle_step, and objects that
+consist of parts of this lesson: a cloth, a balloon, a rigid body on a pivot.
 *Left out:* friction (lesson 3 adds it to such a step); collision of a cloth with itself (lesson 6 finds it).
 """
 

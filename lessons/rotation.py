@@ -11,8 +11,8 @@ its principal axes, which lesson 4 computes.
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns
 (3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state contains L itself, so
 without a torque L stays constant to the last digit.
-Given in support/rotation.py: make_rigid_body; steps by the other updates of orientation, by ω as the state, and by
-Runge–Kutta; compositions of fourth order; loops over steps.
+Given in solutions/given/rotation.py: make_rigid_body; steps by the other updates of orientation, by ω as the state, and
+by Runge–Kutta; compositions of fourth order; loops over steps.
 *Left out:* contacts, except of a ball on a floor; lesson 6 finds contacts and lesson 7 resolves them.
 """
 

@@ -10,7 +10,8 @@ difference · r (k,) a miss and J (k, k) = ∂r/∂s · p parameters of the scen
 
 The sensitivities of a method are the derivatives of its own numbers: each line of a step is differentiated.  At an
 event, the time depends on the inputs, too.
-Given in given/sensitivities.py: the loops advance_tangents and tangent_trajectory, flight over planes, and throw_miss.
+Given in solutions/given/sensitivities.py: the loops advance_tangents and tangent_trajectory, flight over planes, and
+throw_miss.
 *Left out:* adjoint (reverse) sensitivities, which are quicker for many inputs and one result; friction; lasting
 contacts.
 """

@@ -4,13 +4,13 @@
 
 Symbols: n bodies in arrays · x (n, d) [m] · q (n,) angles [rad] in the plane, (n, 4) unit quaternions in space ·
 v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses of m contacts · F (n, d) [N], tau (n,) or
-(n, 3) [N m] loads · p: a Bodies (support/bodies.py) or any record with the fields that a function reads.
+(n, 3) [N m] loads · p: a Bodies (solutions/given/bodies.py) or any record with the fields that a function reads.
 
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are additional rows of all arrays.  A row with
 inv_mass = 0 keeps the velocity that you give it: it is the ground if at rest, or a moving conveyor belt or turntable.
 A plane moves only along itself; a lift, which rises, is a body.  Lesson 5 has the same order for one body.
 A scene calls only what it needs: no detection where nothing can touch.
-Given in support/simulator.py: a loop with joints.  Given in support/invariants.py: how to judge a run.
+Given in solutions/given/simulator.py: a loop with joints.  Given in solutions/given/invariants.py: how to judge a run.
 *Left out:* restitution of many contacts, sleeping.
 """
 

@@ -7,8 +7,8 @@ boxes along the axes · t, dt [s].
 *Detection* finds which bodies touch, where and when.  It is pure geometry, and fills this lesson except for its end.
 *Avoidance* acts before contact.  It needs detection with a large reach, and forces.
 *Response* changes velocities after contact: lesson 7.
-Given in support/collisions.py: make_plane and make_box; contacts of capsules, polygons, boxes; discrete_step and
-continuous_step of balls that fly; a flock.  Trees are built in support/trees.py.
+Given in solutions/given/collisions.py: make_plane and make_box; contacts of capsules, polygons, boxes; discrete_step
+and continuous_step of balls that fly; a flock.  Trees are built in solutions/support/trees.py.
 *Left out:* bodies that rotate during the step, and non-convex shapes (divide them into convex parts).
 """
 

@@ -9,8 +9,8 @@ The sign ⁺ marks velocities after an impact.  An impact is so short that posit
 no effect.  An immovable body has inv_mass = 0 and inv_inertia = 0.  A body on an axle through its centre of mass has
 only inv_mass = 0, and a body that cannot rotate has only inv_inertia = 0.  In the plane r × n is the number
 r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
-Given in support/impulses.py: contact_impulse, penalty_step, a spinning ball, discs, and the loops advance_balls,
-advance_spinning_balls and advance_discs.
+Given in solutions/given/impulses.py: contact_impulse, penalty_step, a spinning ball, discs, and the loops
+advance_balls, advance_spinning_balls and advance_discs.
 *Left out:* detection of contacts (lesson 6); lasting contacts, as in a stack (lesson 9).
 """
 
@@ -439,8 +439,8 @@ def solve_impacts(body, r, n, e, mu):
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
     own impulse.  The sweeps end when the residual is at most CONVERGED times largest_speed(body, r).  If MAX_SWEEPS
     sweeps are not enough, return settle_impacts(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, μ) of the
-    body before the impact, given in support/impact_modes.py: it relaxes the sweeps, tries all choices of open, sticking
-    and sliding points, and last of all takes the impact that dissipates most, which is no answer of the law.
+    body before the impact, given in solutions/given/impact_modes.py: it relaxes the sweeps, tries all choices of open,
+    sticking and sliding points, and last of all takes the impact that dissipates most, which is no answer of the law.
     The law may have no answer, also for μ = 1, and then the residual shows that.  Of 48,000 random impacts at one to
     four points with μ up to 1, 16 were left without one, and an independent search found none to them either.  Of 140
     with μ = 2 or 5, nine were left; for μ above 1 it is not known how often an answer is missed.

@@ -3,7 +3,8 @@
 The force of a joint follows from the state of one time, without any step.  So it has the order of the method that made
 the state: the second after joint_step_2d, the fourth after composed_joint_step_2d.  The force of a contact follows from
 the impulse of a step, and has the order of the loop: the first.
-*Left out:* forces of joints while bodies touch; joint_impulses_2d of support/simulator.py has the mean over a step.
+*Left out:* forces of joints while bodies touch; joint_impulses_2d of solutions/given/simulator.py has the mean over a
+step.
 """
 
 import numpy as np

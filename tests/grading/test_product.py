@@ -27,11 +27,12 @@ BLOCKED = re.compile(r"Not attempted yet: [^<]*\d\.\d|it waits for|Traceback \(m
                      r"|✗ \w+Error:")                    # what `attempt` catches in a call of our own
 
 
-def write_answers(folder):
-    """Write right answers into the lessons of a folder, as a student would."""
+def write_answers(folder, solved=None):
+    """Write right answers into the lessons of a folder, as a student would; all, or those of some lessons."""
     for name in lesson_names():
         text = (SOLUTIONS / f"{name}.py").read_text()
-        (folder / "lessons" / f"{name}.py").write_text(generate.stub(text, generate.exercises(text), GIVEN))
+        answered = generate.exercises(text) if solved is None or name in solved else ()
+        (folder / "lessons" / f"{name}.py").write_text(generate.stub(text, answered, GIVEN))
 
 
 def run_in(folder, *command):
@@ -110,6 +111,24 @@ def test_a_notebook_runs_without_an_error_and_its_checks_pass(installed, program
             said = ran(client, source)
             assert not BLOCKED.search(re.sub(r"<style>.*?</style>", "", said)), f"{source}\n{said}"
             assert not source.startswith("check(") or ": passed" in said, said
+
+
+@pytest.mark.long
+@pytest.mark.xdist_group("notebooks")
+@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[3:] in lesson_names()], ids=lambda p: p.stem)
+def test_a_notebook_has_no_error_where_only_its_own_lesson_is_solved(installed, program, monkeypatch, tmp_path, path):
+    for variable in OURS:
+        monkeypatch.delenv(variable, raising=False)
+    (tmp_path / "lessons").mkdir()
+    write_answers(tmp_path, {path.stem[3:]})
+    monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path / "lessons"))
+    cells = nbformat.read(installed / "notebooks" / path.name, as_version=4).cells
+    with kernel(installed / "notebooks", program("python")) as client:
+        ran(client, HASTE)
+        for source in [cell.source for cell in cells if cell.cell_type == "code"]:
+            if not source.startswith("check("):
+                said = ran(client, source)
+                assert not re.search(r"✗ \w+Error:", said), f"{source}\n{said}"
 
 
 @pytest.mark.long

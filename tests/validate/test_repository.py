@@ -70,6 +70,12 @@ def test_no_text_names_a_lesson_that_there_is_not():
             assert {int(number) for number in re.findall(r"\d+", named)} <= known, f"{path}: lesson {named}"
 
 
+def test_every_file_of_the_given_code_that_a_student_reads_of_is_there():
+    for path in [*SOLUTIONS.rglob("*.py"), *(ROOT / "notebooks").glob("*.ipynb")]:
+        for named in re.findall(r"\b(?:solutions|support|given)/[\w/]+\.py", path.read_text(encoding="utf-8")):
+            assert (ROOT / named).exists() or (SOLUTIONS / named).exists(), f"{path}: {named}"
+
+
 def test_the_readme_shows_what_its_example_prints():
     text = (ROOT / "README.md").read_text()
     code, printed = re.search(r"<!-- example -->\n```python\n(.*?)```\n\n```\n(.*?)```", text, re.S).groups()
