@@ -69,6 +69,7 @@ def validate(
         return
     files = [name for name in engine or [] if name.endswith(".py")]
     if files:
+        refuse_unused(context)
         raise typer.Exit(own_engines(files, [name for name in engine or [] if name not in files], scene, quick, out))
     not_around_us(out)
     from . import measure  # takes half a second: not for --help
@@ -93,6 +94,14 @@ def validate(
     for error in broken.values():                            # after the other scenes have run
         raise error
     raise typer.Exit(code)
+
+
+def refuse_unused(context):
+    """Raise BadInput for an option that has no effect beside an engine in a file."""
+    for name in ("of", "lesson", "plain", "set_", "jobs", "executor"):
+        if context.get_parameter_source(name).name == "COMMANDLINE":
+            raise BadInput(f"--{name.rstrip('_')} beside an engine in a file", "without effect",
+                           "leave it out; --scene, --quick or --full, --engine and --out count")
 
 
 def own_engines(files, named, scenes, quick, out):

@@ -55,6 +55,8 @@ def run(capsys, *arguments):
     (["rotation"], "did you mean --lesson rotation"),
     (["--jobs", "many"], "--jobs"),
     (["--bogus"], "--bogus"),
+    *((["--engine", "my_engine.py", *option], option[0]) for option in (
+        ["--lesson", "pbd"], ["--of", "lessons"], ["--set", "m=1"], ["--plain"], ["--jobs", "1"], ["--executor", "x"])),
 ])
 def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_path, arguments, names):
     out = tmp_path / "report"

@@ -85,7 +85,7 @@ def test_readme_counts_the_scenes_that_the_laws_of_contact_judge(scenes):
 
 def test_the_scenes_without_a_truth_of_their_own_are_counted(scenes):
     agreed = [name for name in scenes if kept(name).get("agreed")]
-    assert agreed == ["dominoes", "machine"] and "for the dominoes and for a machine of many parts" in README
+    assert agreed == ["dominoes", "machine"] and "For the dominoes and for a machine of many parts" in README
     for name in ("notebooks/00_start_here.ipynb", "validate/book/validation.md", "validate/book/no_report.md"):
         assert f"{NUMBERS[len(agreed)].capitalize()} scenes have no such truth" in TEXTS[name], name
 

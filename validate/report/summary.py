@@ -104,7 +104,7 @@ def said_of_truths(report):
     if found := words.truths_by_engines(report["scenes"]):
         where = "; ".join(f"`{one['scene']}`{' (' + one['cases'] + ')' if one['cases'] else ''}, {one['engine']}"
                           for one in found)
-        yield f"The truth is an engine's own run, and that engine counts nowhere, in {where}."
+        yield f"Where the truth is an engine's own run, that engine is not judged: {where}."
 
 
 KEPT = ("date", "commit", "version", "engines", "compiler", "machine", "processor", "cores", "repeats")
@@ -123,14 +123,23 @@ def said_of_all(report):
     if not counts:
         return
     yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
-           "is what the intervals of both times allow. Medians of all races:")
-    yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; of {count['races']} races {count['slower']} "
-                    f"lost, {count['tie']} tied, {count['undecided']} undecided" for count in counts) + "."
+           "is what the intervals of both times allow. Medians of the races in which both reach the error:")
+    yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; {ended(count)}" for count in counts) + "."
     made = races.median_factors(every)
     if made["order"] is not None:
-        yield (f"At {percent(HEADLINE)} a ratio is the product of the method's order (median "
-               f"{factor(made['order'])}) and the loop at the engine's own order ({factor(made['loop'])}); the calls "
-               f"from Python are {factor(made['calls'])} of the loop.{compiled(made)}")
+        yield (f"In each race a ratio is the product of two: the method's order, and the loop at the engine's own "
+               f"order. At {percent(HEADLINE)} their medians are {factor(made['order'])} and {factor(made['loop'])}. "
+               f"(The product of two medians is not the median of the products.) The calls from Python are "
+               f"{factor(made['calls'])} of the loop.{compiled(made)}")
+
+
+def ended(count):
+    """Return how many races at one error ended how."""
+    kinds = {"slower": "lost", "tie": "tied", "undecided": "undecided", "engine_fails": "not reached by the engine",
+             "neither": "reached by neither"}
+    return f"of {count['races']} races " + ", ".join(
+        f"{count[kind]} {end}" for kind, end in kinds.items()
+        if count[kind] or kind in ("slower", "tie", "undecided"))
 
 
 def compiled(made):
