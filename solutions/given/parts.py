@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import Diverged
 from ..contact import kept_impulses, velocity_sweep_2d
 from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
@@ -23,6 +24,8 @@ from .joints import close_joints_2d, hold_joints_2d, without_joined
 from .rods import close_links
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
+NOTHING = 1e-12              # change of a velocity over itself that is round-off [-]
+MOST_LEFT = 0.5              # share of what contacts change that the last of all sweeps may change [-]
 TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
 
 
@@ -243,20 +246,55 @@ def is_settled(J, before, p):
     return True
 
 
+def share_left(J, before, v, free, contacts, arms):
+    """Return the largest velocity that a visit of a sweep has taken from a contact, over the largest change of v [-].
+
+    free: v before all impulses
+    A light body under a heavy one has small impulses to change, and yet sinks as fast as the heavy one.
+    """
+    most, left = 0.0, 0.0
+    for k in range(J.shape[0]):
+        along, squared = 0.0, 0.0
+        for c in range(J.shape[1]):
+            d = J[k, c] - before[k, c]
+            along, squared = along + d * contacts.n[k, c], squared + d * d
+            for i in (contacts.a[k], contacts.b[k]):
+                most = max(most, abs(v[i, c] - free[i, c]), NOTHING * abs(v[i, c]))
+        across = np.sqrt(max(squared - along * along, 0.0))
+        left = max(left, arms.k_n[k] * abs(along), arms.k_t[k] * across)
+    return left / most if most > 0.0 else 0.0
+
+
+def is_calm(J, before, v, free, contacts, arms, p):
+    """Return whether a sweep has changed neither the impulses nor, where bodies differ, the velocities any more."""
+    return is_settled(J, before, p) and (p.calm == np.inf or share_left(J, before, v, free, contacts, arms) <= p.calm)
+
+
+def check_calm(J, before, v, free, contacts, arms, p):
+    """Raise Diverged where the last of all sweeps has taken more than half of what contacts change in all."""
+    if p.calm < np.inf:
+        left = share_left(J, before, v, free, contacts, arms)
+        if left > MOST_LEFT:
+            raise Diverged("the share of the velocities at contacts that the last sweep has changed [-]", left,
+                           "take more sweeps, or masses and moments that are nearer to each other")
+
+
 def swept(begin, sweep, state, dt, p):
     """Return the state after sweeps over all contacts, until they settle.
 
     begin: (state, dt, p) → what the sweeps begin with;    sweep: over all contacts, in the plane or in space
+    Raises Diverged where they do not.
     """
-    x, q, _, _, contacts, J = state
+    x, q, free, _, contacts, J = state
     if contacts.a.size == 0:
         return state
     v, omega, J, aim, arms, inv_inertia = begin(state, dt, p)
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        if is_settled(J, before, p):
-            break
+        if is_calm(J, before, v, free, contacts, arms, p):
+            return PileState(x, q, v, omega, contacts, J)
+    check_calm(J, before, v, free, contacts, arms, p)
     return PileState(x, q, v, omega, contacts, J)
 
 
@@ -277,8 +315,8 @@ def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
 
 def swept_and_closed(begin, sweep, close_all, state, dt, p):
     """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
-    x, q, v, omega, contacts, J = state
-    v, omega = close_all(x, q, v, omega, dt, p)
+    x, q, free, omega, contacts, J = state
+    v, omega = close_all(x, q, free, omega, dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
     v, omega, J, aim, arms, inv_inertia = begin(PileState(x, q, v, omega, contacts, J), dt, p)
@@ -286,8 +324,9 @@ def swept_and_closed(begin, sweep, close_all, state, dt, p):
         before = J
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         v, omega = close_all(x, q, v, omega, dt, p)
-        if is_settled(J, before, p):
-            break
+        if is_calm(J, before, v, free, contacts, arms, p):
+            return PileState(x, q, v, omega, contacts, J)
+    check_calm(J, before, v, free, contacts, arms, p)
     return PileState(x, q, v, omega, contacts, J)
 
 
@@ -314,11 +353,11 @@ def separate(load, bounds, narrow, t, state, dt, p):
         return state
     aim, arms = pushing_aims(contacts, dt, p), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     push, spin, J_push, give = np.zeros(v.shape), np.zeros(omega.shape), np.zeros(J.shape), np.zeros(aim.size)
-    smooth = Smooth(p.inv_mass, p.inv_inertia, 0.0)
+    smooth, still = Smooth(p.inv_mass, p.inv_inertia, 0.0), push
     for _ in range(p.sweeps):
         before = J_push
         push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)
-        if is_settled(J_push, before, p):
+        if is_calm(J_push, before, push, still, contacts, arms, p):
             break
     gap = contacts.gap + dt * normal_velocities_2d(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)

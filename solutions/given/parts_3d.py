@@ -32,7 +32,7 @@ from .parts import (
     all_shallow,
     along_normals,
     forget_bounces,
-    is_settled,
+    is_calm,
     parting_aims,
     pushing_aims,
     swept,
@@ -163,10 +163,11 @@ def separate_in_space(load, bounds, narrow, t, state, dt, p):
     inv_inertia = spatial_inertia(q, p.inv_inertia)
     aim, arms, give = pushing_aims(contacts, dt, p), arms_3d(x, p.inv_mass, inv_inertia, contacts), 0.0 * contacts.gap
     push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
+    still = push
     for _ in range(p.sweeps):
         before = J_push
         push, spin, J_push = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)
-        if is_settled(J_push, before, p):
+        if is_calm(J_push, before, push, still, contacts, arms, p):
             break
     gap = contacts.gap + dt * normal_velocities(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)

@@ -17,6 +17,7 @@ from ..support.model import (
     Hinge,
     State,
     Weld,
+    can_move,
     friction_of,
     make_model,
     own_place,
@@ -29,12 +30,15 @@ from ..support.shapes import Ball, Box, Capsule, HalfSpace, Polyhedron, core_of,
 from .joints import Joints, farthest_neighbour, form_loops
 from .rods import Rods
 
+ALIKE = 40.0                 # difference of bodies up to which the changes of impulses show when sweeps are over [-]
+CALM = 40.0                  # by which the velocities at contacts may change more than the impulses, in shares [-]
+MORE = 100.0                 # by which there may be more sweeps at most [-]
 SLOP = 5e-3                  # overlap that stays, over the smallest size of a shape [-]
 
 
 class Settings(NamedTuple):
     """How a model is solved; nothing here changes the motion that ever shorter steps approach."""
-    sweeps: int = 100        # over all contacts in a step, at most
+    sweeps: int = 100        # over all contacts in a step, at most; more where bodies differ much (see difference)
     settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]
     margin: float | None = None   # gap up to which a contact is found [m]; None: a tenth of the smallest shape's size
 
@@ -52,6 +56,7 @@ class Composed(NamedTuple):
     pairs: Pairs             # all that could touch
     sweeps: int
     settled: float
+    calm: float              # share of the velocities at contacts that settled sweeps may change [-]; ∞: any
     margin: float
     slop: float              # overlap that stays [m]
     joints: Joints           # hinges, ball joints and welds
@@ -90,17 +95,33 @@ def rows_of(model, settings):
     sizes = [size_of(body.shape) for body in bodies[:n]]
     margin = 0.1 * min(sizes, default=1.0) if settings.margin is None else settings.margin
     rubs = {friction_of(model, i, j) for i, j in touching_pairs(model)}
-    inv_mass = np.array([1.0 / body.m for body in bodies] + [0.0])
+    inv_mass, uneven = np.array([1.0 / body.m for body in bodies] + [0.0]), difference(bodies[:n], d) / ALIKE
     p = Composed(
         inv_mass, np.array([np.divide(1.0, body.inertia) for body in bodies] + [np.zeros(d if d == 3 else ())]),
         cores_of(bodies[:n]) if d == 2 else rounded_boxes_of(bodies[:n]), planes_of(bodies[n:n + h], d),
         np.array(model.gravity), rubs.pop() if len(rubs) == 1 else 0.0,
         np.array([body.mu for body in bodies] + [0.0]), np.array([body.e for body in bodies] + [0.0]),
-        pairs_of(model, row, n), settings.sweeps, float(settings.settled), positive_number("margin [m]", margin),
+        pairs_of(model, row, n), int(settings.sweeps * min(max(uneven, 1.0), MORE)), float(settings.settled),
+        CALM * settings.settled if uneven > 1.0 else np.inf, positive_number("margin [m]", margin),
         SLOP * min(sizes, default=1.0), joints_of(model, row, inv_mass), rods_of(model, row),
         *springs_of(model, row, len(bodies)),
         float(sum(load.k for load in model.loads if isinstance(load, Drag))))
     return p, PileState(*states_of_rows(model, order), no_contacts(n, d), np.zeros((0, d))), row
+
+
+def difference(bodies, d):
+    """Return by how much the lightest end of all these bodies is lighter than the heaviest centre [-]; 0 without any.
+
+    A sweep leaves r/(1 + r) of an error where a body lies on one that is r times as light (lesson 9), so that it takes
+    r times as many sweeps.  At a lever of r a body is as light as  1/(1/m + r²/I).
+    """
+    lightest, heaviest = np.inf, 0.0
+    for body in filter(can_move, bodies):
+        points = np.array(body.shape.corners if hasattr(body.shape, "corners") else [half_of(body.shape, d)])**2
+        levers = np.max(np.sum(points, axis=1, keepdims=True) - (points if d == 3 else 0.0), axis=0)
+        lightest = min(lightest, 1.0 / (1.0 / body.m + np.max(levers / np.array(body.inertia))))
+        heaviest = max(heaviest, body.m)
+    return heaviest / lightest
 
 
 def states_of_rows(model, order):

@@ -346,6 +346,32 @@ def test_a_run_whose_end_is_no_number_is_no_result():
         run(make_model([Body((0.0, 0.0), 1.0, v=(1.0, 0.0))], (0.0, 0.0), loads=[Drag(1000.0)]), 10.0, 1000)
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_heavy_box_rests_on_a_light_one(d):
+    """Each sweep takes a 300th of what is left, so that a change of an impulse is small long before the end."""
+    up = np.eye(d)[-1]
+    boxes = [Body(tuple(height * up), m, Box((0.05,) * d), mu=0.5) for height, m in ((0.05, 1.0), (0.15, 300.0))]
+    model = make_model([*boxes, Body((0.0,) * d, shape=HalfSpace(tuple(up)), mu=1.0, e=1.0)], -G * up)
+    s = run(model, 0.15, 30)
+    assert s.x == pytest.approx(start_of(model).x, abs=5e-3 * 0.05 * np.sqrt(d))     # the overlap that stays
+
+
+def test_a_heavy_disc_that_falls_on_a_light_one_stays_on_it():
+    """Neither bounces; the light one lies on the floor."""
+    discs = [Body((0.0, y), m, Ball(0.5), v=(0.0, v)) for y, m, v in ((0.5, 1.0, 0.0), (1.5, 1000.0, -5.0))]
+    model = make_model([*discs, FLOOR], DOWN)
+    s = run(model, 0.3, 60)
+    assert s.x[:, 1] == pytest.approx([0.5, 1.5, 0.0], abs=5e-3)
+    assert np.abs(s.v).max() < 5e-3
+
+
+def test_contacts_that_sweeps_do_not_solve_are_no_result():
+    """A body that a thrust at its corner spins 10⁸ times as easily as it moves has no use for ten thousand sweeps."""
+    box = Body((0.0, 0.6), 1.0, Box((0.5, 0.5)), mu=0.5, q=0.3, inertia=1e-9)
+    with pytest.raises(Diverged, match="more sweeps"):
+        run(make_model([box, FLOOR], DOWN), 0.25, 60)
+
+
 def test_a_step_in_which_a_body_falls_past_all_parts_is_no_result():
     """Each part gains speed anew, so the most parts lead through little of such a step; the rest fell through."""
     with pytest.raises(Diverged, match="most parts"):
