@@ -19,13 +19,14 @@ from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
 from ..support.contact_points import ContactSet
 from ..support.networks import pull_per_length
-from ..support.scenes import PileState
+from ..support.scenes import PileState, smaller_half
 from .joints import close_joints_2d, hold_joints_2d, without_joined
 from .rods import close_links
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 NOTHING = 1e-12              # change of a velocity over itself that is round-off [-]
-MOST_LEFT = 0.5              # share of what contacts change that the last of all sweeps may change [-]
+SQUEEZED = 0.1               # overlap over the smaller half size from which impulses are looked at again [-]
+MOST_LEFT = 0.5              # share of what contacts change that one more sweep may change [-]
 TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
 
 
@@ -270,13 +271,26 @@ def is_calm(J, before, v, free, contacts, arms, p):
     return is_settled(J, before, p) and (p.calm == np.inf or share_left(J, before, v, free, contacts, arms) <= p.calm)
 
 
-def check_calm(J, before, v, free, contacts, arms, p):
-    """Raise Diverged where the last of all sweeps has taken more than half of what contacts change in all."""
-    if p.calm < np.inf:
-        left = share_left(J, before, v, free, contacts, arms)
+def are_deep(contacts, p):
+    """Return whether two bodies are so deep in each other that impulses seem not to hold them apart."""
+    for k in range(contacts.gap.size):
+        if contacts.gap[k] < -p.slop and contacts.gap[k] < -SQUEEZED * smaller_half(contacts, k, p.half.half):
+            return True
+    return False
+
+
+def check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p):
+    """Raise Diverged where one more sweep takes more than half of what contacts change in all.
+
+    This is looked at where bodies differ and the sweeps have not ended; and where bodies are deep in each other:
+    impulses that grow without end, as those of a body between a piston and a wall, change by an ever smaller share.
+    """
+    if (p.calm < np.inf and not calm) or are_deep(contacts, p):
+        _, _, more = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
+        left = share_left(more, J, v, free, contacts, arms)
         if left > MOST_LEFT:
-            raise Diverged("the share of the velocities at contacts that the last sweep has changed [-]", left,
-                           "take more sweeps, or masses and moments that are nearer to each other")
+            raise Diverged("the share of the velocities at contacts that sweeps have left [-]", left,
+                           "take more sweeps, masses nearer to each other, or more room where others move a body")
 
 
 def swept(begin, sweep, state, dt, p):
@@ -288,13 +302,14 @@ def swept(begin, sweep, state, dt, p):
     x, q, free, _, contacts, J = state
     if contacts.a.size == 0:
         return state
-    v, omega, J, aim, arms, inv_inertia = begin(state, dt, p)
+    (v, omega, J, aim, arms, inv_inertia), calm = begin(state, dt, p), False
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        if is_calm(J, before, v, free, contacts, arms, p):
-            return PileState(x, q, v, omega, contacts, J)
-    check_calm(J, before, v, free, contacts, arms, p)
+        calm = is_calm(J, before, v, free, contacts, arms, p)
+        if calm:
+            break
+    check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p)
     return PileState(x, q, v, omega, contacts, J)
 
 
@@ -319,14 +334,15 @@ def swept_and_closed(begin, sweep, close_all, state, dt, p):
     v, omega = close_all(x, q, free, omega, dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
-    v, omega, J, aim, arms, inv_inertia = begin(PileState(x, q, v, omega, contacts, J), dt, p)
+    (v, omega, J, aim, arms, inv_inertia), calm = begin(PileState(x, q, v, omega, contacts, J), dt, p), False
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         v, omega = close_all(x, q, v, omega, dt, p)
-        if is_calm(J, before, v, free, contacts, arms, p):
-            return PileState(x, q, v, omega, contacts, J)
-    check_calm(J, before, v, free, contacts, arms, p)
+        calm = is_calm(J, before, v, free, contacts, arms, p)
+        if calm:
+            break
+    check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p)
     return PileState(x, q, v, omega, contacts, J)
 
 

@@ -372,6 +372,17 @@ def test_contacts_that_sweeps_do_not_solve_are_no_result():
         run(make_model([box, FLOOR], DOWN), 0.25, 60)
 
 
+@pytest.mark.parametrize("shape", [Ball(0.5), Box((0.5, 0.5)), Capsule(0.3, 0.2)])
+@pytest.mark.parametrize("across", [0.0, 9.81])
+def test_a_body_without_room_between_a_piston_and_a_wall_is_no_result(shape, across):
+    """The impulses that hold it grow from step to step, and change by an ever smaller share."""
+    wall = Body((0.0, 0.0), shape=HalfSpace((-1.0, 0.0), 1.0), mu=1.0, e=1.0)
+    piston = Body((-1.5, 0.0), shape=Box((0.5, 2.0)), mu=1.0, e=1.0, v=(1.0, 0.0))
+    body = Body((0.0, 0.5), 1.0, shape, mu=0.5)
+    with pytest.raises(Diverged, match="more room"):
+        run(make_model([body, piston, wall, FLOOR], (0.0, -across)), 1.5, 180)
+
+
 def test_a_step_in_which_a_body_falls_past_all_parts_is_no_result():
     """Each part gains speed anew, so the most parts lead through little of such a step; the rest fell through."""
     with pytest.raises(Diverged, match="most parts"):
