@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import check_not_negative, finite_number, whole_number
+from ..checks import BadInput, check_not_negative, finite_number, whole_number
 from ..simulator import weight
 from ..support.convex_2d import (
     box_bounds_of,
@@ -32,6 +32,7 @@ from ..support.model import (
     State,
     can_turn,
     friction_of,
+    load_now,
     touching_pairs,
 )
 from ..support.scenes import PileState
@@ -75,6 +76,7 @@ from .parts_3d import (
 from .rods import close_with_rods, hold_with_rods
 from .rows import Composed, Settings, in_order, points_of, rods_in, rows_in_order, rows_of
 
+ROUND_OFF = 1e-9             # of the limits of a step [-]
 FEW = 8                      # shapes up to which all pairs are tested, without a broad phase [-]
 
 
@@ -190,7 +192,7 @@ def load_of(model):
         F, tau = known(t, x, q, v, omega, p)
         state = State(x[row], q[row], v[row], omega[row])
         for load in own:
-            more, twist = load(t, *state)
+            more, twist = load_now(load, t, state)
             F[row], tau[row] = F[row] + more, tau[row] + twist
         return F, tau
     return with_own_loads
@@ -255,11 +257,46 @@ def padded(loop):
     return [part.step for part in loop.parts] + [leave] * (6 - len(loop.parts))
 
 
+def check_explicit_forces(loop, dt):
+    """Raise BadInput where a spring or the drag makes a motion grow in each step.
+
+    Two bodies on a spring, or one in drag, with the inverse mass w = 1/m_a + 1/m_b, ω² = k w and γ = c w.  A step with
+    one kick has the determinant 1 − γ dt and the trace 2 − ω² dt² − γ dt, a step with two half kicks A² and
+    1 + A² − ½ ω² dt² (1 + A) with A = 1 − ½ γ dt.  Motions do not grow where |determinant| ≤ 1 and
+    |trace| ≤ 1 + determinant (Jury's test).
+    *Left out:* turns and further springs, which make a motion grow sooner; bodies with joints, which may hold it.
+    """
+    p = loop.p
+    if p.laws.size == 0 and p.drag == 0.0:
+        return
+    inv_mass = p.inv_mass.copy()
+    inv_mass[np.concatenate((p.joints.a, p.joints.b, p.rods.a, p.rods.b))] = 0.0
+    w = inv_mass[p.ends[:, 0]] + inv_mass[p.ends[:, 1]]
+    squared, damping = w * p.laws[:, 1] * dt * dt, w * p.laws[:, 2] * dt
+    halved = any(part.step in (accelerate_half, accelerate_half_in_space) for part in loop.parts)
+    grow, most = np.flatnonzero(grows(squared, damping, halved)), float(p.drag * np.max(inv_mass) * dt)
+    if grow.size:
+        raise BadInput("step dt [s]", dt, f"take a smaller one: with this one, spring {grow[0]} makes the motion grow "
+                       "without end; or take a Distance with a compliance in place of the spring")
+    if grows(0.0, most, halved):
+        raise BadInput("step dt [s]", dt, "take a smaller one: with this one, the drag makes motions grow without end")
+
+
+def grows(squared, damping, halved):
+    """Return whether a step makes a motion grow, of (ω dt)² and γ dt; halved: it has two half kicks."""
+    A = 1.0 - 0.5 * damping
+    determinant = A * A if halved else 1.0 - damping
+    trace = 1.0 + A * A - 0.5 * squared * (1.0 + A) if halved else 2.0 - squared - damping
+    return (np.abs(determinant) > 1.0 + ROUND_OFF) | (np.abs(trace) > 1.0 + determinant + ROUND_OFF)
+
+
 def run_parts(loop, t, state, dt, steps):
     """Return the PileState after so many steps of a Loop.
 
-    Raises BadInput for a step that is not positive, Diverged where the end is not finite or a step is far too long.
+    Raises BadInput for a step that is not positive or with which springs or a drag throw bodies ever farther, Diverged
+    where the end is not finite or a step is far too long.
     """
     steps = whole_number("number of steps", steps, 0)
+    check_explicit_forces(loop, dt)
     functions = loop.step.step, *padded(loop), loop.touch, loop.load, loop.bounds, loop.narrow
     return advance_parts(*functions, t, state, dt, steps, loop.p)

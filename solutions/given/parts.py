@@ -287,10 +287,14 @@ def check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, fre
     """
     if (p.calm < np.inf and not calm) or are_deep(contacts, p):
         _, _, more = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        left = share_left(more, J, v, free, contacts, arms)
-        if left > MOST_LEFT:
-            raise Diverged("the share of the velocities at contacts that sweeps have left [-]", left,
-                           "take more sweeps, masses nearer to each other, or more room where others move a body")
+        check_left(share_left(more, J, v, free, contacts, arms))
+
+
+def check_left(share):
+    """Raise Diverged where a sweep still takes more than half of what contacts change in all."""
+    if share > MOST_LEFT:
+        raise Diverged("the share of the velocities at contacts that sweeps have left [-]", share,
+                       "take more sweeps, masses nearer to each other, or more room for bodies between others")
 
 
 def swept(begin, sweep, state, dt, p):
@@ -361,7 +365,7 @@ def separate(load, bounds, narrow, t, state, dt, p):
 
     Sweeps without friction find velocities that remove the share PUSH_OUT of each overlap deeper than p.slop.  Open
     contacts may close.  The bodies move with these velocities for dt and then lose them, so nothing gains kinetic
-    energy.
+    energy.  Raises Diverged where bodies are deep in each other and have no room to part.
     *Source:* split impulses, as in Bullet.
     """
     x, q, v, omega, contacts, J = state
@@ -375,6 +379,9 @@ def separate(load, bounds, narrow, t, state, dt, p):
         push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)
         if is_calm(J_push, before, push, still, contacts, arms, p):
             break
+    if are_deep(contacts, p):
+        _, _, more = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)
+        check_left(share_left(more, J_push, push, still, contacts, arms))
     gap = contacts.gap + dt * normal_velocities_2d(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
     return PileState(x + dt * push, q + dt * spin, v, omega, moved, J)

@@ -31,10 +31,13 @@ from .joints import (
 from .parts import (
     all_shallow,
     along_normals,
+    are_deep,
+    check_left,
     forget_bounces,
     is_calm,
     parting_aims,
     pushing_aims,
+    share_left,
     swept,
     swept_and_closed,
 )
@@ -169,6 +172,9 @@ def separate_in_space(load, bounds, narrow, t, state, dt, p):
         push, spin, J_push = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)
         if is_calm(J_push, before, push, still, contacts, arms, p):
             break
+    if are_deep(contacts, p):
+        _, _, more = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)
+        check_left(share_left(more, J_push, push, still, contacts, arms))
     gap = contacts.gap + dt * normal_velocities(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
     turned, carried = turn_quaternions(q, spin, dt), omega.copy()

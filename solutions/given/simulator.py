@@ -36,7 +36,16 @@ from ..support.convex_3d import (  # noqa: F401
 from ..support.records import check_record
 from ..support.scenes import PileState
 from ..support.small_systems import solve_band
-from .compose import Loop, Part, Settings, compose, padded, run_parts, state_of  # noqa: F401
+from .compose import (  # noqa: F401
+    Loop,
+    Part,
+    Settings,
+    check_explicit_forces,
+    compose,
+    padded,
+    run_parts,
+    state_of,
+)
 from .dividing import advance_parts, divided_step, first_touch, whole_step  # noqa: F401
 from .hulls import hull_bounds, hull_contacts  # noqa: F401
 from .invariants import closing_speeds

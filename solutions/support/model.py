@@ -111,8 +111,10 @@ class Force(NamedTuple):
 
     def __call__(self, t, x, q, v, omega):
         """Return (F (n, d) [N], tau [N m]) of all bodies."""
-        F = np.zeros(x.shape)
-        F[self.a] = self.now(t, x, v)
+        F, now = np.zeros(x.shape), self.now(t, x, v)
+        if np.shape(now) != x[self.a].shape:
+            raise WrongShape(f"the force on body {self.a} at t = {t:.6g} s", np.shape(now), x[self.a].shape)
+        F[self.a] = now
         return F, np.zeros(omega.shape)
 
     def now(self, t, x, v):
@@ -302,8 +304,20 @@ def loads_at(model, t, state):
         if isinstance(load, Drag):
             F -= load.k * state.v * np.array([can_move(body) for body in model.bodies])[:, None]
         else:
-            more, twist = load(t, *state)
+            more, twist = load_now(load, t, State(*[rows.copy() for rows in state]))     # it may change what it gets
             F, tau = F + more, tau + twist
+    return F, tau
+
+
+def load_now(load, t, state):
+    """Return (F (n, d) [N], tau [N m]) of a load that is a function.
+
+    Raises WrongShape for an answer of another shape: NumPy would spread it over all bodies, or fail.
+    """
+    F, tau = load(t, *state)
+    for name, values, like in (("F [N]", F, state.x), ("tau [N m]", tau, state.omega)):
+        if np.shape(values) != like.shape:
+            raise WrongShape(f"{name} of a load at t = {t:.6g} s", np.shape(values), like.shape)
     return F, tau
 
 

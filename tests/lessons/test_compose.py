@@ -12,6 +12,7 @@ from solutions.given.compose import Part, Settings, compose, run_parts, state_of
 from solutions.support.model import (
     WORLD,
     Ball,
+    BallJoint,
     Body,
     Box,
     Capsule,
@@ -341,9 +342,80 @@ def test_a_step_that_cannot_be_is_refused(dt):
 
 @pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
 def test_a_run_whose_end_is_no_number_is_no_result():
-    """A drag that is too strong for the step lets the speed grow by k dt/m − 1 per step."""
+    """A drag of one's own that is too strong for the step lets the speed grow by k dt/m − 1 per step."""
+    drag = Force(0, lambda v: (-1000.0 * v[0], -1000.0 * v[1]), "v")
     with pytest.raises(Diverged, match="no longer finite"):
-        run(make_model([Body((0.0, 0.0), 1.0, v=(1.0, 0.0))], (0.0, 0.0), loads=[Drag(1000.0)]), 10.0, 1000)
+        run(make_model([Body((0.0, 0.0), 1.0, v=(1.0, 0.0))], (0.0, 0.0), loads=[drag]), 10.0, 1000)
+
+
+def step_matrix(squared, damping, halved):
+    """Return the matrix of a step of  x'' = −ω² x − γ x'  in units of dt, from our own kicks and moves."""
+    columns = []
+    for x, v in np.eye(2):
+        kick = 0.5 if halved else 1.0
+        v = v - kick * (squared * x + damping * v)
+        x = x + v
+        columns.append((x, v - kick * (squared * x + damping * v) if halved else v))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("halved", [False, True])
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize(("k", "c"), [(400.0, 0.0), (100.0, 3.0), (0.0, 5.0)])
+def test_a_step_is_refused_exactly_where_a_spring_makes_the_motion_grow(d, halved, k, c):
+    """Two bodies on a spring: just below the limit they stay near each other, just above it they are refused.
+
+    A third body on a joint, far away, lets the loop make half kicks.
+    *Source:* eigenvalues of the matrix of a step, found anew by bisection.
+    """
+    zero, right = np.zeros(d), np.eye(d)[0]
+    bodies, joints = [Body(tuple(zero), 1.0), Body(tuple(right), 2.0, v=tuple(0.1 * right))], []
+    if halved:
+        bodies += [Body(tuple(9.0 * right), 1.0, inertia=1.0 if d == 2 else (1.0,) * 3)]
+        joints = [(Hinge if d == 2 else BallJoint)(2, WORLD, tuple(9.5 * right))]
+    model = make_model(bodies, zero, joints, [Spring(0, 1, tuple(zero), tuple(zero), 0.9, k, c)])
+    low, high = 0.0, 10.0
+    while high - low > 1e-12:
+        dt = 0.5 * (low + high)
+        grows = np.max(np.abs(np.linalg.eigvals(step_matrix(1.5 * k * dt * dt, 1.5 * c * dt, halved)))) > 1.0 + 1e-12
+        low, high = (low, dt) if grows else (dt, high)
+    loop = compose(model)
+    s = state_of(loop, run_parts(loop, 0.0, loop.state, 0.99 * low, 2000))
+    assert np.abs((s.x[1] - s.x[0]) @ right) < 2.0 if k else np.abs((s.v[1] - s.v[0]) @ right) < 0.1
+    with pytest.raises(BadInput, match="spring 0 makes the motion grow"):
+        run_parts(loop, 0.0, loop.state, 1.01 * low, 1)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_step_is_refused_where_the_drag_makes_the_motion_grow(d):
+    """v' = −k v/m: a step leaves (1 − k dt/m) of the velocity."""
+    model = make_model([Body((0.0,) * d, 0.5, v=(1.0,) * d), Body((5.0,) * d, 2.0)], (0.0,) * d, loads=[Drag(3.0)])
+    s = run(model, 0.33 * 1000, 1000)
+    assert np.abs(s.v).max() < 1.0
+    with pytest.raises(BadInput, match="the drag makes motions grow"):
+        run(model, 0.34, 1)
+
+
+def test_a_spring_on_a_body_that_a_joint_holds_is_not_refused():
+    """The hinge takes what the spring pulls: the body cannot move along it."""
+    model = make_model([Body((0.0, 0.0), 1.0, inertia=1.0)], DOWN, [Hinge(0, WORLD, (0.0, 0.0))],
+                       [Spring(0, WORLD, (0.0, 0.0), (1.0, 0.0), 0.5, 1e6)])
+    assert np.abs(run(model, 1.0, 100).x).max() < 1e-9
+
+
+@pytest.mark.parametrize("later", [lambda x: x[0], lambda x: 1.0, lambda x: np.zeros((3, 2))])
+def test_a_load_whose_answer_changes_its_shape_is_refused(later):
+    """It answers as it should at the start."""
+    model = make_model([Body((0.0, 0.0), 1.0), Body((1.0, 0.0), 1.0)], DOWN,
+                       loads=[lambda t, x, q, v, omega: (later(x) if t > 0.05 else 0.0 * x, 0.0 * omega)])
+    with pytest.raises(BadInput, match=r"shape of F .* of a load at t = 0\.06 s"):
+        run(model, 0.1, 10)
+
+
+def test_a_force_whose_answer_changes_its_shape_is_refused():
+    model = make_model([Body((0.0, 0.0), 1.0)], DOWN, loads=[Force(0, lambda t: 1.0 if t > 0.05 else (1.0, 0.0), "t")])
+    with pytest.raises(BadInput, match=r"shape of the force on body 0 at t = 0\.06 s"):
+        run(model, 0.1, 10)
 
 
 @pytest.mark.parametrize("d", [2, 3])
@@ -381,6 +453,27 @@ def test_a_body_without_room_between_a_piston_and_a_wall_is_no_result(shape, acr
     body = Body((0.0, 0.5), 1.0, shape, mu=0.5)
     with pytest.raises(Diverged, match="more room"):
         run(make_model([body, piston, wall, FLOOR], (0.0, -across)), 1.5, 180)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("shape", [Ball, Box, Capsule])
+def test_a_body_that_has_no_room_between_two_walls_is_no_result(shape, d):
+    """Whatever parts it from one wall presses it into the other."""
+    across = np.eye(d)[0]
+    walls = [Body((0.0,) * d, shape=HalfSpace(tuple(side * across), 0.4)) for side in (1.0, -1.0)]
+    solid = {Ball: Ball(0.5), Box: Box((0.5,) * d), Capsule: Capsule(0.3, 0.5)}[shape]
+    with pytest.raises(Diverged, match="more room"):
+        run(make_model([Body((0.0,) * d, 1.0, solid), *walls], (0.0,) * d), 0.5, 60)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_body_that_is_deep_in_one_wall_is_parted_from_it(d):
+    across = np.eye(d)[0]
+    model = make_model([Body((0.0,) * d, 1.0, Ball(0.5)), Body((0.0,) * d, shape=HalfSpace(tuple(across), -0.2))],
+                       (0.0,) * d)
+    s = run(model, 1.0, 120)
+    assert s.x[0] @ across == pytest.approx(0.7, abs=5e-3)
+    assert np.abs(s.v).max() < 1e-12
 
 
 def test_a_step_in_which_a_body_falls_past_all_parts_is_no_result():

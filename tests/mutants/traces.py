@@ -15,12 +15,14 @@ import os
 import subprocess
 import sys
 import types
+from typing import Annotated
 
 import numpy as np
+import typer
 
-from solutions.checks import BadInput
 from validate import mistakes
 from validate.grading import points
+from validate.run.command import start
 from validate.subject import modules
 from validate.subject.generate import exercises
 
@@ -173,22 +175,18 @@ def write(lesson):
     return path
 
 
-def main(lessons):
-    try:
-        for lesson in lessons or modules.lesson_names():
-            modules.bind(lesson)
-            path = write(lesson)
-            table = mistakes.table(lesson)
-            found = {(number, one["idea"]) for number, exercise in table.items() for one in exercise["wrong"]}
-            wrong = [(m.exercise, m.story) for m in mutants_of(lesson) if not m.right]
-            print(f"{path.name}: {len(found)} of {len(wrong)} wrong answers, {path.stat().st_size // 1000} kB")
-            for exercise, story in (one for one in wrong if one not in found):
-                print(f"  in no trace: {exercise} {story}")
-    except BadInput as e:
-        print(e, file=sys.stderr)
-        return 2
-    return 0
+def main(lesson: Annotated[list[str] | None, typer.Argument(help="Such as springs.")] = None):
+    """Write the tables of known mistakes of these lessons, or of all."""
+    for name in lesson or modules.lesson_names():
+        modules.bind(name)
+        path = write(name)
+        table = mistakes.table(name)
+        found = {(number, one["idea"]) for number, exercise in table.items() for one in exercise["wrong"]}
+        wrong = [(m.exercise, m.story) for m in mutants_of(name) if not m.right]
+        print(f"{path.name}: {len(found)} of {len(wrong)} wrong answers, {path.stat().st_size // 1000} kB")
+        for exercise, story in (one for one in wrong if one not in found):
+            print(f"  in no trace: {exercise} {story}")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    start("python -m tests.mutants.traces", main)

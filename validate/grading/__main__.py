@@ -46,7 +46,7 @@ Late = Annotated[
 ]
 Roster = Annotated[
     Path | None,
-    typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp, due, group."),
+    typer.Option(help=f"CSV: {', '.join(classlist.Person._fields)}; all columns but the first may be missing."),
 ]
 Jobs = Annotated[int, typer.Option(min=1, help="Submissions at a time.")]
 Executor = Annotated[

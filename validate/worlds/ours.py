@@ -28,6 +28,7 @@ def build(model, dt, of="solutions", compiled=False, **settings):
     dt = positive_number("step dt [s]", dt)
     lesson = lesson_of(of)
     loop = lesson.compose(model, lesson.Settings(**settings))
+    lesson.check_explicit_forces(loop, dt)
     fast = compiled and not any(callable(load) for load in model.loads)
     advance = compiled_advance(loop, of) if fast else partial(lesson.run_parts, loop)
     history, clock = [loop.state, loop.state], [0]                     # before and after the last step
