@@ -3,6 +3,7 @@
 compose(model) returns a Loop: the parts that the model needs, in the lecture's order, each with the reason why it is
 there.  A loop has no part for what its model lacks: without shapes it does not search for contacts, without joints it
 closes none, and bodies that cannot turn are only moved.  run_parts runs it.
+*Left out:* seams.  A body that slides over two supports side by side bumps into the second: give it a single support.
 """
 
 from typing import NamedTuple

@@ -21,7 +21,7 @@ from ..support.contact_points import ContactSet
 from ..support.networks import pull_per_length
 from ..support.scenes import PileState, smaller_half
 from .joints import close_joints_2d, hold_joints_2d, without_joined
-from .rods import close_links
+from .rods import close_links, no_link_impulses
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 NOTHING = 1e-12              # change of a velocity over itself that is round-off [-]
@@ -87,12 +87,25 @@ def accelerate_rest(load, bounds, narrow, t, state, dt, p):
 
 # ---------------------------------------------------------------------------------------------- detection
 
+def carried(contacts, v, dt, p):
+    """Return the contacts of the step before where their bodies have carried them in dt, so that they are recognised.
+
+    Between two bodies: by the mean of their velocities v;  on a plane: by that of the body, whose corner it is.
+    """
+    points, n = contacts.p.copy(), p.half.half.shape[0]
+    for k in range(contacts.a.size):
+        a, b = contacts.a[k], contacts.b[k]
+        for c in range(points.shape[1]):
+            points[k, c] += dt * (0.5 * (v[a, c] + v[b, c]) if b < n else v[a, c])
+    return ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, points, contacts.gap)
+
+
 def detect_few(load, bounds, narrow, t, state, dt, p):
     """Return the state with the contacts of all pairs that could touch, and the impulses that they keep."""
     x, q, v, omega, old, J = state
     _, _, turn = bounds(x, q, p.half)
     contacts = narrow(x, turn, p.half, p.planes, p.pairs, p.margin)
-    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, old, J, p.margin))
+    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, carried(old, v, dt, p), J, p.margin))
 
 
 def detect_many(load, bounds, narrow, t, state, dt, p):
@@ -100,7 +113,7 @@ def detect_many(load, bounds, narrow, t, state, dt, p):
     x, q, v, omega, old, J = state
     low, high, turn = bounds(x, q, p.half)
     contacts = find_contacts(narrow, x, low, high, turn, p)
-    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, old, J, p.margin))
+    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, carried(old, v, dt, p), J, p.margin))
 
 
 def detect_unjoined(load, bounds, narrow, t, state, dt, p):
@@ -108,7 +121,7 @@ def detect_unjoined(load, bounds, narrow, t, state, dt, p):
     x, q, v, omega, old, J = state
     low, high, turn = bounds(x, q, p.half)
     contacts = without_joined(find_contacts(narrow, x, low, high, turn, p), p.joints)
-    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, old, J, p.margin))
+    return PileState(x, q, v, omega, contacts, kept_impulses(contacts, carried(old, v, dt, p), J, p.margin))
 
 
 # ---------------------------------------------------------------------------------------------- contact
@@ -282,10 +295,10 @@ def are_deep(contacts, p):
 def check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p):
     """Raise Diverged where one more sweep takes more than half of what contacts change in all.
 
-    This is looked at where bodies differ and the sweeps have not ended; and where bodies are deep in each other:
-    impulses that grow without end, as those of a body between a piston and a wall, change by an ever smaller share.
+    This is looked at where the sweeps have not ended; and where bodies are deep in each other: impulses that grow
+    without end, as those of a body between a piston and a wall, change by an ever smaller share.
     """
-    if (p.calm < np.inf and not calm) or are_deep(contacts, p):
+    if not calm or are_deep(contacts, p):
         _, _, more = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         check_left(share_left(more, J, v, free, contacts, arms))
 
@@ -294,7 +307,7 @@ def check_left(share):
     """Raise Diverged where a sweep still takes more than half of what contacts change in all."""
     if share > MOST_LEFT:
         raise Diverged("the share of the velocities at contacts that sweeps have left [-]", share,
-                       "take more sweeps, masses nearer to each other, or more room for bodies between others")
+                       "take more sweeps, masses nearer to each other, a friction below 1, or more room between bodies")
 
 
 def swept(begin, sweep, state, dt, p):
@@ -333,16 +346,19 @@ def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
 
 
 def swept_and_closed(begin, sweep, close_all, state, dt, p):
-    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them."""
+    """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them.
+
+    close_all: (x, q, v, omega, links, dt, p) → (v, omega, links), with the impulses of all links in this step
+    """
     x, q, free, omega, contacts, J = state
-    v, omega = close_all(x, q, free, omega, dt, p)
+    v, omega, links = close_all(x, q, free, omega, no_link_impulses(p), dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
     (v, omega, J, aim, arms, inv_inertia), calm = begin(PileState(x, q, v, omega, contacts, J), dt, p), False
     for _ in range(p.sweeps):
         before = J
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
-        v, omega = close_all(x, q, v, omega, dt, p)
+        v, omega, links = close_all(x, q, v, omega, links, dt, p)
         calm = is_calm(J, before, v, free, contacts, arms, p)
         if calm:
             break
@@ -350,9 +366,15 @@ def swept_and_closed(begin, sweep, close_all, state, dt, p):
     return PileState(x, q, v, omega, contacts, J)
 
 
+def close_rigid_2d(x, q, v, omega, links, dt, p):
+    """Return (v, omega, links) after close_joints_2d: what is rigid does not ask for the impulses before."""
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    return v, omega, links
+
+
 def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
     """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
-    return swept_and_closed(begun, sweep_pairs_2d, close_joints_2d, state, dt, p)
+    return swept_and_closed(begun, sweep_pairs_2d, close_rigid_2d, state, dt, p)
 
 
 def contact_impulses_with_rods(load, bounds, narrow, t, state, dt, p):

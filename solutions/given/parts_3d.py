@@ -145,9 +145,15 @@ def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
     return swept(begun_of_centres_in_space, sweep_centres, state, dt, p)
 
 
+def close_rigid(x, q, v, omega, links, dt, p):
+    """Return (v, omega, links) after close_joints: what is rigid does not ask for the impulses before."""
+    v, omega = close_joints(x, q, v, omega, dt, p)
+    return v, omega, links
+
+
 def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same as contact_impulses_in_space, with joints that are closed after every sweep."""
-    return swept_and_closed(begun_in_space, sweep_pairs, close_joints, state, dt, p)
+    return swept_and_closed(begun_in_space, sweep_pairs, close_rigid, state, dt, p)
 
 
 def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):

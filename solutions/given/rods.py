@@ -89,6 +89,11 @@ def softness(p):
     return np.concatenate((np.zeros(p.joints.r_a.size), p.rods.compliance))
 
 
+def no_link_impulses(p):
+    """Return the impulses (rows,) [N s] of all rows at the beginning of a step."""
+    return np.zeros(p.joints.r_a.size + p.rods.a.size)
+
+
 def responses(G, q, p):
     """Return M⁻¹ Gᵀ (3 n or 6 n, rows): velocities of all bodies by unit impulses along the rows."""
     W, wide = np.zeros((G.shape[1], G.shape[0])), G.shape[1] // q.shape[0]
@@ -149,27 +154,29 @@ def longest_arm(p):
     return most
 
 
-def close_links(x, q, v, omega, dt, p):
-    """Return (v, omega) after the impulses with which joints are closed, and rods have their lengths, after dt.
+def close_links(x, q, v, omega, J, dt, p):
+    """Return (v, omega, J) after the impulses with which joints are closed, and rods have their lengths, after dt.
 
+    J (rows,) [N s]: the impulses of all rows in this step, those before included.  A compliant rod gives way by all of
+    them: C = −α J/dt.
     Newton's method, as close_joints_2d has it.  Raises Diverged where a step is too long for that, or where bodies go
     where the links cannot stay closed.
     """
-    v, omega, soft, open_by = float_copy(v), float_copy(omega), softness(p) / dt, 0.0
-    W, J, arm = responses(link_rows(x, q, p)[0], q, p), np.zeros(soft.size), longest_arm(p)
+    v, omega, J, soft, open_by = float_copy(v), float_copy(omega), J.copy(), softness(p) / dt, 0.0
+    W, arm = responses(link_rows(x, q, p)[0], q, p), longest_arm(p)
     for _ in range(MOST):
         there, turned = moved_on(x, q, v, omega, dt, p)
         G, gap = link_rows(there, turned, p)
         gap += soft * J
         open_by, size = np.max(np.abs(gap)), np.max(np.abs(there)) + (1.0 + np.max(np.abs(turned))) * arm
         if open_by <= CLOSED * size:
-            return v, omega
+            return v, omega, J
         more, reach = impulses_along(G @ W + np.diag(soft / dt), -gap / dt)
         if reach:
             J += more
             v, omega = pushed(v, omega, W @ more)
         elif open_by <= SHAPE * CLOSED * size:
-            return v, omega
+            return v, omega, J
         else:
             W = responses(G, turned, p)
     raise Diverged("the largest gap of a joint or a rod [m]", open_by, NOT_CLOSED)
@@ -192,7 +199,7 @@ def hold_links(x, q, v, omega, p):
 def close_with_rods(load, bounds, narrow, t, state, dt, p):
     """Return the state with velocities that leave no joint or rod open at the end of the step."""
     x, q, v, omega, contacts, J = state
-    v, omega = close_links(x, q, v, omega, dt, p)
+    v, omega, _ = close_links(x, q, v, omega, no_link_impulses(p), dt, p)
     return PileState(x, q, v, omega, contacts, J)
 
 

@@ -428,6 +428,25 @@ def test_a_heavy_box_rests_on_a_light_one(d):
     assert s.x == pytest.approx(start_of(model).x, abs=5e-3 * 0.05 * np.sqrt(d))     # the overlap that stays
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_stack_on_a_belt_stands_as_on_a_floor(d):
+    """A law of Galileo: all move alike, however far in a step, so the impulses of the step before are kept."""
+    up, along = np.eye(d)[-1], np.eye(d)[0]
+    still, carried = (run(make_model(
+        [Body((0.0,) * d, shape=HalfSpace(tuple(up)), mu=1.0, e=1.0, v=tuple(v * along))]
+        + [Body(tuple((0.5 + k) * up), 1.0, Box((0.5,) * d), mu=0.7, v=tuple(v * along)) for k in range(5)],
+        -G * up), 0.2, 48) for v in (0.0, 64.0))
+    assert carried.x - 0.2 * 64.0 * along == pytest.approx(still.x, abs=1e-6)
+    assert carried.v - 64.0 * along == pytest.approx(still.v, abs=1e-6)
+
+
+def test_a_cycle_of_sweeps_is_no_result():
+    """A rod that lands aslant with much friction: normal and tangent undo each other in every visit."""
+    rod = Body((0.0, 0.5 * np.sin(0.5) + 0.102), 1.0, Capsule(0.5, 0.1), mu=3.0, q=0.5, v=(3.0, -2.0))
+    with pytest.raises(Diverged, match="a friction below 1"):
+        run(make_model([rod, FLOOR], (0.0, 0.0)), 0.05, 100)
+
+
 def test_a_heavy_disc_that_falls_on_a_light_one_stays_on_it():
     """Neither bounces; the light one lies on the floor."""
     discs = [Body((0.0, y), m, Ball(0.5), v=(0.0, v)) for y, m, v in ((0.5, 1.0, 0.0), (1.5, 1000.0, -5.0))]

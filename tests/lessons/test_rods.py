@@ -115,6 +115,33 @@ def test_a_rod_that_is_as_stiff_as_can_be_stays_calm_and_gives_way_by_alpha_time
 
 
 @pytest.mark.parametrize("d", [2, 3])
+def test_a_compliant_rod_does_not_ask_what_touches_elsewhere(d):
+    """A bob on it falls by up to 2 m g α, and as far when a ball rests on a floor far away."""
+    bob, place = Body(at(d, 0.0, -1.0), 1.0, inertia=1.0 if d == 2 else (1.0,) * 3), at(d, 0.0, 0.0)
+    rod, ball = Distance(0, WORLD, (0.0,) * d, place, 0.01), Body(at(d, 5.0, 0.5), 1.0, Ball(0.5))
+    floor = Body((0.0,) * d, shape=HalfSpace(at(d, 0.0, 1.0)), mu=1.0, e=1.0)
+    alone, beside = (run(make_model(bodies, down(d), [rod]), 0.3, 300) for bodies in ([bob], [bob, ball, floor]))
+    assert beside.x[0] == pytest.approx(alone.x[0], abs=1e-9)
+    assert beside.v[0] == pytest.approx(alone.v[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_compliant_rod_and_a_floor_share_a_weight(d):
+    """A ball hangs 2 cm above the floor on a rod that would give way by 4 cm: each carries half of it."""
+    m, gap = 2.0, 0.02
+    place = at(d, 0.0, 1.0)
+    model = make_model([Body(at(d, 0.0, 0.1 + gap), m, Ball(0.1)), Body((0.0,) * d, shape=HalfSpace(at(d, 0.0, 1.0)))],
+                       down(d), [Distance(0, WORLD, (0.0,) * d, place, 2.0 * gap / (m * G))])
+    loop, dt = compose(model), 1e-3
+    before, after = loop.state, run_parts(loop, 0.0, loop.state, dt, 1)
+    for k in range(1, 500):
+        before, after = after, run_parts(loop, k * dt, after, dt, 1)
+    assert after.J[0] / dt == pytest.approx(at(d, 0.0, 0.5 * m * G), abs=1e-3 * m * G)
+    assert link_impulses(loop.load, 0.499, before, after, dt, loop.p)[-1] / dt == pytest.approx(
+        at(d, 0.0, 0.5 * m * G), abs=1e-3 * m * G)
+
+
+@pytest.mark.parametrize("d", [2, 3])
 def test_rods_and_joints_close_a_loop_and_keep_the_energy(d):
     """A crank on a hinge drives a bar by a rod whose other end is on the bar; the bar hangs on a ball joint."""
     axis = {} if d == 2 else {"axis": (0.8, -0.6, 0.0)}
