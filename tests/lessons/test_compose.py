@@ -440,11 +440,23 @@ def test_a_stack_on_a_belt_stands_as_on_a_floor(d):
     assert carried.v - 64.0 * along == pytest.approx(still.v, abs=1e-6)
 
 
-def test_a_cycle_of_sweeps_is_no_result():
-    """A rod that lands aslant with much friction: normal and tangent undo each other in every visit."""
-    rod = Body((0.0, 0.5 * np.sin(0.5) + 0.102), 1.0, Capsule(0.5, 0.1), mu=3.0, q=0.5, v=(3.0, -2.0))
-    with pytest.raises(Diverged, match="a friction below 1"):
-        run(make_model([rod, FLOOR], (0.0, 0.0)), 0.05, 100)
+@pytest.mark.parametrize("sweeps", [20, 99, 100])
+def test_a_rod_that_lands_aslant_with_much_friction_slips_as_coulomb_says(sweeps):
+    """Its end stops along the normal, and slips on:  J_n = −u_n/(K_nn − μ K_nt),  J_t = −μ J_n.
+
+    Plain sweeps would go to and fro between two impulses: the normal and the tangent undo each other in every visit.
+    """
+    mu, tilt, v = 3.0, 0.5, np.array((3.0, -2.0))
+    rod = Body((0.0, 0.5 * np.sin(tilt) + 0.1 + 1e-9), 1.0, Capsule(0.5, 0.1), mu=mu, q=tilt, v=tuple(v))
+    model = make_model([rod, FLOOR], (0.0, 0.0))
+    inv_inertia, arm = 1.0 / model.bodies[0].inertia, np.array((-0.5 * np.cos(tilt), -0.5 * np.sin(tilt) - 0.1))
+    lever_n, lever_t = arm[0], -arm[1]                                    # of an impulse along y and along x
+    J_n = -v[1] / (1.0 + inv_inertia * lever_n * (lever_n - mu * lever_t))
+    J = np.array((-mu * J_n, J_n))
+    s = run(model, 1e-3, 1, sweeps=sweeps)
+    assert v[0] + J[0] + inv_inertia * lever_t * (lever_n * J[1] + lever_t * J[0]) > 0.1          # it does slip on
+    assert s.v[0] == pytest.approx(v + J, rel=1e-3)
+    assert s.omega[0] == pytest.approx(inv_inertia * (lever_n * J[1] + lever_t * J[0]), rel=1e-3)
 
 
 def test_a_heavy_disc_that_falls_on_a_light_one_stays_on_it():

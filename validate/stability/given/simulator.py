@@ -689,7 +689,7 @@ def rubbing(lesson, rng):
     state = state._replace(contacts=contacts, J=rng.normal(size=(6, 2)))
     record = SimpleNamespace(inv_mass=p.inv_mass, inv_inertia=p.inv_inertia, e_of=rng.choice((0.0, 0.5, 0.9), 4),
                              mu_of=rng.choice((0.0, 0.4, 1.5), 4), gravity=rng.normal(size=2), slop=0.02, sweeps=200,
-                             settled=1e-12, calm=np.inf)
+                             settled=1e-12, calm=np.inf, half=SimpleNamespace(half=np.ones((4, 2))))
     return state, record, lesson.arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), contacts
 
 
@@ -1381,7 +1381,7 @@ def overlap_goes_in_space(lesson, rng):
                                  np.array([gap]))
     state, away = state._replace(contacts=contacts, J=np.zeros((1, 3))), 0.2 * max(0.0, -gap - slop)
     record = SimpleNamespace(inv_mass=p.inv_mass, inv_inertia=p.inv_inertia, slop=slop, sweeps=200, settled=1e-12,
-                             calm=np.inf)
+                             calm=np.inf, half=SimpleNamespace(half=np.ones((3, 3))))
     R, tensor = rotations(state.q), tensors(state.q, p)
     spins = {i: np.linalg.solve(tensor[i], np.cross(place - state.x[i], n)) for i in (0, 2)}
     J = away / dt / sum(p.inv_mass[i] + n @ np.cross(spins[i], place - state.x[i]) for i in (0, 2))
