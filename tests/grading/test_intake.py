@@ -46,6 +46,39 @@ def by_student(intake):
 # ---------------------------------------------------------------------- files that are no folder and no zip
 
 
+def test_the_only_zip_in_a_folder_without_lesson_files_is_read(tmp_path):
+    """Moodle makes a folder for each student, and in it lies what was handed in: often a zip."""
+    moodle = tmp_path / "Ada Lovelace_1234567_assignsubmission_file"
+    moodle.mkdir()
+    zipped(moodle / "Abgabe.ZIP")
+    (moodle / "notes.txt").write_text("in haste")
+    (one,) = submissions.read_all(tmp_path, LESSONS).submissions
+    assert one.files == {"integrators": b"y = 2\n"} and one.timestamp and not one.problems
+
+
+@pytest.mark.parametrize("make", ["lesson beside it", "two zips", "zip in a zip", "link", "folder"])
+def test_no_other_archive_in_a_folder_is_read(tmp_path, make):
+    folder(tmp_path / "ada", "springs") if make == "lesson beside it" else (tmp_path / "ada").mkdir()
+    inside = tmp_path / "ada" / "a.zip"
+    if make == "link":
+        zipped(tmp_path / ".elsewhere.zip")
+        inside.symlink_to(tmp_path / ".elsewhere.zip")
+    elif make == "folder":
+        inside.mkdir()
+        zipped(inside / "b.zip")
+    elif make == "zip in a zip":
+        zipped(tmp_path / ".b.zip")
+        with zipfile.ZipFile(inside, "w") as archive:
+            archive.write(tmp_path / ".b.zip", "b.zip")
+    else:
+        zipped(inside)
+    if make == "two zips":
+        zipped(tmp_path / "ada" / "b.zip")
+    ada = by_student(submissions.read_all(tmp_path, LESSONS))["ada"]
+    assert "integrators" not in ada.files
+    assert ada.problems or make == "lesson beside it"
+
+
 @pytest.mark.parametrize("ending", [".tar.gz", ".tgz", ".TAR.XZ", ".tar", ".7z", ".rar", ".ipynb"])
 def test_what_cannot_be_opened_is_its_students_and_says_so(tmp_path, ending):
     folder(tmp_path / "bob")
@@ -139,6 +172,7 @@ def test_other_files_are_named_unless_they_are_the_class_list_or_hidden(tmp_path
 def test_what_nearly_is_a_lesson_file_is_named_where_the_lesson_is_missing(tmp_path):
     (tmp_path / "bob").mkdir()
     zipped(tmp_path / "bob" / "workbook.zip")
+    zipped(tmp_path / "bob" / "workbook (1).zip")
     with zipfile.ZipFile(tmp_path / "cem.zip", "w") as archive:
         archive.writestr("integrators.py", TEXT)
         archive.writestr("notebooks/02_springs.ipynb", TEXT)

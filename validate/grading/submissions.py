@@ -239,7 +239,8 @@ def from_bare(thing, student, lessons):
 def read(path, student, lessons, child):
     """Read one folder or zip; a fault in it becomes a sentence, not an error.  child: one of `children.reader`.
 
-    Raises Ungraded where there is too much of it.
+    A folder without lesson files may hold a single zip, which is read in its place.  Raises Ungraded where there is too
+    much of it.
     """
     if path.is_symlink():
         return Submission(student, {}, ("it is a link to somewhere else, which is not followed",), "")
@@ -253,10 +254,20 @@ def read(path, student, lessons, child):
     except Exception as e:  # BadZipFile, MemoryError, zlib.error, struct.error …
         return Submission(student, {}, (f"it cannot be read: {type(e).__name__}",), "")
     files, problems, when, notebooks = found
+    if not files and (zipped := only_zip(path)):
+        return read(zipped, student, lessons, child)
     asked = {place: unanswered(lesson, files.get(lesson, b"")) for lesson, place in notebooks.items()}
     cells = in_child(child, path, asked) if any(asked.values()) else {}
     problems = [one for one in problems if not any(one.startswith(f"{place} is a notebook") for place in cells)]
     return Submission(student, files, (*problems, *cells.values()), moment(when))
+
+
+def only_zip(path):
+    """Return the zip in a folder that holds a single one, as Moodle makes a folder around what was handed in; or None.
+    """
+    files = [one for one in path.iterdir() if not one.is_dir()] if path.is_dir() else []
+    found = [one for one in files if one.suffix.lower() == ".zip"]
+    return found[0] if len(found) == 1 else None
 
 
 def contents(find, path, lessons):
@@ -334,7 +345,7 @@ def resembling(names, lessons, found):
                    f"{lesson}.py is not there, and {name} was not read: if it is meant, call it {lesson}.py")
     if not found:
         packed = [name for name in names if name.lower().endswith((".zip", *ARCHIVES))]
-        remedy = "a folder or zip holds the lesson files themselves"
+        remedy = "a folder holds lesson files or a single zip, and a zip holds lesson files"
         yield from [f"{name} lies inside, and was not read: {remedy}" for name in packed]
 
 
