@@ -124,3 +124,8 @@ def test_a_secret_is_closed_before_it_is_written(tmp_path, monkeypatch):
     seen, write = [], Path.write_text
     monkeypatch.setattr(Path, "write_text", lambda file, text: (seen.append(mode(file)), write(file, text)))
     assert grade.secret(tmp_path, "a secret") == "a secret" and seen == [0o600]
+
+
+def test_days_late_without_a_due_date_are_refused(tmp_path, capsys, handed_in):
+    code, _, told = run(capsys, grade, tmp_path / "class", "--out", tmp_path / "out", "--late", "10")
+    assert code == 2 and "--late is 10, and nothing has a due date: give --due" in told

@@ -425,3 +425,11 @@ def test_a_due_date_without_a_time_ends_with_its_day(tmp_path):
     (tmp_path / "list.csv").write_text("student_id,due\nada,soon\n")
     with pytest.raises(BadInput, match=r"due of ada .* is not a date \('soon'\)"):
         classlist.roster(tmp_path / "list.csv")
+
+
+def test_columns_and_lines_of_a_class_list_that_are_not_read_are_told(tmp_path):
+    (tmp_path / "class.csv").write_text("student_id,Last_Name,nickname\nada,Byron,x\n,Hooke,y\n,,\n")
+    told = []
+    people = classlist.roster(tmp_path / "class.csv", told.append)
+    assert [*people] == ["ada"] and people["ada"].last_name == "Byron"
+    assert len(told) == 2 and "the columns nickname" in told[0] and "1 lines without a student_id" in told[1]

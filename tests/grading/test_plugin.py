@@ -183,3 +183,18 @@ def test_a_graded_run_has_a_law_that_students_do_not_receive():
 
     assert plugin.Draw(points.PUBLIC, "a test").law(coupled_pendula) is coupled_pendula
     assert plugin.Draw("a secret", "a test").law(coupled_pendula).__module__ == "validate.grading.unseen"
+
+
+def test_imports_that_a_grader_need_not_have_are_named(tmp_path):
+    """Both ways of importing count; Python's own modules, NumPy and the workbook do not."""
+    lessons = tmp_path / "lessons"
+    lessons.mkdir()
+    (lessons / "springs.py").write_text("import math, numpy as np\nfrom solutions.checks import BadInput\n"
+                                        "from . import other\nfrom scipy.linalg import solve\n"
+                                        "def f():\n    import matplotlib.pyplot as plt\n")
+    (lessons / "friction.py").write_text("import numpy.linalg\n")
+    (lessons / "pbd.py").write_text("import (\n")
+    config = types.SimpleNamespace(getoption=lambda name: str(lessons))
+    assert plugin.imports_without_a_grader(config) == {"springs.py": ["matplotlib", "scipy"]}
+    config = types.SimpleNamespace(getoption=lambda name: "solutions")
+    assert plugin.imports_without_a_grader(config) == {}

@@ -75,6 +75,9 @@ def grade(
     beside(class_, out)
     lessons, worth = choice.chosen(lesson or [], exercises)
     people = classlist.roster(roster, lambda told: say([told])) if roster else {}
+    if late and not due and not any(who.due for who in people.values()):
+        raise BadInput("--late", f"{late:g}, and nothing has a due date",
+                       "give --due, or a column due in the class list")
     terms = pages.Terms(classlist.deadline(due or "", "--due"), late, any(who.timestamp for who in people.values()))
     intake = submissions.read_all(class_, lessons, people, roster)
     sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})

@@ -39,7 +39,7 @@ MOST_BARS = 20               # bars of the histogram [-]: a phone has room for s
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
 CALL = "the call itself"     # the quantity where a call of the student's function ended in an error
-ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
+ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error of another kind"}
 
 
 NAMED_AFTER = ("coulomb", "euler", "gauss", "hooke", "housner", "jacobi", "kepler", "kutta", "lagrange", "newton",

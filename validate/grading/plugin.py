@@ -6,13 +6,16 @@ With --of only the grading tests run.  Long tests run only with --long, and with
 """
 
 import argparse
+import ast
 import hashlib
 import importlib.util
 import json
 import re
 import signal
+import sys
 import threading
 import types
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -385,6 +388,20 @@ def pytest_sessionfinish(session):
         Path(session.config.getoption("--case")).write_text(text)
 
 
+def imports_without_a_grader(config):
+    """Return {file: modules that it imports, and that the sandbox of a grader need not have} of the lessons tested."""
+    folder, found = modules.subject_folder(config.getoption("--of")), {}
+    for path in sorted(folder.glob("*.py")):
+        with suppress(SyntaxError, ValueError, OSError):
+            nodes = ast.walk(ast.parse(path.read_bytes()))
+            names = {name.partition(".")[0] for node in nodes for name in (
+                [alias.name for alias in node.names] if isinstance(node, ast.Import) else
+                [node.module] if isinstance(node, ast.ImportFrom) and node.level == 0 else [])}
+            if strange := sorted(names - {*sys.stdlib_module_names, "numpy", "solutions", "lessons"}):
+                found[path.name] = strange
+    return found
+
+
 def pytest_terminal_summary(terminalreporter, config):
     left_out = getattr(config, "long_tests_left_out", 0)
     if left_out:
@@ -404,5 +421,8 @@ def pytest_terminal_summary(terminalreporter, config):
     earned = sum(e for e, _ in table.values())
     possible = sum(p for _, p in table.values())
     terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")
+    for file, names in imports_without_a_grader(config).items():
+        terminalreporter.line(f"{file} imports {', '.join(names)}: a grader has NumPy and what the file came with, "
+                              "and would give it no points. Keep pictures in the notebook.")
     if config.of_another_copy:
         terminalreporter.line(f"tested: {config.getoption('--of')}, with the tests of {modules.ROOT}")

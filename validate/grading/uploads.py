@@ -92,7 +92,8 @@ def entry(person, one, maxima):
         told = [marks.words(hand) for hand in one.hands_in(lesson)]
         late = [f"{number(account.penalty)} off for being late"] * bool(account.penalty)
         scores[lesson] = account.score
-        remarks[lesson] = " | ".join(["not handed in"] * (not account.handed_in) + late + told)
+        missing = "no file of this lesson could be read" if one.problems else "not handed in"
+        remarks[lesson] = " | ".join([missing] * (not account.handed_in) + late + told)
     if marks.BY_HAND in maxima:
         hand = one.hands.get(marks.TOTAL) if one else None
         scores[marks.BY_HAND] = hand.points - hand.before if hand else 0
