@@ -342,6 +342,22 @@ def test_an_environment_is_not_counted_and_nothing_in_it_is_read(tmp_path, place
 
 
 @pytest.mark.parametrize("as_zip", [False, True])
+@pytest.mark.parametrize(("empty", "full"), [("old", "workbook"), ("workbook", "x")])
+def test_of_two_copies_in_two_folders_the_one_with_the_most_answers_counts(tmp_path, empty, full, as_zip):
+    done = STUB.replace(b'raise NotImplementedError("Exercise 1.1: euler_step")', b"return x, v")
+    ada = hand_in(tmp_path, {f"{empty}/lessons/integrators.py": STUB, f"{full}/lessons/integrators.py": done}, as_zip)
+    assert ada.files == {"integrators": done}
+    taken = f"{full}/lessons/integrators.py was taken, which has the most answers"
+    assert ada.problems == (f"integrators.py is there more than once; {taken}",)
+
+
+@pytest.mark.parametrize("as_zip", [False, True])
+def test_two_copies_that_are_equal_are_one(tmp_path, as_zip):
+    ada = hand_in(tmp_path, {"a/integrators.py": TEXT, "b/integrators.py": TEXT}, as_zip)
+    assert ada.files == {"integrators": TEXT} and not ada.problems
+
+
+@pytest.mark.parametrize("as_zip", [False, True])
 def test_too_many_files_are_no_grade_and_no_zero(tmp_path, as_zip):
     files = {f"data/{n}": b"" for n in range(submissions.MOST_ENTRIES + 1)}
     assert "more than 5000 files" in hand_in(tmp_path, {**files, "integrators.py": TEXT}, as_zip)

@@ -26,6 +26,7 @@ LARGEST = 1 << 18            # of a lesson file [bytes]: ten times the worked on
 LARGEST_NOTEBOOK = 1 << 25   # [bytes]: with its films
 DEEPEST = 4                  # folders between the top and the file
 MOST_ENTRIES = 5000          # of a zip or a folder [-]: more is not a submission
+MOST_COPIES = 8              # of a lesson file that are looked at [-]
 LARGEST_ZIP = 1 << 30        # [bytes]: with an environment in it
 NOT_THEIRS = {"__MACOSX", "__pycache__", "node_modules", "site-packages", "venv", "env"}   # folders of programs
 MOST_PROBLEMS = 20           # of a submission that are told [-]: a hostile zip has thousands
@@ -301,7 +302,7 @@ def moment(when):
 
 
 def nearest(candidates, problems):
-    """Return, of {lesson: places}, the place nearest to the top for each lesson; its own name takes precedence."""
+    """Return {lesson: places} of {lesson: places}: those nearest to the top; its own name takes precedence."""
     chosen = {}
     for lesson, places in candidates.items():
         named = [place for place in places if os.path.basename(place) == f"{lesson}.py"]
@@ -311,15 +312,21 @@ def nearest(candidates, problems):
             told = f"either {first} or {also[0]} may be {lesson}.py, and neither was read"
             problems.append(f"{told}: keep one, and call it {lesson}.py")
             continue
-        if also:
-            problems.append(f"{lesson}.py is there more than once; {first} was taken")
-        elif not named:
+        if not named:
             problems.append(f"{first} was taken for {lesson}.py")
         elif len(named) < len(places):
             left = next(place for place in places if place not in named)
             problems.append(f"{left} was not read: {first} counts")
-        chosen[lesson] = first
+        chosen[lesson] = [first, *also][:MOST_COPIES]
     return chosen
+
+
+def fullest(lesson, texts, problems):
+    """Return the place of {place: text} with the most answers; several are as near to the top as each other."""
+    best = min(texts, key=lambda place: len(unanswered(lesson, texts[place])))
+    if len({*texts.values()}) > 1:
+        problems.append(f"{lesson}.py is there more than once; {best} was taken, which has the most answers")
+    return best
 
 
 def wanted(name, lessons):
@@ -369,16 +376,21 @@ def from_folder(top, lessons):
         if lesson := wanted(name, lessons):
             candidates.setdefault(lesson, []).append(name)
     files = {}
-    for lesson, place in nearest(candidates, problems).items():
-        when = max(when, take(files, lesson, top / place, place, problems))
+    for lesson, places in nearest(candidates, problems).items():
+        found, dates = {}, {}
+        for place in places:
+            dates[place] = take(found, place, top / place, place, problems)
+        if found:
+            best = fullest(lesson, found, problems)
+            files[lesson], when = found[best], max(when, dates[best])
     return files, [*problems, *resembling(names, lessons, candidates)], when, names
 
 
-def take(files, lesson, path, name, problems):
-    """Read a lesson's file, if it is a regular one; its date."""
+def take(files, key, path, name, problems):
+    """Read a lesson's file into files[key], if it is a regular one; its date."""
     try:
         with regular(path) as file:
-            keep(files, lesson, name, file.read(LARGEST + 1), problems)
+            keep(files, key, name, file.read(LARGEST + 1), problems)
             return os.fstat(file.fileno()).st_mtime
     except OSError:
         problems.append(f"{name} is not a regular file, and was not read")
@@ -410,12 +422,16 @@ def from_zip(path, lessons):
                     problems.append(f"{name} {wrong}, and was not read")
                 else:
                     candidates.setdefault(lesson, []).append(name)
-        for lesson, place in nearest(candidates, problems).items():
-            try:
-                with archive.open(by_name[place]) as file:
-                    keep(files, lesson, place, file.read(LARGEST + 1), problems)
-            except Exception as e:  # encrypted, broken, packed in a way that Python does not know
-                problems.append(f"{place} cannot be read: {type(e).__name__}")
+        for lesson, places in nearest(candidates, problems).items():
+            found = {}
+            for place in places:
+                try:
+                    with archive.open(by_name[place]) as file:
+                        keep(found, place, place, file.read(LARGEST + 1), problems)
+                except Exception as e:  # encrypted, broken, packed in a way that Python does not know
+                    problems.append(f"{place} cannot be read: {type(e).__name__}")
+            if found:
+                files[lesson] = found[fullest(lesson, found, problems)]
         problems += resembling(names, lessons, {wanted(name, lessons) for name in names} - {None})
     return files, problems, path.stat().st_mtime, names
 
@@ -436,14 +452,14 @@ def unfit(entry):
     return ""
 
 
-def keep(files, lesson, place, text, problems):
+def keep(files, key, place, text, problems):
     lines = text.removeprefix(b"\xef\xbb\xbf").splitlines()
     if len(text) > LARGEST:
         problems.append(f"{place} is larger than {LARGEST // 1024} KiB, and was not read")
     elif all(line.strip().startswith(b"#") or not line.strip() for line in lines):
         problems.append(f"{place} is empty, so it is not graded: was it saved before it was handed in?")
     else:
-        files[lesson] = text
+        files[key] = text
 
 
 # ---------------------------------------------------------------------------------------------- answers in notebooks
