@@ -35,6 +35,7 @@ from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import typer
+from rich.console import Console
 
 from solutions.checks import BadInput
 from validate.run.command import start
@@ -106,8 +107,9 @@ def release(
         )
     writable(out.absolute().parent)
     out.unlink(missing_ok=True)                   # so that no older zip is taken for this one if the command fails
-    files = contents(tracked(dirty), chosen, worked)
-    refuse_leaks(files, worked)
+    with Console(stderr=True).status("collecting files and searching them for answers"):
+        files = contents(tracked(dirty), chosen, worked)
+        refuse_leaks(files, worked)
     files["README.md"] = files.pop(README)
     write(out, files)
     answered = ", ".join(sorted(worked)) or "none"
