@@ -59,6 +59,8 @@ from .parts import (
     move,
     move_and_turn,
     separate,
+    separate_with_joints,
+    separate_with_rods,
 )
 from .parts_3d import (
     accelerate_half_in_space,
@@ -73,6 +75,8 @@ from .parts_3d import (
     model_load_in_space,
     move_and_turn_in_space,
     separate_in_space,
+    separate_with_joints_in_space,
+    separate_with_rods_in_space,
 )
 from .rods import close_with_rods, hold_with_rods
 from .rows import Composed, Settings, in_order, points_of, rods_in, rows_in_order, rows_of
@@ -109,6 +113,7 @@ class Kit(NamedTuple):
     close: object
     hold: object
     separate: object
+    separate_joined: object
     centres: object          # contacts: where nothing rubs and nothing turns
     one_friction: object     # where all pairs have the same friction
     contacts: object
@@ -117,17 +122,27 @@ class Kit(NamedTuple):
     load: object
 
 
+KITS = {                     # of models in the plane, and in space
+    2: Kit(accelerate, accelerate_half, accelerate_rest, close, hold, separate, separate_with_joints,
+           contact_impulses_of_centres, contact_impulses, contact_impulses_of_pairs, contact_impulses_with_joints,
+           move_and_turn, model_load),
+    3: Kit(accelerate_in_space, accelerate_half_in_space, accelerate_rest_in_space, close_in_space, hold_in_space,
+           separate_in_space, separate_with_joints_in_space, contact_impulses_of_centres_in_space,
+           contact_impulses_in_space, contact_impulses_in_space, contact_impulses_with_joints_in_space,
+           move_and_turn_in_space, model_load_in_space),
+}
+WITH_RODS = {                # what is else where there are rods
+    2: {"close": close_with_rods, "hold": hold_with_rods, "separate_joined": separate_with_rods,
+        "with_joints": contact_impulses_with_rods},
+    3: {"close": close_with_rods, "hold": hold_with_rods, "separate_joined": separate_with_rods_in_space,
+        "with_joints": contact_impulses_with_rods_in_space},
+}
+
+
 def kit_of(model):
     """Return the Kit for the dimension of a model, with parts for rods only where it has rods."""
-    kit, rubs = Kit(accelerate, accelerate_half, accelerate_rest, close, hold, separate, contact_impulses_of_centres,
-                    contact_impulses, contact_impulses_of_pairs, contact_impulses_with_joints, move_and_turn,
-                    model_load), contact_impulses_with_rods
-    if model.d == 3:
-        kit, rubs = Kit(accelerate_in_space, accelerate_half_in_space, accelerate_rest_in_space, close_in_space,
-                        hold_in_space, separate_in_space, contact_impulses_of_centres_in_space,
-                        contact_impulses_in_space, contact_impulses_in_space, contact_impulses_with_joints_in_space,
-                        move_and_turn_in_space, model_load_in_space), contact_impulses_with_rods_in_space
-    return kit._replace(close=close_with_rods, hold=hold_with_rods, with_joints=rubs) if rods_in(model) else kit
+    kit = KITS[model.d]
+    return kit._replace(**WITH_RODS[model.d]) if rods_in(model) else kit
 
 
 # ---------------------------------------------------------------------------------------------- composition
@@ -158,8 +173,9 @@ def parts_of(model, kit):
     touching, reason = touching_pairs(model), reason_of_forces(model)
     motion = Part(kit.turn, "what moves and turns") if turns(model) else Part(move, "what moves; nothing can turn")
     if touching:
+        apart = kit.separate_joined if model.joints else kit.separate
         return (*[Part(kit.accelerate, reason)] * bool(reason), detection(model, touching),
-                Part(kit.separate, "shapes, which may overlap"), solver(model, touching, kit), motion)
+                Part(apart, "shapes, which may overlap"), solver(model, touching, kit), motion)
     if any(model.joints[k].compliance > 0.0 for k in rods_in(model)):
         return (*[Part(kit.accelerate, reason)] * bool(reason), Part(kit.close, "joints, of which some give way"),
                 motion, Part(kit.hold, "joints that do not give way"))

@@ -21,7 +21,7 @@ from ..support.contact_points import ContactSet
 from ..support.networks import pull_per_length
 from ..support.scenes import PileState, smaller_half
 from .joints import close_joints_2d, hold_joints_2d, without_joined
-from .rods import close_links, no_link_impulses
+from .rods import close_links, impulses_at_rest, no_link_impulses
 
 PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 NOTHING = 1e-12              # change of a velocity over itself that is round-off [-]
@@ -402,23 +402,16 @@ def contact_impulses_with_rods(load, bounds, narrow, t, state, dt, p):
     return swept_and_closed(begun, sweep_pairs_2d, close_links, state, dt, p)
 
 
-def separate(load, bounds, narrow, t, state, dt, p):
-    """Return the state with bodies moved out of each other, and with the velocities that they have.
-
-    Sweeps without friction find velocities that remove the share PUSH_OUT of each overlap deeper than p.slop.  Open
-    contacts may close.  The bodies move with these velocities for dt and then lose them, so nothing gains kinetic
-    energy.  Raises Diverged where bodies are deep in each other and have no room to part.
-    *Source:* split impulses, as in Bullet.
-    """
+def separated(close_all, links, state, dt, p):
+    """Return the state with bodies moved out of each other; close_all and links: see swept_and_closed."""
     x, q, v, omega, contacts, J = state
-    if all_shallow(contacts, p):
-        return state
     aim, arms = pushing_aims(contacts, dt, p), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     push, spin, J_push, give = np.zeros(v.shape), np.zeros(omega.shape), np.zeros(J.shape), np.zeros(aim.size)
     smooth, still = Smooth(p.inv_mass, p.inv_inertia, 0.0), push
     for _ in range(p.sweeps):
         before = J_push
         push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)
+        push, spin, links = close_all(x, q, push, spin, links, dt, p)
         if is_calm(J_push, before, push, still, contacts, arms, p):
             break
     if are_deep(contacts, p):
@@ -427,6 +420,34 @@ def separate(load, bounds, narrow, t, state, dt, p):
     gap = contacts.gap + dt * normal_velocities_2d(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
     return PileState(x + dt * push, q + dt * spin, v, omega, moved, J)
+
+
+def leave_open(x, q, v, omega, links, dt, p):
+    """Return what a function that closes links returns, of bodies without any."""
+    return v, omega, links
+
+
+def separate(load, bounds, narrow, t, state, dt, p):
+    """Return the state with bodies moved out of each other, and with the velocities that they have.
+
+    Sweeps without friction find velocities that remove the share PUSH_OUT of each overlap deeper than p.slop.  Open
+    contacts may close.  The bodies move with these velocities for dt and then lose them, so nothing gains kinetic
+    energy.  Raises Diverged where bodies are deep in each other and have no room to part.
+    *Source:* split impulses, as in Bullet.
+    """
+    return state if all_shallow(state.contacts, p) else separated(leave_open, np.zeros(0), state, dt, p)
+
+
+def separate_with_joints(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints that stay closed: else they would be closed by velocities that are none of theirs."""
+    return state if all_shallow(state.contacts, p) else separated(close_rigid_2d, np.zeros(0), state, dt, p)
+
+
+def separate_with_rods(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints and rods; a compliant rod keeps the force that it has, and gives way to more."""
+    if all_shallow(state.contacts, p):
+        return state
+    return separated(close_links, impulses_at_rest(state.x, state.q, dt, p), state, dt, p)
 
 
 # ---------------------------------------------------------------------------------------------- joints and motion

@@ -4,6 +4,7 @@ What finds contacts is the same in both.  Between impulses a body turns by split
 holds its angular momentum, so the gyroscopic term needs no part of its own.
 """
 
+import numpy as np
 
 from ..contact import friction_disc, velocity_sweep
 from ..simulator import weight
@@ -35,13 +36,14 @@ from .parts import (
     check_left,
     forget_bounces,
     is_calm,
+    leave_open,
     parting_aims,
     pushing_aims,
     share_left,
     swept,
     swept_and_closed,
 )
-from .rods import close_links
+from .rods import close_links, impulses_at_rest
 
 # ---------------------------------------------------------------------------------------------- forces
 
@@ -161,14 +163,12 @@ def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
     return swept_and_closed(begun_in_space, sweep_pairs, close_links, state, dt, p)
 
 
-def separate_in_space(load, bounds, narrow, t, state, dt, p):
-    """Return the state with bodies moved out of each other, as in the plane.
+def separated_in_space(close_all, links, state, dt, p):
+    """Return the state with bodies moved out of each other; close_all and links: see swept_and_closed.
 
     A body that is turned for it takes its angular velocity along, so that its kinetic energy stays.
     """
     x, q, v, omega, contacts, J = state
-    if all_shallow(contacts, p):
-        return state
     inv_inertia = spatial_inertia(q, p.inv_inertia)
     aim, arms, give = pushing_aims(contacts, dt, p), arms_3d(x, p.inv_mass, inv_inertia, contacts), 0.0 * contacts.gap
     push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
@@ -176,6 +176,7 @@ def separate_in_space(load, bounds, narrow, t, state, dt, p):
     for _ in range(p.sweeps):
         before = J_push
         push, spin, J_push = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)
+        push, spin, links = close_all(x, q, push, spin, links, dt, p)
         if is_calm(J_push, before, push, still, contacts, arms, p):
             break
     if are_deep(contacts, p):
@@ -188,6 +189,23 @@ def separate_in_space(load, bounds, narrow, t, state, dt, p):
         if p.inv_inertia[i, 0] > 0.0:
             carried[i] = rotate(turned[i], unrotate(q[i], omega[i]))
     return PileState(x + dt * push, turned, v, carried, moved, J)
+
+
+def separate_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the state with bodies moved out of each other, as in the plane."""
+    return state if all_shallow(state.contacts, p) else separated_in_space(leave_open, np.zeros(0), state, dt, p)
+
+
+def separate_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints that stay closed."""
+    return state if all_shallow(state.contacts, p) else separated_in_space(close_rigid, np.zeros(0), state, dt, p)
+
+
+def separate_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
+    """Return the same with joints and rods."""
+    if all_shallow(state.contacts, p):
+        return state
+    return separated_in_space(close_links, impulses_at_rest(state.x, state.q, dt, p), state, dt, p)
 
 
 # ---------------------------------------------------------------------------------------------- joints and motion

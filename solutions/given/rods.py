@@ -94,6 +94,16 @@ def no_link_impulses(p):
     return np.zeros(p.joints.r_a.size + p.rods.a.size)
 
 
+def impulses_at_rest(x, q, dt, p):
+    """Return the impulses (rows,) [N s] with which compliant rods are as long as they are:  J = −C dt/α;  0 of others.
+    """
+    J, soft, (_, gap) = no_link_impulses(p), softness(p), link_rows(x, q, p)
+    for s in range(J.size):
+        if soft[s] > 0.0:
+            J[s] = -gap[s] * dt / soft[s]
+    return J
+
+
 def responses(G, q, p):
     """Return M⁻¹ Gᵀ (3 n or 6 n, rows): velocities of all bodies by unit impulses along the rows."""
     W, wide = np.zeros((G.shape[1], G.shape[0])), G.shape[1] // q.shape[0]

@@ -507,6 +507,23 @@ def test_a_body_that_is_deep_in_one_wall_is_parted_from_it(d):
     assert np.abs(s.v).max() < 1e-12
 
 
+@pytest.mark.parametrize("rigid", [True, False])
+def test_a_beam_on_a_hinge_is_turned_out_of_a_block_and_stays_at_rest(rigid):
+    """What parts bodies keeps joints closed; it had opened them, and closing them took speed from nowhere.
+
+    The beam turns about its end until its lower edge lies on the left corner of the block, but for the slop of 1.1 mm.
+    """
+    beam, block = Body((0.5, 0.0), 1.0, Box((0.5, 0.05))), Body((0.8, -0.2), shape=Box((0.1, 0.2)))
+    joints = [Hinge(0, WORLD, (0.0, 0.0))] if rigid else [Distance(0, WORLD, (-0.5, 0.0), (0.0, 1.0)),
+                                                          Distance(0, WORLD, (-0.5, 0.0), (-1.0, 0.0))]
+    model = make_model([beam, block], (0.0, 0.0), joints)
+    s = run(model, 0.5, 100)
+    assert np.abs(s.v).max() < 1e-12 and np.abs(s.omega).max() < 1e-12
+    assert s.x[0] - 0.5 * np.array((np.cos(s.q[0]), np.sin(s.q[0]))) == pytest.approx((0.0, 0.0), abs=1e-9)
+    lower = lambda x: np.tan(s.q[0]) * x - 0.05 / np.cos(s.q[0])           # the height of its lower edge
+    assert lower(0.7) == pytest.approx(0.0, abs=1.2e-3)
+
+
 def test_a_step_in_which_a_body_falls_past_all_parts_is_no_result():
     """Each part gains speed anew, so the most parts lead through little of such a step; the rest fell through."""
     with pytest.raises(Diverged, match="most parts"):

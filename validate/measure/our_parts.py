@@ -22,19 +22,20 @@ from . import dimension
 from .accuracy import relative
 from .timing import Timed, interleaved, seconds_per_step
 
-ALL = ("accelerate", "detect_unjoined", "separate", "contact_impulses_with_joints", "move_and_turn")
+ALL = ("accelerate", "detect_unjoined", "separate_with_joints", "contact_impulses_with_joints", "move_and_turn")
 SMOOTH = ("accelerate_half", "detect_unjoined", "contact_impulses_with_joints", "move_and_turn", "accelerate_rest",
           "hold")            # all parts where the loop of the scene is RATTLE: forces act at both ends of its step
 WITHOUT = {                  # {part: ({function: the one in its place, or None}, fields that are zero)}
     "rotation": ({"move_and_turn": "move"}, ("inv_inertia",)),
-    "detection": ({"detect_unjoined": None, "separate": None, "contact_impulses_with_joints": "close"}, ()),
-    "contact": ({"separate": None, "contact_impulses_with_joints": "close"}, ()),
+    "detection": ({"detect_unjoined": None, "separate_with_joints": None, "contact_impulses_with_joints": "close"}, ()),
+    "contact": ({"separate_with_joints": None, "contact_impulses_with_joints": "close"}, ()),
     "friction": ({}, ("mu", "mu_of")),
-    "joints": ({"detect_unjoined": "detect_many", "contact_impulses_with_joints": "contact_impulses_of_pairs",
-                "hold": None}, ()),
+    "joints": ({"detect_unjoined": "detect_many", "separate_with_joints": "separate",
+                "contact_impulses_with_joints": "contact_impulses_of_pairs", "hold": None}, ()),
 }
 WITH_RODS = {                # where joints are also rods
-    "close": "close_with_rods", "hold": "hold_with_rods", "contact_impulses_with_joints": "contact_impulses_with_rods"}
+    "close": "close_with_rods", "hold": "hold_with_rods", "separate_with_joints": "separate_with_rods",
+    "contact_impulses_with_joints": "contact_impulses_with_rods"}
 TOTAL, DIMENSION = "all that the scene leaves out", "the third dimension"
 WITH, OWN = "all parts", "the scene's loop"
 SMALL = 0.01                 # radius of a body without a shape over the least distance of two bodies, or over 1 m [-]

@@ -831,7 +831,7 @@ COMPOSITIONS = (             # bodies, gravity, joints, the parts of their loop 
      [*FEEL, "contact_impulses_of_pairs", "move_and_turn"]),
     ((*MANY, FLOOR), DOWN, (), ["accelerate", "detect_many", "separate", "contact_impulses_of_pairs", "move_and_turn"]),
     ((*MANY, FLOOR), DOWN, (model.Hinge(0, 1, (0.25, 0.13)),),
-     ["accelerate", "detect_unjoined", "separate", "contact_impulses_with_joints", "move_and_turn"]),
+     ["accelerate", "detect_unjoined", "separate_with_joints", "contact_impulses_with_joints", "move_and_turn"]),
 )
 
 
