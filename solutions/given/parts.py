@@ -295,10 +295,10 @@ def are_deep(contacts, p):
 def check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p):
     """Raise Diverged where one more sweep takes more than half of what contacts change in all.
 
-    This is looked at where the sweeps have not ended; and where bodies are deep in each other: impulses that grow
-    without end, as those of a body between a piston and a wall, change by an ever smaller share.
+    This is looked at where bodies differ and the sweeps have not ended; and where bodies are deep in each other:
+    impulses that grow without end, as those of a body between a piston and a wall, change by an ever smaller share.
     """
-    if not calm or are_deep(contacts, p):
+    if (p.calm < np.inf and not calm) or are_deep(contacts, p):
         _, _, more = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         check_left(share_left(more, J, v, free, contacts, arms))
 
