@@ -247,7 +247,7 @@ def contraction_factors(sigma, gain, damping):
 def ccd_step(task, theta, target, arm):
     """Return θ after one sweep of cyclic coordinate descent in the plane, from the last joint to the first.
 
-    Each joint turns so that the end points at the target (2,), as seen from that joint.  *Find* the angle Δ_k of this
+    Each joint turns until it sees the end in the direction of the target (2,).  *Find* the angle Δ_k of this
     turn, from −π to π, with r = end − x_k and s = target − x_k.
 
     θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by the change of θ_k.
@@ -408,8 +408,8 @@ def my_writing():
     judge lets the arm follow by four damped steps per picture, with 25 pictures per second and λ a tenth of the reach
     Σ lengths, and demands:
 
-    - It has two to six links.  It takes 2 s to 20 s.  The path is at least as long as the reach, and is no line: across
-      its main direction it is at least a twentieth of the reach wide.
+    - It has two to six links, none shorter than a hundredth of the reach.  It takes 2 s to 20 s.  The path is at least
+      as long as the reach, and is no line: across its main direction it is at least a twentieth of the reach wide.
     - The hand is always within a hundredth of the reach of where it should be, also between two pictures.
     - No joint turns faster than 2 rad/s, and σ₂ of the Jacobian never falls below a twentieth of the reach.
     """

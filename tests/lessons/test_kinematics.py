@@ -1007,6 +1007,11 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
               given=f"θ = 0, e = {size * e}, J = {J}, λ = {damping}, {rows} rows, limits {arm.low} to {arm.high}")
     hold_a_joint_that_nothing_pushes(lesson, draw)
     step_of_special_tasks(lesson, draw)
+    J, kept = draw(-1.0, 1.0, (2, 5)), np.zeros((2, 5))
+    kept[:] = J                                                               # a task may return an array of its own
+    lesson.limited_step(lambda theta, target, arm: (target, J), np.zeros(5), draw(-1.0, 1.0, 2),
+                        arm_of(lesson, np.ones(5), damping=1.0, low=np.zeros(5), high=np.zeros(5)))
+    close("the J that the task returned, after a step", J, kept, 0.0)
 
 
 def step_of_stiff_arms(lesson, draw, size):

@@ -883,6 +883,16 @@ def my_impulse(u, n, K):
     return np.linalg.solve(K, after - u)
 
 
+@right("7.20", "separates with a tenth of the speed, to the last bit")
+def hardly_separates(u, n, K):
+    return np.linalg.solve(K, -0.1 * (u @ n) * n - (u - (u @ n) * n) - u)
+
+
+@right("7.20", "returns three tenths of the slip, to the last bit")
+def hardly_returns(u, n, K):
+    return np.linalg.solve(K, -(u @ n) * n - 0.3 * (u - (u @ n) * n) - u)
+
+
 @right("7.20", "with two inverse masses of the ball")
 def by_two_masses(u, n, K):
     normal = (u @ n) * n
@@ -898,5 +908,8 @@ edit("7.20", "does nothing", "-2.0 * u", "0.0 * u")
 edit("7.20", "turns the slip but does not separate", "-2.0 * u", "-2.0 * u + (u @ n) * n")
 edit("7.20", "pushes the other way", "-2.0 * u", "2.0 * u")
 edit("7.20", "returns too little of the slip", "-2.0 * u", "-2.0 * u + 0.85 * (u - (u @ n) * n)")
+for mu in (0.5, 1.0, 2.0):
+    edit("7.20", f"returns twice the impulse within the cone of μ = {mu:g}: a grazing ball slips on",
+         "solve3(K[0], K[1], K[2], -2.0 * u)", f"2.0 * cone_impulse(u, n, K, 0.0, {mu})")
 edit("7.20", "does nothing where the ball hits without slip",
      "-2.0 * u", "-2.0 * u * (np.abs(u - (u @ n) * n).max() > 0.0)")

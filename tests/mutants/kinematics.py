@@ -1493,6 +1493,7 @@ wrongs("11.15", between_limits, {
     "reflects joints at their limits":
         {"done": lambda theta, change, arm: 2.0 * clipped(theta + change, arm) - theta - change},
 })
+edit("11.15", "sets columns to zero in the array that the task returned", "J.copy()", "J")
 edit("11.15", "omits the damping", "arm.damping * arm.damping", "0.0")
 edit("11.15", "changes its input", "wish, J = e @ J, J.copy()",
      "wish, J = e @ J, J.copy(); theta[:] = np.maximum(theta, arm.low)")

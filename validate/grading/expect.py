@@ -16,6 +16,7 @@ MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumP
 BETWEEN = re.compile(r"(?:(?<=[\d.\]])|(?<=nan|inf)) (?=-?(?:[\d\[]|nan|inf))")
 FLOAT = re.compile(r"(?<![\w.])-?\d+\.\d*(?:e[-+]?\d+)?")
 NOTHING = "None: does every path through your function end with a return?"
+AT_A_BOUND = 1e-12           # relative difference from a bound that is round-off
 ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: round-off, and an error that a test looks for
 
 
@@ -66,9 +67,9 @@ def close(quantity, got, expected, tolerance, given=""):
 
 
 def between(quantity, got, low, high, given=""):
-    """Require low ≤ got ≤ high, for one number."""
+    """Require low ≤ got ≤ high, for one number; who aims at a bound may miss it by round-off."""
     value = float(numbers(quantity, got, (), given))
-    if not low <= value <= high:
+    if not low - AT_A_BOUND * abs(low) <= value <= high + AT_A_BOUND * abs(high):
         edge, shown = apart(low if value < low else high, value)
         ends = (edge, number(high)) if value < low else (number(low), edge)
         off = how_far(max(low - value, value - high), max(abs(low), abs(high)))
