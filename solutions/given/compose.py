@@ -163,6 +163,8 @@ def compose(model, settings=SETTINGS):
 
 def checked_settings(settings):
     """Return Settings as numbers of their kinds.  Raises BadInput; rows_of checks the margin."""
+    if getattr(settings, "_fields", None) != Settings._fields:
+        raise BadInput("the settings", f"a {type(settings).__name__}", "give Settings(…), or leave them out")
     settled = finite_number("the share at which sweeps have settled [-]", settings.settled)
     check_not_negative("the share at which sweeps have settled [-]", settled)
     return settings._replace(sweeps=whole_number("number of sweeps", settings.sweeps, 1), settled=settled)
@@ -314,6 +316,9 @@ def run_parts(loop, t, state, dt, steps):
     where the end is not finite or a step is far too long.
     """
     steps = whole_number("number of steps", steps, 0)
+    if getattr(state, "_fields", None) != PileState._fields or len(state.x) != len(loop.state.x):
+        raise BadInput("the state", f"a {type(state).__name__} that is not of this loop",
+                       "begin with loop.state, or go on from what run_parts has returned")
     check_explicit_forces(loop, dt)
     functions = loop.step.step, *padded(loop), loop.touch, loop.load, loop.bounds, loop.narrow
     return advance_parts(*functions, t, state, dt, steps, loop.p)

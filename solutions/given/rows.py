@@ -37,7 +37,10 @@ SLOP = 5e-3                  # overlap that stays, over the smallest size of a s
 
 
 class Settings(NamedTuple):
-    """How a model is solved; nothing here changes the motion that ever shorter steps approach."""
+    """How a model is solved.
+
+    Nothing here changes what ever shorter steps approach, but in impacts: sweeps find their impulses, and end early.
+    """
     sweeps: int = 100        # over all contacts in a step, at most; more where bodies differ much (see difference)
     settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]
     margin: float | None = None   # gap up to which a contact is found [m]; None: a tenth of the smallest shape's size

@@ -328,6 +328,20 @@ def test_settings_that_cannot_be_are_refused(settings):
         compose(make_model([Body((0.0, 1.0), 1.0, Ball(0.5)), FLOOR], DOWN), Settings(**settings))
 
 
+@pytest.mark.parametrize("settings", [None, {"sweeps": 10}, (10, 1e-3, None)])
+def test_what_is_no_settings_is_told(settings):
+    with pytest.raises(BadInput, match="the settings"):
+        compose(make_model([Body((0.0, 1.0), 1.0)], DOWN), settings)
+
+
+def test_a_state_that_is_not_of_the_loop_is_told():
+    """The State that is shown has other rows than the loop works with."""
+    loop, other = (compose(make_model([Body((float(k), 1.0), 1.0) for k in range(n)], DOWN)) for n in (1, 3))
+    for state in (state_of(loop, loop.state), other.state, None):
+        with pytest.raises(BadInput, match="not of this loop"):
+            run_parts(loop, 0.0, state, 0.1, 1)
+
+
 @pytest.mark.parametrize("settings", [{"sweeps": 10.0}, {"sweeps": np.int64(10)}, {"settled": 1}])
 def test_settings_may_be_numbers_of_another_kind(settings):
     assert np.isfinite(run(make_model([Body((0.0, 0.4), 1.0, Ball(0.5)), FLOOR], DOWN), 0.1, 10, **settings).x).all()

@@ -17,7 +17,7 @@ from . import children, expect, points, remote, watch
 from .box import CROWDED
 from .classlist import spelt_out
 
-BUDGET = 45.0                # time of one lesson of one submission, all calls together [s]: worked ones take 0.3 to 8
+BUDGET = 90.0                # time of one lesson of one submission, all calls together [s]: worked ones take 0.3 to 16
 MEMORY = 2 << 30             # growth of the grader's own process, because answers may broadcast to large arrays [bytes]
 OTHER_NUMBERS = "not an array of finite numbers of the right shape"
 NOT_REFUSED = "not the error that the docstring asks for"
