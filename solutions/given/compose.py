@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_not_negative, finite_number, whole_number
+from ..checks import BadInput, check_not_negative, finite_number, positive_number, whole_number
 from ..simulator import weight
 from ..support.convex_2d import (
     box_bounds_of,
@@ -122,27 +122,23 @@ class Kit(NamedTuple):
     load: object
 
 
-KITS = {                     # of models in the plane, and in space
-    2: Kit(accelerate, accelerate_half, accelerate_rest, close, hold, separate, separate_with_joints,
-           contact_impulses_of_centres, contact_impulses, contact_impulses_of_pairs, contact_impulses_with_joints,
-           move_and_turn, model_load),
-    3: Kit(accelerate_in_space, accelerate_half_in_space, accelerate_rest_in_space, close_in_space, hold_in_space,
-           separate_in_space, separate_with_joints_in_space, contact_impulses_of_centres_in_space,
-           contact_impulses_in_space, contact_impulses_in_space, contact_impulses_with_joints_in_space,
-           move_and_turn_in_space, model_load_in_space),
-}
-WITH_RODS = {                # what is else where there are rods
-    2: {"close": close_with_rods, "hold": hold_with_rods, "separate_joined": separate_with_rods,
-        "with_joints": contact_impulses_with_rods},
-    3: {"close": close_with_rods, "hold": hold_with_rods, "separate_joined": separate_with_rods_in_space,
-        "with_joints": contact_impulses_with_rods_in_space},
-}
-
-
 def kit_of(model):
-    """Return the Kit for the dimension of a model, with parts for rods only where it has rods."""
-    kit = KITS[model.d]
-    return kit._replace(**WITH_RODS[model.d]) if rods_in(model) else kit
+    """Return the Kit for the dimension of a model, with parts for rods only where it has rods.
+
+    It is made in each call, because these names become those of a student's functions.
+    """
+    if model.d == 2:
+        kit = Kit(accelerate, accelerate_half, accelerate_rest, close, hold, separate, separate_with_joints,
+                  contact_impulses_of_centres, contact_impulses, contact_impulses_of_pairs,
+                  contact_impulses_with_joints, move_and_turn, model_load)
+        rods = {"separate_joined": separate_with_rods, "with_joints": contact_impulses_with_rods}
+    else:
+        kit = Kit(accelerate_in_space, accelerate_half_in_space, accelerate_rest_in_space, close_in_space,
+                  hold_in_space, separate_in_space, separate_with_joints_in_space,
+                  contact_impulses_of_centres_in_space, contact_impulses_in_space, contact_impulses_in_space,
+                  contact_impulses_with_joints_in_space, move_and_turn_in_space, model_load_in_space)
+        rods = {"separate_joined": separate_with_rods_in_space, "with_joints": contact_impulses_with_rods_in_space}
+    return kit._replace(close=close_with_rods, hold=hold_with_rods, **rods) if rods_in(model) else kit
 
 
 # ---------------------------------------------------------------------------------------------- composition
@@ -285,7 +281,7 @@ def check_explicit_forces(loop, dt):
     |trace| ≤ 1 + determinant (Jury's test).
     *Left out:* turns and further springs, which make a motion grow sooner; bodies with joints, which may hold it.
     """
-    p = loop.p
+    p, dt = loop.p, positive_number("step dt [s]", dt)
     if p.laws.size == 0 and p.drag == 0.0:
         return
     inv_mass = p.inv_mass.copy()

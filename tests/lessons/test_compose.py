@@ -349,9 +349,10 @@ def test_settings_may_be_numbers_of_another_kind(settings):
 
 @pytest.mark.parametrize("dt", [0.0, -0.01, np.nan, np.inf, "a"])
 def test_a_step_that_cannot_be_is_refused(dt):
-    loop = compose(make_model([Body((0.0, 0.5), 1.0, Ball(0.5)), FLOOR], DOWN))
-    with pytest.raises(BadInput, match="step dt"):
-        run_parts(loop, 0.0, loop.state, dt, 10)
+    for loads in ([], [Drag(1.0)]):
+        loop = compose(make_model([Body((0.0, 0.5), 1.0, Ball(0.5)), FLOOR], DOWN, loads=loads))
+        with pytest.raises(BadInput, match="step dt"):
+            run_parts(loop, 0.0, loop.state, dt, 10)
 
 
 @pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
