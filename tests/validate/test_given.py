@@ -204,3 +204,19 @@ def test_modules_are_imported_at_the_top_of_given_code_where_module_sets_see_it(
     for path in (SOLUTIONS / "given").glob("*.py"):
         assert not [line for line in path.read_text().splitlines() if line.lstrip() != line
                     and line.lstrip().startswith(("import ", "from ."))], path
+
+
+def functions_in(value):
+    """Return the functions that a value holds."""
+    if isinstance(value, types.FunctionType):
+        return [value]
+    inside = value.values() if isinstance(value, dict) else value if isinstance(value, list | tuple | set) else ()
+    return [function for one in inside for function in functions_in(one)]
+
+
+@pytest.mark.parametrize("name", [name for name in modules.given_modules() if name.startswith("given.")])
+def test_no_data_of_a_module_above_the_lessons_hold_a_function(name):
+    """What a module computes when it is imported keeps the worked functions, where a student's should count."""
+    data = {key: value for key, value in vars(modules.original(name)).items()
+            if not key.startswith("__") and not isinstance(value, types.FunctionType | types.ModuleType | type)}
+    assert {key: found for key, value in data.items() if (found := functions_in(value))} == {}

@@ -16,7 +16,7 @@ MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumP
 BETWEEN = re.compile(r"(?:(?<=[\d.\]])|(?<=nan|inf)) (?=-?(?:[\d\[]|nan|inf))")
 FLOAT = re.compile(r"(?<![\w.])-?\d+\.\d*(?:e[-+]?\d+)?")
 NOTHING = "None: does every path through your function end with a return?"
-AT_A_BOUND = 1e-12           # relative difference from a bound that is round-off
+AT_A_BOUND = 1e-13           # relative difference from a bound that is round-off
 ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: round-off, and an error that a test looks for
 
 
