@@ -314,7 +314,7 @@ def contraction_factors(sigma, gain, damping):
 def ccd_step(task, theta, target, arm):
     """Return θ after one sweep of cyclic coordinate descent in the plane, from the last joint to the first.
 
-    Each joint turns until it sees the end in the direction of the target (2,).  *Find* the angle Δ_k of this
+    Each joint turns until the end lies on the line from this joint to the target (2,).  *Find* the angle Δ_k of this
     turn, from −π to π, with r = end − x_k and s = target − x_k.
 
     θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by the change of θ_k.

@@ -125,7 +125,7 @@ class Kit(NamedTuple):
 def kit_of(model):
     """Return the Kit for the dimension of a model, with parts for rods only where it has rods.
 
-    It is made in each call, because these names become those of a student's functions.
+    It is made in each call: in a student's copy these names stand for the student's functions.
     """
     if model.d == 2:
         kit = Kit(accelerate, accelerate_half, accelerate_rest, close, hold, separate, separate_with_joints,

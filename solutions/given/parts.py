@@ -311,9 +311,10 @@ def check_left(share):
 
 
 def damped(now, before, older):
-    """Return (v, omega, J) of the last of three sweeps, or halfway to the one before where it takes back what that did.
+    """Return (v, omega, J) after a sweep; where it takes back what the sweep before did, the mean of both.
 
-    A rod that lands aslant with a friction above 4/3 needs it: normal and tangent undo each other in every visit.
+    now, before, older: (v, omega, J) after the last sweep, the one before, and the one before that
+    A rod that lands aslant with a friction above 4/3 needs this: its normal and tangential impulse undo each other.
     """
     product = 0.0
     for k in range(now[2].shape[0]):
@@ -387,7 +388,7 @@ def swept_and_closed(begin, sweep, close_all, state, dt, p):
 
 
 def close_rigid_2d(x, q, v, omega, links, dt, p):
-    """Return (v, omega, links) after close_joints_2d: what is rigid does not ask for the impulses before."""
+    """Return (v, omega, links) after close_joints_2d, which does not need the impulses of links."""
     v, omega = close_joints_2d(x, q, v, omega, dt, p)
     return v, omega, links
 
@@ -439,7 +440,7 @@ def separate(load, bounds, narrow, t, state, dt, p):
 
 
 def separate_with_joints(load, bounds, narrow, t, state, dt, p):
-    """Return the same with joints that stay closed: else they would be closed by velocities that are none of theirs."""
+    """Return the same with joints that stay closed.  An open one would be closed by a velocity, which is then kept."""
     return state if all_shallow(state.contacts, p) else separated(close_rigid_2d, np.zeros(0), state, dt, p)
 
 

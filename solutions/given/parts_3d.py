@@ -148,7 +148,7 @@ def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
 
 
 def close_rigid(x, q, v, omega, links, dt, p):
-    """Return (v, omega, links) after close_joints: what is rigid does not ask for the impulses before."""
+    """Return (v, omega, links) after close_joints, which does not need the impulses of links."""
     v, omega = close_joints(x, q, v, omega, dt, p)
     return v, omega, links
 

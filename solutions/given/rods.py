@@ -95,8 +95,7 @@ def no_link_impulses(p):
 
 
 def impulses_at_rest(x, q, dt, p):
-    """Return the impulses (rows,) [N s] with which compliant rods are as long as they are:  J = −C dt/α;  0 of others.
-    """
+    """Return the impulses (rows,) [N s] that hold each compliant rod at its present length, J = −C dt/α; else 0."""
     J, soft, (_, gap) = no_link_impulses(p), softness(p), link_rows(x, q, p)
     for s in range(J.size):
         if soft[s] > 0.0:
@@ -167,8 +166,7 @@ def longest_arm(p):
 def close_links(x, q, v, omega, J, dt, p):
     """Return (v, omega, J) after the impulses with which joints are closed, and rods have their lengths, after dt.
 
-    J (rows,) [N s]: the impulses of all rows in this step, those before included.  A compliant rod gives way by all of
-    them: C = −α J/dt.
+    J (rows,) [N s]: the sums of all impulses of this step.  The whole sum stretches a compliant rod: C = −α J/dt.
     Newton's method, as close_joints_2d has it.  Raises Diverged where a step is too long for that, or where bodies go
     where the links cannot stay closed.
     """

@@ -39,7 +39,8 @@ SLOP = 5e-3                  # overlap that stays, over the smallest size of a s
 class Settings(NamedTuple):
     """How a model is solved.
 
-    Nothing here changes what ever shorter steps approach, but in impacts: sweeps find their impulses, and end early.
+    Ever shorter steps approach the same motion with all settings.  Impacts are an exception: their impulses come from
+    sweeps, which end before the impulses are exact.
     """
     sweeps: int = 100        # over all contacts in a step, at most; more where bodies differ much (see difference)
     settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]

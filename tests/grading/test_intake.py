@@ -448,4 +448,4 @@ def test_columns_and_lines_of_a_class_list_that_are_not_read_are_told(tmp_path):
     told = []
     people = classlist.roster(tmp_path / "class.csv", told.append)
     assert [*people] == ["ada"] and people["ada"].last_name == "Byron"
-    assert len(told) == 2 and "the columns nickname" in told[0] and "1 lines without a student_id" in told[1]
+    assert len(told) == 2 and "not read: nickname." in told[0] and "without a student_id were not read (1)" in told[1]

@@ -192,9 +192,11 @@ def test_imports_that_a_grader_need_not_have_are_named(tmp_path):
     (lessons / "springs.py").write_text("import math, numpy as np\nfrom solutions.checks import BadInput\n"
                                         "from . import other\nfrom scipy.linalg import solve\n"
                                         "def f():\n    import matplotlib.pyplot as plt\n")
-    (lessons / "friction.py").write_text("import numpy.linalg\n")
+    (lessons / "friction.py").write_text("import numpy.linalg\nfrom lessons.springs import f\n")
+    (lessons / "rotation.py").write_text("from lessons.helpers import half\n")
     (lessons / "pbd.py").write_text("import (\n")
     config = types.SimpleNamespace(getoption=lambda name: str(lessons))
-    assert plugin.imports_without_a_grader(config) == {"springs.py": ["matplotlib", "scipy"]}
+    assert plugin.imports_without_a_grader(config) == {"rotation.py": ["lessons.helpers"],
+                                                          "springs.py": ["matplotlib", "scipy"]}
     config = types.SimpleNamespace(getoption=lambda name: "solutions")
     assert plugin.imports_without_a_grader(config) == {}

@@ -524,7 +524,7 @@ def test_a_body_that_is_deep_in_one_wall_is_parted_from_it(d):
 
 @pytest.mark.parametrize("rigid", [True, False])
 def test_a_beam_on_a_hinge_is_turned_out_of_a_block_and_stays_at_rest(rigid):
-    """What parts bodies keeps joints closed; it had opened them, and closing them took speed from nowhere.
+    """Bodies that are parted keep their joints closed.  Once they opened, and closing them left a speed.
 
     The beam turns about its end until its lower edge lies on the left corner of the block, but for the slop of 1.1 mm.
     """

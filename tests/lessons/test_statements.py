@@ -334,6 +334,27 @@ def test_a_bend_of_a_straight_arm_shortens_it_by_the_length_beyond_the_later_joi
     assert np.abs(J.T @ J - np.outer(beyond, beyond)).max() < 1e-12
 
 
+def test_the_larger_gain_of_the_ellipse_is_above_its_limit_and_lets_the_error_grow():
+    x = kinematics.joint_positions(np.array([0.4, 0.9, 0.7]), np.array([1.0, 0.7, 0.4]))
+    largest = np.linalg.svd(kinematics.jacobian_2d(x), compute_uv=False)[0]
+    assert round(2.0 / largest**2, 2) == 0.52 and round(1.0 - 0.6 * largest**2, 1) == -1.3
+
+
+def test_a_straight_arm_of_20_cm_keeps_about_nine_tenths_of_its_error_with_half_a_square_metre():
+    for n in (2, 3, 4):
+        x = kinematics.joint_positions(np.zeros(n), np.full(n, 0.2 / n))
+        largest = np.linalg.svd(kinematics.jacobian_2d(x), compute_uv=False)[0]
+        assert 0.86 < 0.5 / (largest**2 + 0.5) < 0.92
+
+
+@pytest.mark.parametrize(("target", "negative"), [(0.5, True), (2.0, True), (2.2, False), (3.0, False)])
+def test_a_straight_arm_is_at_a_saddle_point_where_the_target_is_between_its_base_and_its_tip(target, negative):
+    """H = JᵀJ − e · ∂²x, and S = −e · ∂²x has e times the lengths beyond the later joint (see above)."""
+    beyond = np.array([2.1, 1.1, 0.4])
+    H = np.outer(beyond, beyond) + (target - 2.1) * np.minimum.outer(beyond, beyond)
+    assert (np.linalg.eigvalsh(H)[0] < 0.0) == negative and np.linalg.eigvalsh(H)[-1] > 0.0
+
+
 # ---------------------------------------------------------------------------------------------- 12 sensitivities
 
 def test_more_than_nine_in_ten_throws_of_the_first_picture_hit_and_three_corrections_are_enough():

@@ -46,11 +46,11 @@ def roster(path, tell=print):
                        f"give it the columns {', '.join(Person._fields)}; all but the first may be missing")
     cells = [dict(zip(columns, line, strict=False)) for line in lines]
     if unknown := [name for name in head if name and name.lower() not in Person._fields]:
-        tell(f"{path}: nothing was read from the columns {', '.join(map(spelt_out, unknown))}; "
-             f"it may have {', '.join(Person._fields)}")
+        tell(f"{path} has unknown columns, which were not read: {', '.join(map(spelt_out, unknown))}. "
+             f"Known are {', '.join(Person._fields)}")
     rows = [Person(**{f: row.get(f, "") for f in Person._fields}) for row in cells]
     if nameless := sum(not person.student_id and any(row.values()) for person, row in zip(rows, cells, strict=True)):
-        tell(f"{path}: {nameless} lines without a student_id were not read")
+        tell(f"{path}: lines without a student_id were not read ({nameless})")
     rows = [person._replace(student_id=identity(person.student_id)) for person in rows if person.student_id]
     people = {person.student_id: person for person in rows}
     for person in rows:

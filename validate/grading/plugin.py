@@ -391,15 +391,22 @@ def pytest_sessionfinish(session):
 def imports_without_a_grader(config):
     """Return {file: modules that it imports, and that the sandbox of a grader need not have} of the lessons tested."""
     folder, found = modules.subject_folder(config.getoption("--of")), {}
+    there = {*sys.stdlib_module_names, "numpy", "solutions", *(f"lessons.{name}" for name in modules.lesson_names())}
     for path in sorted(folder.glob("*.py")):
         with suppress(SyntaxError, ValueError, OSError):
-            nodes = ast.walk(ast.parse(path.read_bytes()))
-            names = {name.partition(".")[0] for node in nodes for name in (
-                [alias.name for alias in node.names] if isinstance(node, ast.Import) else
-                [node.module] if isinstance(node, ast.ImportFrom) and node.level == 0 else [])}
-            if strange := sorted(names - {*sys.stdlib_module_names, "numpy", "solutions", "lessons"}):
-                found[path.name] = strange
+            parts = [name.split(".") for name in imported(ast.parse(path.read_bytes()))]
+            names = {".".join(part[:2] if part[0] == "lessons" else part[:1]) for part in parts}
+            found.update({path.name: sorted(names - there)} if names - there else {})
     return found
+
+
+def imported(tree):
+    """Yield the full names of all modules that a file imports, but those beside it that it names by a dot."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            yield node.module
 
 
 def pytest_terminal_summary(terminalreporter, config):
@@ -422,7 +429,7 @@ def pytest_terminal_summary(terminalreporter, config):
     possible = sum(p for _, p in table.values())
     terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")
     for file, names in imports_without_a_grader(config).items():
-        terminalreporter.line(f"{file} imports {', '.join(names)}: a grader has NumPy and what the file came with, "
-                              "and would give it no points. Keep pictures in the notebook.")
+        terminalreporter.line(f"{file} imports {', '.join(names)}: a grader need not have that, and a file that does "
+                              "not load there has no points. Keep pictures in the notebook.")
     if config.of_another_copy:
         terminalreporter.line(f"tested: {config.getoption('--of')}, with the tests of {modules.ROOT}")

@@ -264,8 +264,7 @@ def read(path, student, lessons, child):
 
 
 def only_zip(path):
-    """Return the zip in a folder that holds a single one, as Moodle makes a folder around what was handed in; or None.
-    """
+    """Return the zip in a folder that holds a single one, or None.  Moodle puts each upload into a folder."""
     files = [one for one in path.iterdir() if not one.is_dir()] if path.is_dir() else []
     found = [one for one in files if one.suffix.lower() == ".zip"]
     return found[0] if len(found) == 1 else None
@@ -302,7 +301,7 @@ def moment(when):
 
 
 def nearest(candidates, problems):
-    """Return {lesson: places} of {lesson: places}: those nearest to the top; its own name takes precedence."""
+    """Return, of {lesson: places}, the places nearest to the top for each lesson; its own name takes precedence."""
     chosen = {}
     for lesson, places in candidates.items():
         named = [place for place in places if os.path.basename(place) == f"{lesson}.py"]
@@ -322,11 +321,15 @@ def nearest(candidates, problems):
 
 
 def fullest(lesson, texts, problems):
-    """Return the place of {place: text} with the most answers; several are as near to the top as each other."""
-    best = min(texts, key=lambda place: len(unanswered(lesson, texts[place])))
+    """Return the place of {place: text} with the most answers.  Raises Ungraded where two different texts have them."""
+    left = {place: len(unanswered(lesson, text)) for place, text in texts.items()}
+    best = [place for place in texts if left[place] == min(left.values())]
+    if len({texts[place] for place in best}) > 1:
+        raise Ungraded(f"{lesson}.py is there more than once, with different contents, as {shortened(best[0])} and "
+                       f"{shortened(best[1])}: keep one of them")
     if len({*texts.values()}) > 1:
-        problems.append(f"{lesson}.py is there more than once; {best} was taken, which has the most answers")
-    return best
+        problems.append(f"{lesson}.py is there more than once; {best[0]} was taken, which has the most answers")
+    return best[0]
 
 
 def wanted(name, lessons):
