@@ -195,7 +195,11 @@ def first_code_cell(notebook):
 @cache
 def made_by(cells):
     """Return the JSON of everything that these cells pass to `opening`."""
-    from validate import notebook  # imports matplotlib, which takes a second
+    try:
+        from validate import notebook  # imports matplotlib, which takes a second
+    except ModuleNotFoundError as e:
+        remedy = "the notebooks need it: pip install -c constraints.txt -e '.[student]'"
+        raise BadInput(f"the package {e.name}", "not installed", remedy) from None
     made, opening = {}, notebook.opening
 
     def keep(number, make):
