@@ -27,7 +27,7 @@ PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 NOTHING = 1e-12              # change of a velocity over itself that is round-off [-]
 SQUEEZED = 0.1               # overlap over the smaller half size from which impulses are looked at again [-]
 MOST_LEFT = 0.5              # share of what contacts change that one more sweep may change [-]
-TRUE_IMPACT = 2.0            # an impact is one if it is faster than what gravity adds in so many steps [-]
+TRUE_IMPACT = 2.0            # an impact is one if it is faster than what forces add in so many steps [-]
 
 
 class Smooth(NamedTuple):
@@ -126,20 +126,35 @@ def detect_unjoined(load, bounds, narrow, t, state, dt, p):
 
 # ---------------------------------------------------------------------------------------------- contact
 
-def parting_aims(u_n, contacts, dt, p):
-    """Return the velocities (m,) [m/s] below which no contact may leave: each pair has its own restitution.
-
-    An open contact may close: −gap/dt.  A closed one leaves with −e u_n if it comes faster than what gravity adds in
-    TRUE_IMPACT steps; a slower one rests.  A fast contact with e > 0 that is still open is not stopped in this step,
-    because it has to close before it bounces.
-    """
-    aim, squared = np.empty(contacts.a.size), 0.0
+def resting_speed(dt, p):
+    """Return the approach speed [m/s] up to which a contact rests: what gravity adds in TRUE_IMPACT steps."""
+    squared = 0.0
     for c in range(p.gravity.size):
         squared += p.gravity[c] * p.gravity[c]
-    rests = TRUE_IMPACT * dt * np.sqrt(squared)
+    return TRUE_IMPACT * dt * np.sqrt(squared)
+
+
+def may_bounce(u_n, contacts, dt, p):
+    """Return whether a contact with e > 0 comes faster than what gravity alone explains."""
+    rests = resting_speed(dt, p)
+    for k in range(u_n.size):
+        if u_n[k] < -rests and p.e_of[contacts.a[k]] > 0.0 and p.e_of[contacts.b[k]] > 0.0:
+            return True
+    return False
+
+
+def parting_aims(u_n, pressed, contacts, dt, p):
+    """Return the velocities (m,) [m/s] below which no contact may leave: each pair has its own restitution.
+
+    An open contact may close: −gap/dt.  A closed one leaves with −e u_n if it comes faster than what gravity, or all
+    forces and joints, add in TRUE_IMPACT steps; a slower one rests.  A fast contact with e > 0 that is still open is
+    not stopped in this step, because it has to close before it bounces.
+    pressed: (m,) what all forces and joints have added to u_n in this step [m/s]
+    """
+    aim, rests = np.empty(contacts.a.size), resting_speed(dt, p)
     for k in range(aim.size):
         e, gap = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k]
-        bounces = e > 0.0 and u_n[k] < -rests
+        bounces = e > 0.0 and u_n[k] < -rests and u_n[k] < TRUE_IMPACT * pressed[k]
         if gap > 0.0:
             aim[k] = -np.inf if bounces else -gap / dt
         else:
@@ -213,11 +228,18 @@ def sweep_centres_2d(v, omega, J, aim, contacts, arms, inv_inertia, p):
     return v, omega, J
 
 
-def begun(state, dt, p):
-    """Return (v, omega, J, aim, arms, inv_inertia): what the sweeps of a step begin with; a bounce keeps no impulse."""
-    x, _, v, omega, contacts, J = state
-    v, omega, J, arms = v.copy(), omega.copy(), J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
-    aim = parting_aims(normal_velocities_2d(v, omega, contacts, arms), contacts, dt, p)
+def begun(load, t, free, v, omega, dt, p):
+    """Return (v, omega, J, aim, arms, inv_inertia): what the sweeps of a step begin with; a bounce keeps no impulse.
+
+    free: the state after the loads;    v, omega: of its bodies, after joints are closed
+    """
+    x, q, _, _, contacts, J = free
+    J, arms = J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
+    u_n, pressed = normal_velocities_2d(v, omega, contacts, arms), np.zeros(J.shape[0])
+    if may_bounce(u_n, contacts, dt, p):
+        later, spun = new_velocities_2d(load, t, x, q, free.v, free.omega, dt, p)
+        pressed = normal_velocities_2d(v + later - 2.0 * free.v, omega + spun - 2.0 * free.omega, contacts, arms)
+    aim, v, omega = parting_aims(u_n, pressed, contacts, dt, p), v.copy(), omega.copy()
     forget_bounces(J, aim)
     apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
     return v, omega, J, aim, arms, p.inv_inertia
@@ -238,10 +260,11 @@ def along_normals(J, n):
     return kept
 
 
-def begun_of_centres(state, dt, p):
+def begun_of_centres(load, t, free, v, omega, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    x, q, v, omega, contacts, J = state
-    return begun(PileState(x, q, v, omega, contacts, along_normals(J, contacts.n)), dt, p)
+    x, q, v_free, omega_free, contacts, J = free
+    free = PileState(x, q, v_free, omega_free, contacts, along_normals(J, contacts.n))
+    return begun(load, t, free, v, omega, dt, p)
 
 
 def is_settled(J, before, p):
@@ -325,16 +348,16 @@ def damped(now, before, older):
     return 0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])
 
 
-def swept(begin, sweep, state, dt, p):
+def swept(begin, sweep, load, t, state, dt, p):
     """Return the state after sweeps over all contacts, until they settle; the second half of them is damped.
 
-    begin: (state, dt, p) → what the sweeps begin with;    sweep: over all contacts, in the plane or in space
+    begin: see begun;    sweep: over all contacts, in the plane or in space
     Raises Diverged where they do not.
     """
-    x, q, free, _, contacts, J = state
+    x, q, free, spun, contacts, J = state
     if contacts.a.size == 0:
         return state
-    (v, omega, J, aim, arms, inv_inertia), calm = begin(state, dt, p), False
+    (v, omega, J, aim, arms, inv_inertia), calm = begin(load, t, state, free, spun, dt, p), False
     before = v, omega, J
     for n in range(p.sweeps):
         older, before = before, (v, omega, J)
@@ -350,20 +373,20 @@ def swept(begin, sweep, state, dt, p):
 
 def contact_impulses(load, bounds, narrow, t, state, dt, p):
     """Return the state after the impulses of all contacts, with one friction for all."""
-    return swept(begun, sweep_alike_2d, state, dt, p)
+    return swept(begun, sweep_alike_2d, load, t, state, dt, p)
 
 
 def contact_impulses_of_pairs(load, bounds, narrow, t, state, dt, p):
     """Return the same with a friction of each pair."""
-    return swept(begun, sweep_pairs_2d, state, dt, p)
+    return swept(begun, sweep_pairs_2d, load, t, state, dt, p)
 
 
 def contact_impulses_of_centres(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    return swept(begun_of_centres, sweep_centres_2d, state, dt, p)
+    return swept(begun_of_centres, sweep_centres_2d, load, t, state, dt, p)
 
 
-def swept_and_closed(begin, sweep, close_all, state, dt, p):
+def swept_and_closed(begin, sweep, close_all, load, t, state, dt, p):
     """Return the state after sweeps over all contacts, with links that are closed by `close_all` after each of them.
 
     close_all: (x, q, v, omega, links, dt, p) → (v, omega, links), with the impulses of all links in this step
@@ -372,7 +395,7 @@ def swept_and_closed(begin, sweep, close_all, state, dt, p):
     v, omega, links = close_all(x, q, free, omega, no_link_impulses(p), dt, p)
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
-    (v, omega, J, aim, arms, inv_inertia), calm = begin(PileState(x, q, v, omega, contacts, J), dt, p), False
+    (v, omega, J, aim, arms, inv_inertia), calm = begin(load, t, state, v, omega, dt, p), False
     before = v, omega, J
     for n in range(p.sweeps):
         older, before = before, (v, omega, J)
@@ -395,12 +418,12 @@ def close_rigid_2d(x, q, v, omega, links, dt, p):
 
 def contact_impulses_with_joints(load, bounds, narrow, t, state, dt, p):
     """Return the same as contact_impulses_of_pairs, with joints that are closed after every sweep."""
-    return swept_and_closed(begun, sweep_pairs_2d, close_rigid_2d, state, dt, p)
+    return swept_and_closed(begun, sweep_pairs_2d, close_rigid_2d, load, t, state, dt, p)
 
 
 def contact_impulses_with_rods(load, bounds, narrow, t, state, dt, p):
     """Return the same with joints and rods."""
-    return swept_and_closed(begun, sweep_pairs_2d, close_links, state, dt, p)
+    return swept_and_closed(begun, sweep_pairs_2d, close_links, load, t, state, dt, p)
 
 
 def separated(close_all, links, state, dt, p):

@@ -37,6 +37,7 @@ from .parts import (
     forget_bounces,
     is_calm,
     leave_open,
+    may_bounce,
     parting_aims,
     pushing_aims,
     share_left,
@@ -120,31 +121,36 @@ def sweep_centres(v, omega, J, aim, contacts, arms, inv_inertia, p):
     return v, omega, J
 
 
-def begun_in_space(state, dt, p):
-    """Return (v, omega, J, aim, arms, inv_inertia): what the sweeps of a step begin with."""
-    x, q, v, omega, contacts, J = state
+def begun_in_space(load, t, free, v, omega, dt, p):
+    """Return (v, omega, J, aim, arms, inv_inertia): what the sweeps of a step begin with, as in the plane."""
+    x, q, _, _, contacts, J = free
     inv_inertia = spatial_inertia(q, p.inv_inertia)
-    v, omega, J, arms = v.copy(), omega.copy(), J.copy(), arms_3d(x, p.inv_mass, inv_inertia, contacts)
-    aim = parting_aims(normal_velocities(v, omega, contacts, arms), contacts, dt, p)
+    J, arms = J.copy(), arms_3d(x, p.inv_mass, inv_inertia, contacts)
+    u_n, pressed = normal_velocities(v, omega, contacts, arms), np.zeros(J.shape[0])
+    if may_bounce(u_n, contacts, dt, p):
+        later, spun = kick(load, t, x, q, free.v, free.omega, dt, p)
+        pressed = normal_velocities(v + later - 2.0 * free.v, omega + spun - 2.0 * free.omega, contacts, arms)
+    aim, v, omega = parting_aims(u_n, pressed, contacts, dt, p), v.copy(), omega.copy()
     forget_bounces(J, aim)
     apply_impulses(v, omega, J, contacts, arms, p.inv_mass, inv_inertia)
     return v, omega, J, aim, arms, inv_inertia
 
 
-def begun_of_centres_in_space(state, dt, p):
+def begun_of_centres_in_space(load, t, free, v, omega, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    x, q, v, omega, contacts, J = state
-    return begun_in_space(PileState(x, q, v, omega, contacts, along_normals(J, contacts.n)), dt, p)
+    x, q, v_free, omega_free, contacts, J = free
+    free = PileState(x, q, v_free, omega_free, contacts, along_normals(J, contacts.n))
+    return begun_in_space(load, t, free, v, omega, dt, p)
 
 
 def contact_impulses_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the state after the impulses of all contacts, each pair with its own friction."""
-    return swept(begun_in_space, sweep_pairs, state, dt, p)
+    return swept(begun_in_space, sweep_pairs, load, t, state, dt, p)
 
 
 def contact_impulses_of_centres_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same where nothing rubs and nothing turns."""
-    return swept(begun_of_centres_in_space, sweep_centres, state, dt, p)
+    return swept(begun_of_centres_in_space, sweep_centres, load, t, state, dt, p)
 
 
 def close_rigid(x, q, v, omega, links, dt, p):
@@ -155,12 +161,12 @@ def close_rigid(x, q, v, omega, links, dt, p):
 
 def contact_impulses_with_joints_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same as contact_impulses_in_space, with joints that are closed after every sweep."""
-    return swept_and_closed(begun_in_space, sweep_pairs, close_rigid, state, dt, p)
+    return swept_and_closed(begun_in_space, sweep_pairs, close_rigid, load, t, state, dt, p)
 
 
 def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
     """Return the same with joints and rods."""
-    return swept_and_closed(begun_in_space, sweep_pairs, close_links, state, dt, p)
+    return swept_and_closed(begun_in_space, sweep_pairs, close_links, load, t, state, dt, p)
 
 
 def separated_in_space(close_all, links, state, dt, p):

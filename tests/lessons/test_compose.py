@@ -156,6 +156,46 @@ def test_each_body_has_its_own_restitution(e):
     assert s.v == pytest.approx(expected, abs=5e-3)                    # the normal turns within the last step
 
 
+def pressed_by(push, d):
+    """Return a bouncy block that a load or a spring presses against a rough wall with 50 N."""
+    force = (-50.0, *(0.0,) * (d - 1))
+    if push == "load":
+        return {"loads": [Force(0, lambda t: force, "t")]}
+    away = (2.0, *(0.0,) * (d - 1))
+    return {"springs": [Spring(0, WORLD, (0.0,) * d, away, rest=2.5, k=50.0)]}
+
+
+@pytest.mark.parametrize(("push", "d"), [("load", 2), ("load", 3), ("spring", 2), ("spring", 3)])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240])
+def test_a_block_that_is_pressed_on_a_wall_does_not_bounce_and_stays_there(push, d, dt):
+    """Friction holds up to 50 N, the block weighs 9.81 N, and a body at rest has no speed that it could leave with."""
+    across = (1.0, *(0.0,) * (d - 1))
+    block, wall = Body(0.5 * np.array(across), 1.0, Box((0.5,) * d), mu=1.0, e=0.9), HalfSpace(across)
+    down = (*(0.0,) * (d - 1), -G)
+    s = run(make_model([block, Body((0.0,) * d, shape=wall, mu=1.0, e=1.0)], down, **pressed_by(push, d)), 1.0,
+            round(1.0 / dt))
+    np.testing.assert_allclose(s.x[0], block.x, atol=3e-5 * (240.0 * dt) ** 2)
+    np.testing.assert_allclose(s.v[0], 0.0, atol=1e-3)
+
+
+@pytest.mark.parametrize("e", [0.5, 0.9])
+def test_a_lever_that_a_joint_presses_on_a_peg_does_not_bounce(e):
+    """The peg is under the lever's left end, and a weight hangs on a rod there: no part of the lever can move."""
+    lever, peg = Body((0.0, 0.0), 1.0, Box((1.0, 0.1)), e=e), Body((-0.9, -0.3), shape=Ball(0.2), e=1.0)
+    weight = Body((-0.9, -1.0), 5.0)
+    joints = [Hinge(0, WORLD, (0.0, 0.0)), Distance(2, 0, (0.0, 0.0), (-0.9, -0.1))]
+    s = run(make_model([lever, peg, weight], DOWN, joints), 1.0, 240)
+    np.testing.assert_allclose((s.q[0], s.omega[0]), 0.0, atol=2e-3)
+
+
+def test_a_ball_that_a_spring_throws_on_a_wall_bounces_with_its_restitution():
+    """The spring is slack when the ball touches the wall: it leaves with e times its speed."""
+    ball, wall = Body((1.0, 0.0), 1.0, Ball(0.5), e=0.5), Body((0.0, 0.0), shape=HalfSpace((1.0, 0.0)), e=1.0)
+    spring = Spring(0, WORLD, (0.0, 0.0), (-1.0, 0.0), rest=1.5, k=100.0)
+    s = run(make_model([ball, wall], (0.0, 0.0), springs=[spring]), np.pi / 20.0 + 0.01, 4000)
+    assert s.v[0, 0] == pytest.approx(0.5 * 5.0 * np.cos(0.1), rel=2e-3)         # it comes with ω · 0.5 m = 5 m/s
+
+
 @pytest.mark.parametrize("d", [2, 3])
 def test_an_oblique_elastic_impact_without_friction_keeps_the_energy_and_turns_nothing(d):
     """The bodies still overlap in the step after it, with another normal; the impulse that is kept must not rub."""
