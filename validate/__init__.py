@@ -8,11 +8,31 @@ from .subject.copies import use_the_one_of_this_notebook
 use_the_one_of_this_notebook()
 
 
-def main():
-    """Run the command line.  Its imports take a second, and Ctrl-C in that second says *interrupted*, as later on."""
+def begin(program, module):
+    """Run a command line.  Its imports take a second, and Ctrl-C in that second says *interrupted*, as later on."""
     try:
-        program = importlib.import_module("validate.__main__")
+        found = importlib.import_module(module)
     except KeyboardInterrupt:
-        print("validate: interrupted", file=sys.stderr)
+        print(f"{program}: interrupted", file=sys.stderr)
         sys.exit(130)
-    program.main()
+    found.main()
+
+
+def main():
+    """Run `validate`."""
+    begin("validate", "validate.__main__")
+
+
+def grade():
+    """Run `grade`."""
+    begin("grade", "validate.grading.__main__")
+
+
+def release():
+    """Run `release`."""
+    begin("release", "validate.grading.release")
+
+
+def autograder():
+    """Run `autograder`."""
+    begin("autograder", "validate.grading.autograder")

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+import validate
 from validate.grading import __main__ as grade
-from validate.grading import autograder, local, release, sandbox
+from validate.grading import autograder, ending, local, release, sandbox
 from validate.run.processes import alone_in
 
 pytestmark = pytest.mark.xdist_group("what is handed in")
@@ -65,6 +66,34 @@ def test_a_secret_is_kept_and_one_is_made_where_none_is_given(capsys, tmp_path, 
     assert len(made.strip()) == 32
     run(capsys, grade, *handed_in)
     assert (tmp_path / "grades" / "seed.txt").read_text() == made
+
+
+def test_another_secret_keeps_the_one_before(capsys, tmp_path, handed_in):
+    folder, seeds = tmp_path / "grades", ["the first", "the second", "the first"]
+    said = [" ".join(run(capsys, grade, *handed_in, "--seed", seed)[1].split()) for seed in [*seeds, seeds[-1]]]
+    assert ["seed-before.txt" in each for each in said] == [False, True, True, False]
+    assert (folder / "seed.txt").read_text() == "the first\n"
+    assert (folder / "seed-before.txt").read_text() == "the first\nthe second\n"
+    assert os.name != "posix" or mode(folder / "seed-before.txt") == 0o600
+
+
+def test_lessons_without_any_point_are_named_where_others_have_some():
+    def earning(*points):
+        return {"tests": [{"lesson": name, "earned": earned}
+                          for name, earned in zip(("springs", "pbd", "friction"), points, strict=True)]}
+    assert ending.unsolved([earning(0, 0, 0)]) == ending.unsolved([earning(1, 0, 2), earning(0, 1, 0)]) == []
+    [told] = ending.unsolved([earning(0, 0, 2), earning(0, 0, 1)])
+    assert told.startswith("No submission earns a point in springs, pbd. ") and "--lesson" in told
+
+
+@pytest.mark.parametrize("program", ["main", "grade", "release", "autograder"])
+def test_ctrl_c_during_the_imports_of_a_program_says_interrupted(capsys, monkeypatch, program):
+    def interrupted(_):
+        raise KeyboardInterrupt
+    monkeypatch.setattr(validate.importlib, "import_module", interrupted)
+    with pytest.raises(SystemExit) as end:
+        getattr(validate, program)()
+    assert end.value.code == 130 and capsys.readouterr().err.endswith(": interrupted\n")
 
 
 def test_a_class_is_graded_once_at_a_time(capsys, tmp_path, handed_in):

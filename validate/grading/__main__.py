@@ -100,9 +100,10 @@ def beside(class_, out):
 def secret(folder, seed):
     """Return the given seed, the one kept in this folder, or a new one.  It is kept, so that grading is repeatable.
 
+    Where another one is given than before, the one before is kept beside it: earlier marks can be repeated with it.
     Raises BadInput for an empty seed, which everybody could guess.
     """
-    file = folder / "seed.txt"
+    file, earlier = folder / "seed.txt", folder / "seed-before.txt"
     kept = seed is None and file.is_file()
     seed = (file.read_text() if kept else secrets.token_hex(16) if seed is None else seed).strip()
     if not seed:
@@ -112,11 +113,20 @@ def secret(folder, seed):
         said = "could be read by others on this machine, and is closed to them now"
         console.print(f"{file} {said}: if one of them may be a student, give another --seed.", style="bold red",
                       highlight=False, markup=False, soft_wrap=True)
+    before = file.read_text().strip() if file.is_file() else ""
+    if before not in ("", seed):
+        write_secret(earlier, f"{earlier.read_text() if earlier.is_file() else ''}{before}\n")
+        say([f"Another seed than before: the one of earlier marks is kept in {earlier}."])
+    write_secret(file, f"{seed}\n")
+    return seed
+
+
+def write_secret(file, text):
+    """Write a file that only this account can read."""
     with whole(file) as draft:
         draft.unlink(missing_ok=True)
         draft.touch(0o600)                                             # before the secret is in it
-        draft.write_text(f"{seed}\n")
-    return seed
+        draft.write_text(text)
 
 
 # ---------------------------------------------------------------------------------------------- the run

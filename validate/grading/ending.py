@@ -22,8 +22,22 @@ def sentences(intake, graded, failed, people, terms):
     told += first(f"{line(one.student)}: {line(problem)}"
                   for one in intake.submissions if one.files for problem in one.problems)
     told += first(map(line, intake.overlooked))
+    told += unsolved(read)
     late = terms.late and (terms.due or any(person.due for person in people.values()))
     return told + [BY_FILES] * bool(late and intake.dated_by_files and not terms.listed)
+
+
+def unsolved(results):
+    """Return a sentence on lessons in which nothing is earned, while others have points: they may not have been set."""
+    earned = {}
+    for result in results:
+        for test in result["tests"]:
+            earned[test["lesson"]] = earned.get(test["lesson"], 0) + test["earned"]
+    idle = [lesson for lesson, points in earned.items() if not points]
+    if not idle or len(idle) == len(earned):
+        return []
+    return [f"No submission earns a point in {', '.join(idle)}. These count as well: name the lessons that you set "
+            "with --lesson, if these are not among them"]
 
 
 def names(students):
