@@ -35,7 +35,7 @@ class Verdict(StrEnum):
     """The verdict on a method or an engine in one case."""
     AGREES = "agrees"                        # within the error that theory allows
     FOLLOWS_OWN_LAW = "as predicted"         # departs from the truth exactly as its own law says
-    KEEPS_LAWS = "keeps the laws"            # no theory gives its error; what it reports keeps the laws of contact
+    KEEPS_LAWS = "keeps the laws"            # no theory gives its error; its steps keep the laws of contact or joints
     BREAKS_AS_KNOWN = "breaks a law as known"  # the same, but for a rule of its own, which is named beforehand
     DEPARTS = "departs"                      # no theory predicted this
     UNDECIDED = "undecided"                  # too coarse to judge, or not recorded
@@ -51,6 +51,14 @@ class Allowed(NamedTuple):
     recovers: float = 0.0    # share of an overlap that its velocities take back per step [-]
     rules: tuple = ()        # (name of a quantity, end of a sentence with "because"): laws that it is known to break
     rests: bool = True       # False: bodies meet on the way, and may still move when the run ends
+    soft: bool = False       # contacts are springs with dampers: what these leave has no bound
+
+
+class JointsAllowed(NamedTuple):
+    """The same of an engine whose bodies hang on joints: see `validate/reference/joint_laws.py`."""
+    order: int               # of its step: 1 or 2
+    # ("gap" or "energy", end of a sentence with "because", by what factor or None for any): laws that it may break
+    rules: tuple = ()
 
 
 class Whose(StrEnum):

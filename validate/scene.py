@@ -12,7 +12,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .check import Allowed, Whose
+from .check import Allowed, JointsAllowed, Whose
 from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
 
 EXACT = "exact"              # an order: no error but round-off
@@ -54,7 +54,7 @@ class EngineRun(NamedTuple):
     read: Callable           # () → what a scene observes
     close: Callable          # () → None: free its resources
     watched: Callable | None = None      # () → [Step, …] of validate/reference/contact_laws.py that it kept
-    watched_step: Callable | None = None     # () → Step: advance by dt, and return what it reports of this step
+    watched_step: Callable | None = None     # () → Step, or Moment of joint_laws.py: advance by dt, and report this
 
 
 class Departure(NamedTuple):
@@ -81,7 +81,7 @@ class Runner:
     measured: str = ""                   # what its limit was measured on; empty where theory gives it
     unfinished: Callable | None = None   # (p) → why it does not come to its end in this case, or ""; it is not run then
     supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
-    laws: Allowed | None = None          # where no theory gives its error: the laws of contact judge its watched steps
+    laws: Allowed | JointsAllowed | None = None      # where no theory gives its error: laws judge its watched steps
     watched: int | None = None           # the number of steps of the run that is watched; None: of every run
     is_truth: Callable | None = None     # (p) → bool: whether a run of its engine is the truth of this case
     in_quick: bool = True                # False: only --full runs it
@@ -120,7 +120,7 @@ class Runner:
         return limit[self.order] if isinstance(limit, dict) else limit
 
     def judged_by(self, p, steps):
-        """Return what the laws of contact allow it in its run with so many steps; None where that is not watched."""
+        """Return what laws allow it in its run with so many steps; None where that is not watched."""
         return self.laws if self.watched in (None, steps) and not self.is_reference(p) else None
 
     def prediction(self, p, dt):
@@ -279,8 +279,8 @@ def field_names(required=False):
 
 
 def no_limit(p, dt):
-    """No theory says how far some curves may be off.  Their errors are shown.  Where the scene has laws of contact for
-    them, these judge what is reported of their steps; all others are not judged.
+    """No theory says how far some curves may be off.  Their errors are shown.  Where the scene has laws of contact or
+    of joints for them, these judge what is seen of their steps; all others are not judged.
     """
     return np.inf
 

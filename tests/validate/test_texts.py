@@ -74,13 +74,13 @@ def test_contributing_counts_the_seeded_faults_to_the_nearest_ten():
 
 
 @pytest.mark.long
-def test_readme_counts_the_scenes_that_the_laws_of_contact_judge(scenes):
+def test_readme_counts_the_scenes_that_laws_judge(scenes):
     judged = {name for name, scene in scenes.items() if any(r.laws for r in scene.runners)}
     ours = {name for name in judged if any(r.laws and not r.is_engine for r in scenes[name].runners)}
     numbers = sorted({course.lessons()[scenes[name].lesson].number for name in judged})
     text = " ".join(README.split())
     assert f"In {NUMBERS[len(judged)]} scenes of lessons {' and '.join(map(str, numbers))} no theory" in text
-    assert f"and in {NUMBERS[len(ours)]} of these scenes also our own loop" in text
+    assert f"In {NUMBERS[len(ours)]} of these scenes our own loop is judged so, too." in text
 
 
 def test_the_scenes_without_a_truth_of_their_own_are_counted(scenes):

@@ -6,8 +6,11 @@ the way, one run is watched in all its steps, or in all that belong to the impac
 
 import numpy as np
 
-from ..check import Allowed
+from solutions.support.model import WORLD, model_energy, own_place, start_of, world_place
+
+from ..check import Allowed, JointsAllowed
 from ..reference.contact_laws import ITERATED, Motion, Physics, Step, Touching
+from ..reference.joint_laws import LOST, Moment
 from ..reference.orientation import quaternion_matrix
 from .bullet import CONTACT_ERP, WARM
 
@@ -43,10 +46,11 @@ def pymunk_rules(iterations, creeps="", rests=True):
     return Allowed(iterations, rules=(*rules, ("rest", creeps)) if creeps else rules, rests=rests)
 
 
-def bullet_rules(iterations, creeps=False, rests=True):
+def bullet_rules(iterations, creeps=False, rests=True, slop=SLOP):
     """Return what is Allowed to pybullet.
 
     creeps: its solver begins with a tenth of the last impulses, as by default, and does not finish a tower at rest
+    slop: overlap that its contacts leave [m]
 
     *Source:* Bullet's btSequentialImpulseConstraintSolver.cpp: an iteration visits the friction of a contact only if
     its normal impulse is above zero.
@@ -54,7 +58,25 @@ def bullet_rules(iterations, creeps=False, rests=True):
     why = "it leaves the friction of a contact as it was when its normal impulse falls to zero"
     rules = ("loose", why), *ends_early(iterations)
     slow = f"with warmStartingFactor {WARM} its sweeps do not accumulate over the steps, so that a tower creeps"
-    return Allowed(iterations, SLOP, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules, rests)
+    return Allowed(iterations, slop, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules, rests)
+
+
+def mujoco_rules(iterations):
+    """Return what is Allowed to MuJoCo, whose bodies may still move at the end."""
+    rules = tuple((name, "its contacts are springs with dampers") for name in ("bounce", "gain", *ITERATED))
+    return Allowed(iterations, rules=rules, rests=False, soft=True)
+
+
+def sweeps_over_joints(opens=""):
+    """Return what is allowed to a solver of order 1 that sweeps over joints.
+
+    opens: why it leaves them open in this scene, and changes the energy; empty where it need not
+    """
+    return JointsAllowed(1, (("gap", opens, None), ("energy", opens, None)) if opens else ())
+
+
+# of MuJoCo, which closes a gap within a time that is proportional to dt
+SOFT_LOOPS = JointsAllowed(2, (("energy", "the springs and dampers that close its loops take energy", LOST),))
 
 
 def watched_steps(steps, first=FIRST, later=LATER):
@@ -102,12 +124,13 @@ class NearTheEdge:
 
 
 def touching(rows, d, stated=None):
-    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes); stated: a friction that replaces μ."""
+    """Return Touching from rows (a, b, n, p_a, p_b, gap, J, μ, ghosts, axes); stated: what replaces μ, see Physics."""
     a, b, n, p_a, p_b, gap, J, mu, ghosts, axes = zip(*rows) if rows else ((),) * 10
-    mu = mu if stated is None else np.full(len(a), stated)
+    if stated is not None:
+        mu = np.full(len(a), stated) if np.ndim(stated) == 0 else stated[list(a), list(b)]
     n, p_a, p_b, J, ghosts = (np.reshape(np.array(each, float), (-1, d)) for each in (n, p_a, p_b, J, ghosts))
     return Touching(np.array(a, int), np.array(b, int), n, p_a, p_b, np.array(gap, float), J, np.array(mu, float),
-                    ghosts, np.reshape(np.array(axes, float), (-1, 2, 3)) if d == 3 else None)
+                    ghosts, None if None in axes or d == 2 else np.reshape(np.array(axes, float), (-1, 2, 3)))
 
 
 class Pymunk:
@@ -190,10 +213,11 @@ class Bullet:
     """A client whose bodies are in maximal coordinates.
 
     physics: of the bodies that move, in the order in which they were made; without it the engine's own numbers count.
+    pushed: (Motion before) → impulses (n, 3) of springs on their centres in a step [N s]
     """
 
-    def __init__(self, pb, dt, gravity, physics=None):
-        self.pb, self.dt = pb, dt
+    def __init__(self, pb, dt, gravity, physics=None, pushed=None):
+        self.pb, self.dt, self.pushed = pb, dt, pushed
         every = [pb.getBodyUniqueId(k) for k in range(pb.getNumBodies())]
         about = {body: pb.getDynamicsInfo(body, -1) for body in every}
         self.bodies = [body for body in every if about[body][0] > 0.0]
@@ -216,7 +240,8 @@ class Bullet:
         self.step()
         R, stated = np.array([quaternion_matrix(*one) for one in q]), self.physics
         return Step(self.dt, stated.gravity, stated.inv_mass, (R * stated.inv_inertia[:, None]) @ R.transpose(0, 2, 1),
-                    before, self.motion()[1], before.x, 0.0, touching(self.contacts(), 3, stated.mu))
+                    before, self.motion()[1], before.x, 0.0, touching(self.contacts(), 3, stated.mu),
+                    self.pushed and self.pushed(before))
 
     def contacts(self):
         """Return rows of all contact points that could push in the last step."""
@@ -227,3 +252,73 @@ class Bullet:
             rows.append((a, b, c[7], c[5], c[6], c[8], self.dt * F, self.mu[c[1]] * self.mu[c[2]], 0.0 * F,
                          (c[11], c[13])))
         return rows
+
+
+class MuJoCo:
+    """A model whose bodies hang on nothing, each with six velocities: of its centre, and about its own axes.
+
+    physics: of its bodies, in their order;    pushed: (Motion before) → impulses (n, 3) of springs on their centres
+    """
+
+    def __init__(self, world, data, dt, physics, pushed=None):
+        self.data, self.dt, self.physics, self.pushed = data, dt, physics, pushed
+        self.world, self.bodies = world, [k for k in range(world.nbody) if world.body_dofnum[k] == 6]
+
+    def motion(self, R):
+        """Return the Motion of all bodies, with angular velocities about their own axes that are turned by R."""
+        self.state()                                                     # it computes places of the coordinates
+        own = self.data.qvel[self.world.body_dofadr[self.bodies][:, None] + np.arange(6)]
+        return Motion(self.data.xpos[self.bodies], own[:, :3], np.einsum("nij,nj->ni", R, own[:, 3:]))
+
+    def watched(self):
+        """Make a step, and return it.  It changes velocities about own axes, and turns the bodies afterwards."""
+        self.state()
+        R, stated = self.data.xmat[self.bodies].reshape(-1, 3, 3), self.physics
+        before = self.motion(R)
+        self.step()
+        rows = self.contacts()
+        return Step(self.dt, stated.gravity, stated.inv_mass, (R * stated.inv_inertia[:, None]) @ R.transpose(0, 2, 1),
+                    before, self.motion(R), before.x, 0.0, touching(rows, 3, stated.mu),
+                    self.pushed and self.pushed(before))
+
+    def contacts(self):
+        """Return rows of all contact points of the last step, with its cone of friction."""
+        import mujoco
+        number = {body: k for k, body in enumerate(self.bodies)}
+        local, rows = np.zeros(6), []
+        for k, c in enumerate(self.data.contact):
+            mujoco.mj_contactForce(self.world, self.data, k, local)
+            axes = np.array(c.frame).reshape(3, 3)                       # the normal, from the first to the second
+            b, a = (number.get(self.world.geom_bodyid[one], len(self.bodies)) for one in c.geom)
+            rows.append((a, b, axes[0], c.pos, c.pos, c.dist, self.dt * axes.T @ local[:3], c.friction[0], np.zeros(3),
+                         None))
+        return rows
+
+
+class Joined:
+    """Bodies on joints, of which nothing is read but their places and velocities.
+
+    step, state: of the engine's world of the Model, which are set when that is built
+    rate: the fastest of the motion [1/s];    work: (State before, State after) → work of loads in a step [J]
+    """
+
+    def __init__(self, model, dt, rate, work=None):
+        self.model, self.turn, self.work, self.done = model, rate * dt, work, 0.0
+        self.ends = [(joint.a, own_place(model, joint.a, joint.place), joint.b, own_place(model, joint.b, joint.place))
+                     for joint in model.joints]
+        self.lever = max(np.linalg.norm(place) for a, at_a, b, at_b in self.ends
+                         for k, place in ((a, at_a), (b, at_b)) if k != WORLD)
+        self.still = model._replace(gravity=np.zeros(model.d), springs=())
+        self.step = self.state = None
+        self.first, self.now = model_energy(model, start_of(model)), start_of(model)
+
+    def watched(self):
+        """Make a step, and return its Moment."""
+        self.step()
+        before, self.now = self.now, self.state()
+        if self.work is not None:
+            self.done += self.work(before, self.now)
+        gap = max(np.linalg.norm(world_place(self.now, a, at_a) - world_place(self.now, b, at_b))
+                  for a, at_a, b, at_b in self.ends)
+        return Moment(gap / self.lever, model_energy(self.model, self.now) - self.first - self.done,
+                      model_energy(self.still, self.now), self.turn)

@@ -7,10 +7,11 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from ..check import BY_LAWS, Role, Verdict, jsonable
+from ..check import BY_LAWS, JointsAllowed, Role, Verdict, jsonable
 from ..engines.watched import steps_of_motion
 from ..methods import engine_look
-from ..reference import contact_laws
+from ..reference import contact_laws, joint_laws
+from ..reference.laws import Law
 from ..reference.stored import agreed
 from ..scene import ROUND_OFF, parameter_table
 from ..subject.modules import report_text
@@ -120,17 +121,27 @@ def run_ours(scene, step, p, steps, watched):
 
 
 def laws_of(kept, allowed):
-    """Return the fields of each Law of contact, for the Steps that a run has kept."""
-    return [law._asdict() for law in contact_laws.judged(kept, allowed)]
+    """Return the fields of each Law, for the Steps or Moments that a run has kept."""
+    return [law._asdict() for law in laws_for(allowed).judged(kept, allowed)]
+
+
+def laws_for(allowed):
+    """Return the module of the laws that judge what is allowed so."""
+    return joint_laws if isinstance(allowed, JointsAllowed) else contact_laws
+
+
+def watched_numbers(allowed, steps):
+    """Return the numbers of the steps that laws look at: every one where joints could open."""
+    return range(steps) if isinstance(allowed, JointsAllowed) else steps_of_motion(steps)
 
 
 def run_engine_to_end(scene, engine, p, steps, allowed=None):
     """Return the Outcome of an engine after this number of steps.
 
-    allowed: the laws of contact then judge its watched steps, with what they allow it
+    allowed: laws then judge its watched steps, with what they allow it
     """
     world, kept = engine.make(p, scene.duration / steps), []
-    watched = steps_of_motion(steps) if allowed and world.watched_step else ()
+    watched = watched_numbers(allowed, steps) if allowed and world.watched_step else ()
     try:
         for n in range(steps // engine.substeps):
             if n in watched:
@@ -250,7 +261,7 @@ def judged(scene, runner, p, truth, runs, enough):
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
     laws = laws if verdict is Verdict.UNDECIDED else []
     if laws:
-        verdict, message = contact_laws.verdict_on([contact_laws.Law(**law) for law in laws])
+        verdict, message = laws_for(runner.laws).verdict_on([Law(**law) for law in laws])
     if runner.is_reference(p):
         verdict, message = Verdict.REFERENCE, ""
     found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,

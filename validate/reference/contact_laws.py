@@ -10,8 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..check import Allowed, Verdict
+from ..check import Allowed
+from . import laws
 from .contact import in_space, inverse_masses_at, natural_parts, relative_motion, turning
+from .laws import Law
 
 EPS = 2.3e-16                # spacing of floats around 1, rounded up [-]
 ROUNDINGS = 8.0              # of a velocity or an impulse in one visit of a contact: four products and their sums [-]
@@ -35,7 +37,7 @@ class Physics(NamedTuple):
     gravity: np.ndarray      # (d,) [m/s²]
     inv_mass: np.ndarray     # (n,) [1/kg]; 0: a support, which moves as it likes
     inv_inertia: np.ndarray  # (n,), or (n, 3) about the principal axes [1/(kg m²)]
-    mu: float                # friction of each pair [-]
+    mu: float | np.ndarray   # friction of all pairs, or of each: (n + 1, n + 1), the last row is what never moves [-]
 
 
 class Motion(NamedTuple):
@@ -88,25 +90,6 @@ class Step(NamedTuple):
     def moves(self):
         """Return which bodies (n, 1) impulses can move, as 1 and 0: a support moves as it likes."""
         return 1.0 * (self.inv_mass[:, None] > 0.0)
-
-
-class Law(NamedTuple):
-    """The largest value of a quantity in the watched steps, which would be zero if the law held exactly."""
-    quantity: str
-    found: float
-    allowed: float           # by the law: round-off, or FINISHED
-    known: float | None      # by the engine's own rule; None: its rule gives no bound, or it has no such rule
-    reason: str              # of that rule; empty without one
-
-    @property
-    def holds(self):
-        """Return whether the law itself holds; False for NaN."""
-        return self.found <= self.allowed
-
-    @property
-    def is_known(self):
-        """Return whether it holds, or is broken as the engine's own rule says."""
-        return self.holds or bool(self.reason and (self.known is None or self.found <= self.known))
 
 
 def still_below(rows):
@@ -188,14 +171,15 @@ def energy(step, spin):
     """Return the change of the kinetic energy that neither gravity nor applied impulses explain, over its terms [-].
 
     Impulses between two velocities do the work J · (u + u')/2, exactly.  Of a support, which does work on others, the
-    velocities do not count.  Gyration does no work, but a step of it does
-    some; at most |I ω| times the change of ω is left out.
+    velocities do not count.  Gyration does no work, but a step of it does some: at most |I ω| of the mean ω times its
+    change of ω is left out.
     """
     moves = step.moves[:-1]
     m = moves / np.where(moves > 0.0, step.inv_mass[:-1, None], 1.0)
     inertia = np.linalg.pinv(step.inv_inertia[:-1], hermitian=True)
     turned = lambda omega: np.einsum("ni,nij,nj->n", omega, inertia, omega)
-    gyration = float(np.sum(np.linalg.norm(np.einsum("nij,nj->ni", inertia, step.before.omega[:-1]), axis=1)
+    mean = 0.5 * (step.before.omega + step.after.omega)[:-1]
+    gyration = float(np.sum(np.linalg.norm(np.einsum("nij,nj->ni", inertia, mean), axis=1)
                             * np.linalg.norm(spin[:-1], axis=1)))
     v, v_new, omega, omega_new = (moves * rows[:-1] for one in zip(step.before[1:], step.after[1:]) for rows in one)
     change = 0.5 * (np.sum(m * (v_new**2 - v**2)) + np.sum(turned(omega_new) - turned(omega)))
@@ -322,11 +306,11 @@ def judged(steps, allowed: Allowed):
 
     The residual of iterations that end early is bounded by a step in which contacts carry nothing.  Friction without a
     normal impulse is at most the largest impulse.  Impulses that are not applied have no bound, but the balances must
-    hold to round-off without them.
+    hold to round-off without them.  What soft contacts leave has no bound either; balances and Coulomb's limit hold.
     """
     found, roundings, nothing = zip(*(values(step, allowed) for step in steps))
     rules, early = dict(allowed.rules), dict.fromkeys((*ITERATED, "rest"), max(nothing))
-    known = {"loose": 1.0, "gain": GAINED, "short": UNREACHED, "bounce": BOUNCED, **early}
+    known = {} if allowed.soft else {"loose": 1.0, "gain": GAINED, "short": UNREACHED, "bounce": BOUNCED, **early}
     within = {**dict.fromkeys(QUANTITIES, max(roundings)), "shift": 1.0,
               **dict.fromkeys(("pull", "cone", "loose", "short"), CLAMPED),
               **dict.fromkeys(("bounce", "gain", *ITERATED, "rest"), FINISHED)}
@@ -338,20 +322,7 @@ def judged(steps, allowed: Allowed):
                 rules.get(name, "")) for name, value in largest.items()]
 
 
-def verdict_on(laws):
+def verdict_on(found):
     """Return (Verdict, message) by these Laws."""
-    lost = [law for law in laws if not law.is_known]
-    if lost:
-        worst = max(lost, key=lambda law: law.found / law.allowed if law.found == law.found else np.inf)
-        return Verdict.DEPARTS, f"breaks a law of contact: {said(worst)}, and {worst.allowed:.2g} is allowed"
-    broken = [law for law in laws if not law.holds]
-    left = max(law.found for law in laws if law.quantity in [QUANTITIES[name] for name in ITERATED])
-    if not broken:
-        return Verdict.KEEPS_LAWS, f"keeps all laws of contact; its iterations leave {left:.2g} of g dt"
-    by_reason = {law.reason: [said(one) for one in broken if one.reason == law.reason] for law in broken}
-    return Verdict.BREAKS_AS_KNOWN, "; ".join(f"{', '.join(what)}, because {why}" for why, what in by_reason.items())
-
-
-def said(law):
-    """Return a quantity and its value in words."""
-    return f"{law.quantity.removesuffix(' [-]')}: {law.found:.2g}"
+    left = max(law.found for law in found if law.quantity in [QUANTITIES[name] for name in ITERATED])
+    return laws.verdict_on(found, "contact", f"keeps all laws of contact; its iterations leave {left:.2g} of g dt")

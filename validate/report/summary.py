@@ -15,7 +15,7 @@ SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"),
          Verdict.BREAKS_AS_KNOWN: ("≈", "green"), Verdict.KEEPS_LAWS: ("§", "green"),
          Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow"),
          Verdict.UNFINISHED: ("○", "yellow")}            # a reference counts nowhere
-LEGEND = ("✓ agrees   ≈ departs, or breaks a law of contact, as predicted   § keeps the laws of contact\n"
+LEGEND = ("✓ agrees   ≈ departs, or breaks a law of contact or joints, as predicted   § keeps these laws\n"
           "✗ departs otherwise   ○ undecided, unfinished, not attempted\n"
           f"order: the highest of ours.   faster: the engine's time to an error of {percent(HEADLINE)},\n"
           "over our time to the same error; the smallest of the engines' ratios.")
@@ -83,8 +83,8 @@ def by_lesson(report):
     """
     run, level = report["run"], percent(HEADLINE)
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
-             "✓ agrees with the truth · ≈ departs as predicted, or breaks a law of contact by a rule named beforehand "
-             "· § keeps the laws of contact · ✗ departs otherwise · ○ undecided, unfinished or not attempted.", "",
+             "✓ agrees with the truth · ≈ departs as predicted, or breaks a law by a rule named beforehand · § keeps "
+             "the laws of contact or joints · ✗ departs otherwise · ○ undecided, unfinished or not attempted.", "",
              f"| lesson | scenes | our methods | engines | stability | engine's time over ours, to {level} error | "
              "losses, ties, undecided |",
              "|---|---|---|---|---|---|---|"]

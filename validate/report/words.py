@@ -11,7 +11,7 @@ from ..check import Verdict, is_right
 from ..measure.accuracy import relative
 from ..measure.timing import SAME, interval
 from ..products import PRODUCTS
-from ..reference.contact_laws import MEASURED
+from ..reference import contact_laws, joint_laws
 from ..scene import EXACT
 from . import races
 from .numbers import engine_name, number, percent, percents, rounded
@@ -27,10 +27,11 @@ LEGEND = {                   # every verdict has one name and one sign
                     "by a second code with the same scheme, the run must miss the truth by just that error.",
     Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
                              "law beforehand, and the run agrees with it.",
-    Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. What it reports of its own steps keeps the "
-                        "laws that hold for every solver: balances of momentum, angular momentum and energy, "
-                        "no impulse that pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of "
-                        "g dt.",
+    Verdict.KEEPS_LAWS: "No theory gives its error, which is shown. Its own steps keep the laws that hold for every "
+                        "solver. Of contacts: balances of momentum, angular momentum and energy, no impulse that "
+                        "pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of g dt. Of joints: "
+                        "they stay closed, and the energy changes by the work of loads alone, both as far as a step "
+                        "of its length allows.",
     Verdict.BREAKS_AS_KNOWN: "The same laws judge it, and it breaks one of them by a rule of its own, which the scene "
                              "names beforehand, and by no more than that rule can.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
@@ -95,9 +96,10 @@ def measured_limits(results, stability):
               for c in one["ours"] + one["engines"] if c["measured"]]
     tolerances = [(f"{case['lesson']}/{case['slug']}: {f['quantity']}", f["tolerance_from"]) for case in stability
                   for f in case["findings"] if f["tolerance_from"]]
-    laws = [(f"laws of contact: {law['quantity']}", MEASURED[law["quantity"]])
+    laws = [(f"laws of {kind}: {law['quantity']}", known.MEASURED[law["quantity"]])
             for r in results for one in r["cases"].values() for c in one["ours"] + one["engines"]
-            for law in c.get("laws", ()) if law["known"] is not None and law["quantity"] in MEASURED]
+            for law in c.get("laws", ()) for kind, known in (("contact", contact_laws), ("joints", joint_laws))
+            if law["known"] is not None and law["quantity"] in known.MEASURED]
     return list(dict.fromkeys([*limits, *tolerances, *laws]))
 
 

@@ -62,7 +62,7 @@ def built(product, model, read, watch=None, **settings):
         if watch is None:
             return run
         watching = watch(*made, p, dt)
-        watching.step = world.step                       # with the loads of the Model
+        watching.step, watching.state = world.step, world.state      # with the loads of the Model
         return run._replace(watched_step=watching.watched)
     return make
 

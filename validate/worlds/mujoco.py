@@ -74,7 +74,7 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     parts = with_damped_joints(Parts(model, start_of(model), Embedding(model.d), *tree(model)), integrator)
     model = parts.model
     world = made(mujoco.MjModel.from_xml_string(xml_of(parts, dt, integrator, time_constant)))
-    data = mujoco.MjData(world)
+    data = made(mujoco.MjData(world))
     first_velocities(parts, world, data)
     order = [0 if only_holds(model, k) else mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}")
              for k in range(len(model.bodies))]

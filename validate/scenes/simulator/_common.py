@@ -44,6 +44,17 @@ def watched_boxes(physics, pushed=None):
     return watch
 
 
+def watched_joints(model, rate, work=None):
+    """Return what watches an engine's world of model(p).
+
+    rate(p): the fastest of the motion [1/s];    work(State before, State after) → work of loads in a step [J]
+    """
+    def watch(*made):
+        p, dt = made[-2:]
+        return watched.Joined(model(p), dt, rate(p), work)
+    return watch
+
+
 def filmed(model, see, dt, steps, every, **settings):
     """Return see(State) of pymunk's world of a Model at the start and after every `every` steps."""
     world = PYMUNK.world.build(model, dt, **settings)

@@ -10,6 +10,7 @@ import numpy as np
 
 from solutions.support.model import WORLD, Body, Hinge, make_model
 from validate.check import states
+from validate.engines import watched
 from validate.methods import JOINTS_IN_SPACE
 from validate.reference.exams import bricard_angle, predict_bricard
 from validate.reference.mechanisms import AXES, CUBE, bricard, bricard_motion, bricard_state
@@ -17,7 +18,7 @@ from validate.scene import MUJOCO, PYBULLET, Scene, by_order, engine, no_limit, 
 from validate.scenes._common import built, check_positives, constantly
 from validate.scenes.drawing import seen
 from validate.scenes.exams import iftomm
-from validate.scenes.simulator._common import joined_3d
+from validate.scenes.simulator._common import joined_3d, watched_joints
 
 T = 0.5                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
@@ -54,11 +55,13 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """The fastest rate is that of a rod which has fallen by 1 m: ω² = 2 g/l, twice over for what others give it.
+    """An independent program of the same step predicts the error; this limit judges only what that cannot predict."""
+    return by_order(fastest(p), T, dt)
 
-    An independent program of the same step predicts the error; this limit judges only what that cannot predict.
-    """
-    return by_order(np.sqrt(4.0 * p.g), T, dt)
+
+def fastest(p):
+    """Return the rate [1/s] of a rod that has fallen by 1 m: ω² = 2 g/l, twice over for what others give it."""
+    return np.sqrt(4.0 * p.g)
 
 
 def floor(p, dt):
@@ -79,14 +82,15 @@ def read(state, p):
     return state.x[:5].ravel()
 
 
+DEPENDENT = "its sweeps over rows that depend on each other end before they agree"
+HINGES = watched_joints(model, fastest)
 RUNNERS = (
     ours(JOINTS_IN_SPACE, limit=limits, predicted=predict_bricard(T, truth, floor), in_quick=False),
-    engine(PYBULLET, "", built(PYBULLET, model, read), "two points for each hinge, maximal coordinates, erp 1",
-           order=1, limit=no_limit, predicted="its sweeps over rows that depend on each other end before they agree",
-           most_in_quick=50),
-    engine(MUJOCO, "", built(MUJOCO, model, read), "hinges as coordinates, one of them closed by `connect`",
+    engine(PYBULLET, "", built(PYBULLET, model, read, HINGES), "two points for each hinge, maximal coordinates, erp 1",
+           order=1, limit=no_limit, predicted=DEPENDENT, laws=watched.sweeps_over_joints(DEPENDENT), most_in_quick=50),
+    engine(MUJOCO, "", built(MUJOCO, model, read, HINGES), "hinges as coordinates, one of them closed by `connect`",
            order=1, limit=no_limit, predicted="the hinge that closes the loop is a spring with a damper",
-           most_in_quick=50),
+           laws=watched.SOFT_LOOPS, most_in_quick=50),
 )
 
 EXAM = iftomm(

@@ -11,6 +11,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from validate.check import states
+from validate.engines import watched
 from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS
 from validate.reference.exams import EVEN, composed, four_bars_angle, four_bars_law, four_bars_step
 from validate.reference.mechanisms import four_bars, four_bars_motion
@@ -18,7 +19,7 @@ from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Scene, by_order, engine, no_limit, ours
 from validate.scenes._common import built, check_positives
 from validate.scenes.exams import iftomm
-from validate.scenes.simulator._common import hinged_model, joined_2d
+from validate.scenes.simulator._common import hinged_model, joined_2d, watched_joints
 
 T = 2.0                      # [s]: the cranks lie flat for the first time after 0.72 s
 STEPS = (20, 40, 100, 200, 400, 1000, 2000)
@@ -83,13 +84,15 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """The fastest rate is that of the cranks when they hang: ω² = ω₀² + 4 G/I.
+    """An independent program of the hinges' step, written for the one angle, predicts the error of our joints."""
+    return by_order(fastest(p), T, dt)
 
-    An independent program of the hinges' step, written for the one angle, predicts the error of our joints.
-    """
+
+def fastest(p):
+    """Return the rate [1/s] of the cranks when they hang: ω² = ω₀² + 4 G/I."""
     loops = p.loops
     pull = (0.5 * (loops + 1) + loops) / ((loops + 1) / 3.0 + loops) * p.g
-    return by_order(np.sqrt(p.omega**2 + 4.0 * pull), T, dt)
+    return np.sqrt(p.omega**2 + 4.0 * pull)
 
 
 def floor(p, dt):
@@ -115,17 +118,20 @@ def read(state, p):
 
 
 BRANCHES = "where the cranks lie flat, the gaps of its hinges decide on which of two motions it goes on"
+FLAT = "where the cranks lie flat, it closes gaps across their line by impulses along it, which have no limit"
+HINGES = watched_joints(model, fastest)
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=BY_HINGES, slow_cases=("40",), most_in_quick=100),
     ours(COMPOSED_JOINTS, limit=limits, predicted=BY_FIVE, in_quick=False),
     ours(IN_ANGLES, limit=limits, predicted=MOTION.predict(IN_ANGLES.table)),
-    engine(PYMUNK, "", built(PYMUNK, model, read, iterations=100), "PivotJoints, error_bias 0, 100 iterations",
-           order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40),
-    engine(PYBULLET, "", built(PYBULLET, model, read, iterations=100),
+    engine(PYMUNK, "", built(PYMUNK, model, read, HINGES, iterations=100), "PivotJoints, error_bias 0, 100 iterations",
+           order=1, limit=no_limit, predicted=BRANCHES, laws=watched.sweeps_over_joints(FLAT), most_in_quick=40),
+    engine(PYBULLET, "", built(PYBULLET, model, read, HINGES, iterations=100),
            "JOINT_POINT2POINT, maximal coordinates, erp 1, 100 iterations",
-           order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40, most_steps=400),
-    engine(MUJOCO, "", built(MUJOCO, model, read), "hinges as coordinates, `connect` for loops; Runge–Kutta 4",
-           order=1, limit=no_limit, predicted=BRANCHES, most_in_quick=40, most_steps=1000),
+           order=1, limit=no_limit, predicted=BRANCHES, laws=watched.sweeps_over_joints(), most_in_quick=40,
+           most_steps=400),
+    engine(MUJOCO, "", built(MUJOCO, model, read, HINGES), "hinges as coordinates, `connect` for loops; Runge–Kutta 4",
+           order=1, limit=no_limit, predicted=BRANCHES, laws=watched.SOFT_LOOPS, most_in_quick=40, most_steps=1000),
 )
 
 EXAM = iftomm(

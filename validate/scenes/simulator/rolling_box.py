@@ -14,12 +14,15 @@ from solutions.given.compose import Settings
 from solutions.support.model import WORLD, Body, Spring, make_model, start_of
 from solutions.support.shapes import Ball, Box, HalfSpace
 from validate.check import states
+from validate.engines import watched
 from validate.methods import IN_COORDINATES, PARTS_OF_LOOP
+from validate.reference.contact_laws import Physics
 from validate.reference.exams import velocity_error
 from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, Exam, Prediction, Scene, engine, no_limit, ours
 from validate.scenes import drawing
 from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import circle, outlines, pose
+from validate.worlds.bullet import OVERLAP
 
 T = 4.0                      # [s]: as long as the published problem lasts
 STEPS = (8, 16, 40, 80, 160, 400, 800)
@@ -31,6 +34,7 @@ PUSH = 150.0                 # on the box [N]
 ALONG = np.array([0.5, np.sqrt(0.75), 0.0])              # as the benchmark's code has its "xy"
 FAR = 1e9                    # length of the spring that pushes [m]: its force stays to 1e-8
 SWEEPS, SETTLED = 300, 1e-6              # of the loop [-]
+ITERATIONS = 100                         # of the engines [-]
 MARGIN = 0.9                 # a contact counts as the one before if it has moved less [m]: balls are 1 m apart
 GROUND, BOX = 0, 1           # numbers of bodies; the row of the box in the loop is 0
 PAIR = slice(BOX, BOX + 2)   # of bodies: the box, and the ball in a corner
@@ -166,14 +170,39 @@ def rounded(p, dt):
     return 1e-13 + T / dt * ROUND_OFF
 
 
+# ---------------------------------------------------------------------------------------------- engines
+
+def physics(p):
+    """Return the Physics of the box and the balls.  Friction of a pair is a product, and the ground is the last row."""
+    n, mu = ROW**2, np.array([p.grip, *[1.0] * ROW**2, p.mu / p.grip])
+    inertia = np.vstack((p.M / 3.0 * (np.sum(np.square(HALF)) - np.square(HALF)),
+                         np.full((n, 3), 0.4 * p.m * RADIUS**2)))
+    return Physics(np.array([0.0, 0.0, -p.g]), 1.0 / np.array([p.M, *[p.m] * n]), 1.0 / inertia, np.outer(mu, mu))
+
+
+def pushed(p, dt):
+    """Return (Motion before) → impulses (n, 3) [N s] of the long spring in a step, which pulls at the box alone."""
+    anchor, k = np.array(model(p).springs[0].place_b), PUSH / FAR
+    return lambda before: np.vstack((dt * k * (anchor - before.x[0]), np.zeros((ROW**2, 3))))
+
+
+def watch_bullet(bullet, p, dt):
+    return watched.Bullet(bullet.pb, dt, None, physics(p), pushed(p, dt))
+
+
+def watch_mujoco(world, data, p, dt):
+    return watched.MuJoCo(world, data, dt, physics(p), pushed(p, dt))
+
+
 RUNNERS = (
     ours(IN_COORDINATES, order=EXACT, limit=rounded, predicted=lambda p, dt: Prediction(np.zeros(12), rounded(p, dt))),
     ours(PARTS_OF_LOOP, limit=limits, predicted=ahead, in_quick=False),
-    engine(PYBULLET, "", built(PYBULLET, model, read), "maximal coordinates, no damping, 100 iterations",
-           order=1, limit=no_limit, predicted="its solver leaves a rest that is not derived here", most_in_quick=16),
-    engine(MUJOCO, "", built(MUJOCO, model, read), "the exact cone of friction; Euler",
+    engine(PYBULLET, "", built(PYBULLET, model, read, watch_bullet), "maximal coordinates, no damping, 100 iterations",
+           order=1, limit=no_limit, predicted="its solver leaves a rest that is not derived here",
+           laws=watched.bullet_rules(ITERATIONS, rests=False, slop=OVERLAP), most_in_quick=16),
+    engine(MUJOCO, "", built(MUJOCO, model, read, watch_mujoco), "the exact cone of friction; Euler",
            order=1, limit=no_limit, predicted="its contacts are soft: where friction holds they creep",
-           most_in_quick=16, most_steps=400),
+           laws=watched.mujoco_rules(ITERATIONS), most_in_quick=16, most_steps=400),
 )
 
 EXAM = Exam(

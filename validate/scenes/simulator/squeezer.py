@@ -11,6 +11,7 @@ import numpy as np
 
 from solutions.support.model import WORLD, Spring
 from validate.check import states
+from validate.engines import watched
 from validate.methods import COMPOSED_JOINTS, JOINTS
 from validate.reference import mechanisms
 from validate.reference.exams import (
@@ -26,7 +27,7 @@ from validate.reference.mechanisms import ANDREWS_END, FIXED, REST, STIFFNESS, T
 from validate.reference.schemes import Motion
 from validate.scene import MUJOCO, PYBULLET, PYMUNK, Exam, Scene, by_order, engine, no_limit, ours
 from validate.scenes._common import built, check_positives, constantly
-from validate.scenes.simulator._common import hinged_model, joined_2d
+from validate.scenes.simulator._common import hinged_model, joined_2d, watched_joints
 
 T = 0.03                     # [s]: the crank makes two and a half revolutions
 STEPS = (50, 100, 150, 200, 500, 1000, 2000, 5000)   # a film of the fourth has one step for each picture
@@ -138,18 +139,27 @@ def read(state, p):
     return directions(state.q)
 
 
+def work_of_torque(before, after):
+    """Return the work [J] of the torque on the crank in a step; engines report angles without whole turns."""
+    return TORQUE * (np.remainder(after.q[0] - before.q[0] + np.pi, 2.0 * np.pi) - np.pi)
+
+
 SWEPT = "its sweeps leave hinges open by what no theory predicts, and three loops carry that on"
 SOFT = "three hinges that close loops are soft constraints, of which no theory says how far they give way"
 FINER = (10_000, 30_000)
+HINGES = watched_joints(model, constantly(FASTEST), work_of_torque)
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=BY_HINGES, most_in_quick=100),
     ours(COMPOSED_JOINTS, limit=limits, predicted=BY_FIVE, in_quick=False),
-    engine(PYMUNK, "", built(PYMUNK, model, read), "PivotJoints, error_bias 0, 100 iterations",
-           order=1, limit=no_limit, predicted=SWEPT, most_in_quick=200, most_steps=1000, finer_in_full=FINER),
-    engine(PYBULLET, "", built(PYBULLET, model, read), "JOINT_POINT2POINT, maximal coordinates, erp 1, 100 iterations",
-           order=1, limit=no_limit, predicted=SWEPT, most_in_quick=200, most_steps=1000),
-    engine(MUJOCO, "", built(MUJOCO, model, read), "hinges as coordinates, `connect` for loops; Runge–Kutta 4",
-           order=1, limit=no_limit, predicted=SOFT, most_in_quick=200, most_steps=1000),
+    engine(PYMUNK, "", built(PYMUNK, model, read, HINGES), "PivotJoints, error_bias 0, 100 iterations",
+           order=1, limit=no_limit, predicted=SWEPT, laws=watched.sweeps_over_joints(), most_in_quick=200,
+           most_steps=1000, finer_in_full=FINER),
+    engine(PYBULLET, "", built(PYBULLET, model, read, HINGES),
+           "JOINT_POINT2POINT, maximal coordinates, erp 1, 100 iterations",
+           order=1, limit=no_limit, predicted=SWEPT, laws=watched.sweeps_over_joints(), most_in_quick=200,
+           most_steps=1000),
+    engine(MUJOCO, "", built(MUJOCO, model, read, HINGES), "hinges as coordinates, `connect` for loops; Runge–Kutta 4",
+           order=1, limit=no_limit, predicted=SOFT, laws=watched.SOFT_LOOPS, most_in_quick=200, most_steps=1000),
 )
 
 
