@@ -27,7 +27,6 @@ PUSH_OUT = 0.2               # share of an overlap that is removed per step [-]
 NOTHING = 1e-12              # change of a velocity over itself that is round-off [-]
 SQUEEZED = 0.1               # overlap over the smaller half size from which impulses are looked at again [-]
 MOST_LEFT = 0.5              # share of what contacts change that one more sweep may change [-]
-TRUE_IMPACT = 2.0            # an impact is one if it is faster than what forces add in so many steps [-]
 
 
 class Smooth(NamedTuple):
@@ -127,11 +126,11 @@ def detect_unjoined(load, bounds, narrow, t, state, dt, p):
 # ---------------------------------------------------------------------------------------------- contact
 
 def resting_speed(dt, p):
-    """Return the approach speed [m/s] up to which a contact rests: what gravity adds in TRUE_IMPACT steps."""
+    """Return the approach speed [m/s] up to which a contact rests: what gravity adds in a step."""
     squared = 0.0
     for c in range(p.gravity.size):
         squared += p.gravity[c] * p.gravity[c]
-    return TRUE_IMPACT * dt * np.sqrt(squared)
+    return dt * np.sqrt(squared)
 
 
 def may_bounce(u_n, contacts, dt, p):
@@ -146,19 +145,22 @@ def may_bounce(u_n, contacts, dt, p):
 def parting_aims(u_n, pressed, contacts, dt, p):
     """Return the velocities (m,) [m/s] below which no contact may leave: each pair has its own restitution.
 
-    An open contact may close: −gap/dt.  A closed one leaves with −e u_n if it comes faster than what gravity, or all
-    forces and joints, add in TRUE_IMPACT steps; a slower one rests.  A fast contact with e > 0 that is still open is
-    not stopped in this step, because it has to close before it bounces.
+    An open contact may close: −gap/dt.  A closed one leaves with −e times the speed at which it came before forces and
+    joints acted, u_n − pressed, if that is faster than what gravity, or all of them, add in a step; a slower one rests.
+    A fast contact with e > 0 that is still open is not stopped in this step, because it has to close before it bounces.
     pressed: (m,) what all forces and joints have added to u_n in this step [m/s]
+
+    Symplectic Euler keeps E − ½ g dt v of a ball that flies up with v, and so does an impact with e = 1 that turns the
+    speed round which the ball had before gravity acted.  With u_n the ball would win g dt u_n in each impact.
     """
     aim, rests = np.empty(contacts.a.size), resting_speed(dt, p)
     for k in range(aim.size):
-        e, gap = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k]
-        bounces = e > 0.0 and u_n[k] < -rests and u_n[k] < TRUE_IMPACT * pressed[k]
+        e, gap, came = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k], u_n[k] - pressed[k]
+        bounces = e > 0.0 and came < -rests and came < pressed[k]
         if gap > 0.0:
             aim[k] = -np.inf if bounces else -gap / dt
         else:
-            aim[k] = -e * u_n[k] if bounces else 0.0
+            aim[k] = -e * came if bounces else 0.0
     return aim
 
 

@@ -156,6 +156,40 @@ def test_each_body_has_its_own_restitution(e):
     assert s.v == pytest.approx(expected, abs=5e-3)                    # the normal turns within the last step
 
 
+def heights(d, e, dt, T):
+    """Return (times, heights (steps,)) [m] of a ball that falls by 1 m and bounces, after each step until T [s]."""
+    up = np.array((*(0.0,) * (d - 1), 1.0))
+    floor = Body((0.0,) * d, shape=HalfSpace(tuple(up)), e=1.0)
+    loop = compose(make_model([Body(tuple(1.5 * up), 1.0, Ball(0.5), e=e), floor], tuple(-G * up)))
+    state, found, steps = loop.state, [], round(T / dt)
+    for _ in range(steps):
+        state = run_parts(loop, 0.0, state, dt, 1)
+        found.append(state.x[0, -1] - 0.5)
+    return dt * np.arange(1, steps + 1), np.array(found)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("dt", [0.01, 1 / 240])
+def test_an_elastic_ball_neither_climbs_nor_sinks(d, dt):
+    """E − ½ g dt v is kept in flight and in an impact, and v is 0 at the top, or within g dt of it."""
+    times, height = heights(d, 1.0, dt, 20.0)
+    off = 0.5 * dt * np.sqrt(2.0 * G) + 0.5 * G * dt * dt
+    for begin in range(0, 20, 2):
+        assert np.max(height[(times > begin) & (times <= begin + 2.0)]) == pytest.approx(1.0, abs=off)
+
+
+@pytest.mark.parametrize(("d", "e"), [(2, 0.9), (2, 0.7), (3, 0.7), (2, 0.5)])
+def test_a_ball_that_bounces_comes_to_rest_after_the_time_of_its_geometric_series(d, e):
+    """√(2 h/g) (1 + 2 e + 2 e² + …) = √(2 h/g) (1 + e)/(1 − e); flights of a few steps are off by a step each."""
+    dt, fall = 1 / 240, np.sqrt(2.0 / G)
+    end = fall * (1.0 + e) / (1.0 - e)
+    times, height = heights(d, e, dt, 1.4 * end)
+    first = (times > fall + dt) & (times < fall * (1.0 + 2.0 * e))
+    assert np.max(height[first]) == pytest.approx(e * e, abs=0.5 * dt * np.sqrt(2.0 * G))
+    late = height[times > 1.1 * end]
+    assert np.ptp(late) < 1e-6 and abs(late[0]) < 1e-3                         # it may rest within the slop
+
+
 def pressed_by(push, d):
     """Return a bouncy block that a load or a spring presses against a rough wall with 50 N."""
     force = (-50.0, *(0.0,) * (d - 1))

@@ -693,16 +693,17 @@ def rubbing(lesson, rng):
     return state, record, lesson.arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), contacts
 
 
-@random_law("Each pair has its restitution e_a e_b; what is slower than two steps of gravity, or of all forces, rests; "
-            "an open contact may close.", "pairs: largest error of the speeds of parting [m/s]", EXACT)
+@random_law("Each pair has its restitution e_a e_b of the speed before forces acted; what they explain rests; an open "
+            "contact may close.", "pairs: largest error of the speeds of parting [m/s]", EXACT)
 def aims_of_pairs(lesson, rng):
     state, p, arms, contacts = rubbing(lesson, rng)
     dt, truth, speeds = rng.uniform(0.01, 0.5), [], lesson.normal_velocities_2d(state.v, state.omega, contacts, arms)
     pressed = rng.uniform(-0.6, 0.2, len(speeds)) * np.abs(speeds)
     for k, (a, b, n) in enumerate(zip(*contacts[1:4], strict=True)):
         e, u_n, gap = p.e_of[a] * p.e_of[b], speed_at(state, contacts, k)[0] @ n, contacts.gap[k]
-        bounces = e > 0.0 and -u_n > 2.0 * max(dt * np.linalg.norm(p.gravity), -pressed[k])
-        truth.append((-np.inf if gap > 0.0 else -e * u_n) if bounces else (-gap / dt if gap > 0.0 else 0.0))
+        came = u_n - pressed[k]
+        bounces = e > 0.0 and -came > max(dt * np.linalg.norm(p.gravity), -pressed[k])
+        truth.append((-np.inf if gap > 0.0 else -e * came) if bounces else (-gap / dt if gap > 0.0 else 0.0))
     return lesson.parting_aims(speeds, pressed, contacts, dt, p), np.array(truth)
 
 
