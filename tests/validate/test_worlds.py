@@ -688,3 +688,48 @@ def test_our_compiled_loop_runs_every_part_as_the_plain_one_does(models):
         plain, compiled = (world.state() for world in worlds)
         assert compiled.x == pytest.approx(plain.x, abs=1e-9), said
         assert compiled.q == pytest.approx(plain.q, abs=1e-9), said
+
+
+# ---------------------------------------------------------------------------------------------- first velocities
+
+@every
+@pytest.mark.parametrize("moment", [0.01, np.inf])
+@pytest.mark.parametrize("kind", [Weld, Hinge])
+def test_an_impulse_of_a_joint_at_the_start_keeps_the_momentum(product, settings, moment, kind):
+    """One of two equal bodies moves along their line: both go on with half of its velocity."""
+    at_rest, moving = (Body((x, 0.0), 1.0, inertia=moment, v=(v, 0.0)) for x, v in ((0.0, 0.0), (1.0, 1.0)))
+    model = make_model([at_rest, moving], (0.0, 0.0), [kind(0, 1, (0.5, 0.0))])
+    if settings:
+        with pytest.raises(BadInput, match="open a joint"):
+            run(product, model, 0.1, 10, **settings)
+        return
+    found, _ = run(product, model, 0.1, 10)
+    np.testing.assert_allclose(found.v, [[0.5, 0.0], [0.5, 0.0]], atol=1e-5)
+
+
+@every
+@pytest.mark.parametrize("joint", [Weld(0, WORLD, (0.0, 0.0)), Weld(0, 1, (0.5, 0.0))])
+def test_a_weld_of_bodies_that_nothing_can_turn_holds_them(product, settings, joint):
+    bodies = [Body((x, 0.0), 1.0, inertia=np.inf) for x in (0.0, 1.0)]
+    found, _ = run(product, make_model(bodies, (0.0, -G if joint.b == WORLD else 0.0), [joint]), 0.1, 10, **settings)
+    np.testing.assert_allclose(found.x[0], (0.0, 0.0), atol=1e-4)
+    np.testing.assert_allclose(found.q, 0.0, atol=1e-9)
+
+
+@every
+def test_a_body_that_nothing_can_turn_keeps_its_angular_velocity(product, settings):
+    model = make_model([Body((0.0, 0.0), 1.0, inertia=np.inf, omega=2.0)], (0.0, 0.0))
+    found, _ = run(product, model, 0.5, 50, **settings)
+    np.testing.assert_allclose((found.q[0], found.omega[0]), (1.0, 2.0), rtol=1e-4)
+
+
+def test_the_first_velocities_that_open_a_joint_are_found_in_the_plane_and_in_space():
+    def model(spin, v, kind=Hinge):
+        bodies = [Body((0.0, 0.0), 1.0, inertia=1.0, omega=2.0), Body((1.0, 0.0), 1.0, inertia=1.0, v=v, omega=spin)]
+        return make_model(bodies, (0.0, 0.0), [kind(0, 1, (0.5, 0.0))])
+    closed = model(3.0, (0.0, 2.0 * 0.5 + 3.0 * 0.5))
+    assert not derived.opens(closed) and derived.opens(model(3.0, (0.0, 2.4)))
+    assert derived.opens(model(3.0, (0.0, 2.5), Weld)) and not derived.opens(model(2.0, (0.0, 2.0), Weld))
+    rod = Body((0.5, 0.0, 0.0), 1.0, inertia=(0.1, 0.1, 0.1), v=(0.0, 0.5, 0.0), omega=(0.0, 0.0, 1.0))
+    held = lambda body: make_model([body], (0.0, 0.0, 0.0), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
+    assert not derived.opens(held(rod)) and derived.opens(held(rod._replace(omega=(0.0, 0.0, 1.01))))

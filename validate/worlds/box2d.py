@@ -27,7 +27,7 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 
 from ..engines import quiet_import
 from . import Push, World, unsupported
-from .derived import acceleration_at_start, beyond, grip, in_plane, with_plain_springs
+from .derived import SPINS_ON, acceleration_at_start, beyond, grip, in_plane, spins_on, with_plain_springs
 
 UNITS = 0.01                 # its unit of length [m]: the slop is then 0.05 mm and not 5 mm
 SUBSTEPS = 4                 # per step, by default
@@ -62,6 +62,8 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if model.d == 3 and in_plane(model) is None:
         return "it is an engine of the plane"
+    if spins_on(model):
+        return SPINS_ON
     if restitutions(model) is None:
         return "its restitution of a pair is the greater of two, which cannot be the product in all pairs here"
     if any(isinstance(body.shape, Polygon) and len(body.shape.corners) > MOST_CORNERS for body in model.bodies):

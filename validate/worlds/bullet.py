@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import positive_number
+from solutions.checks import BadInput, positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -27,6 +27,7 @@ from ..engines.bullet import CONTACT_ERP, WARM, Bullet
 from ..reference.orientation import about, quaternion
 from . import Push, World, unsupported
 from .derived import (
+    OPENS,
     Embedding,
     acceleration_at_start,
     beyond,
@@ -37,6 +38,7 @@ from .derived import (
     grip,
     net_of,
     only_holds,
+    opens,
     pressed_in,
     round_only,
     smallest,
@@ -98,6 +100,8 @@ def build(model, dt, **settings):
     """Make a World."""
     dt = positive_number("step dt [s]", dt)
     settings, model = Settings(**settings), with_plain_springs(model)
+    if not settings.maximal and opens(model):
+        raise BadInput("a model in reduced coordinates", OPENS, "build it in maximal ones")
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:
         model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))

@@ -11,6 +11,7 @@ from solutions.support.model import (
     State,
     Weld,
     can_move,
+    can_turn,
     loads_at,
     own_place,
     start_of,
@@ -148,7 +149,7 @@ def add_joints(space, model, bodies, bias):
         else:
             anchors = [tuple(own_place(model, k, joint.place).tolist()) for k in (joint.b, joint.a)]
             made = [pymunk.PivotJoint(b, a, *anchors)]
-            if isinstance(joint, Weld):
+            if isinstance(joint, Weld) and any(k != WORLD and can_turn(model.bodies[k]) for k in (joint.a, joint.b)):
                 made.append(pymunk.GearJoint(b, a, a.angle - b.angle, 1.0))
         for one in made:
             one.error_bias, one.collide_bodies = bias, isinstance(joint, Distance)

@@ -19,6 +19,7 @@ from solutions.support.model import (
     State,
     Weld,
     can_move,
+    can_turn,
     friction_of,
     loads_at,
     restitution_of,
@@ -31,6 +32,9 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polyhedron, 
 
 TOUCH = 1e-9                 # gap at which two bodies count as touching at the start, over their size [-]
 STICKY = 1e6                 # stands for infinite friction in an engine [-]: its product with 0 is 0
+SLIGHT = 1e-9                # difference of velocities over the larger one, up to which they are the same [-]
+SPINS_ON = "a body that nothing can turn has an angular velocity, which it would lose"
+OPENS = "bodies begin with velocities that open a joint, and it moves them in coordinates that cannot"
 PLANE = 1e-12                # allowed distance from a vertical plane, over the largest coordinate [-]
 
 
@@ -54,6 +58,33 @@ def rubs(model):
 def carries(model):
     """Return whether a body moves that no impulse moves, such as a belt."""
     return any(not can_move(body) and (np.any(body.v) or np.any(body.omega)) for body in model.bodies)
+
+
+def spins_on(model):
+    """Return whether a body that nothing can turn has an angular velocity, which it keeps."""
+    return any(can_move(body) and not can_turn(body) and np.any(body.omega) for body in model.bodies)
+
+
+def opens(model):
+    """Return whether the first velocities of bodies open a joint: only an impulse at the start could hold it."""
+    start = start_of(model)
+    for joint in model.joints:
+        if isinstance(joint, Distance):
+            continue
+        ends = [k for k in (joint.a, joint.b) if k != WORLD]
+        turned = [by_turning(start.omega[k], np.asarray(joint.place, float) - start.x[k]) for k in ends]
+        u, spin = [start.v[k] + turn for k, turn in zip(ends, turned)], [start.omega[k] for k in ends]
+        fastest = max(np.linalg.norm(start.v[k]) + np.linalg.norm(turn) for k, turn in zip(ends, turned))
+        others = (u[1], spin[1]) if len(ends) == 2 else (0.0, 0.0)
+        welded = isinstance(joint, Weld) and np.linalg.norm(spin[0] - others[1]) > SLIGHT * np.max(np.abs(spin))
+        if welded or np.linalg.norm(u[0] - others[0]) > SLIGHT * fastest:
+            return True
+    return False
+
+
+def by_turning(omega, r):
+    """Return the velocity (d,) [m/s] that a point at r from the centre of a body has by its rotation."""
+    return omega * np.array((-r[1], r[0])) if len(r) == 2 else np.cross(omega, r)
 
 
 def grip(body):

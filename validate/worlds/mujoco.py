@@ -31,13 +31,17 @@ from ..engines.switches import made
 from ..reference.orientation import quaternion
 from . import Push, World, unsupported
 from .derived import (
+    OPENS,
+    SPINS_ON,
     STICKY,
     Embedding,
     bounces,
     carries,
     forces_of,
     only_holds,
+    opens,
     rubs,
+    spins_on,
     touches,
     tree,
     with_plain_springs,
@@ -63,6 +67,10 @@ def refuses(model):
         return "its bodies without mass do not move"
     if bounces(model):
         return "it has no restitution"
+    if spins_on(model):
+        return SPINS_ON
+    if opens(model):
+        return OPENS
     return unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
 
 
