@@ -301,7 +301,7 @@ def seen_in_steps(result):
         return ""
     if best["expected"] == EXACT:
         return f"“{best['label']}” is exact up to round-off at every step."
-    return f"“{best['label']}” falls fastest, with order {best['order']:.2f}."
+    return f"Of our methods, “{best['label']}” falls fastest, with order {best['order']:.2f}."
 
 
 # ---------------------------------------------------------------------------------------------- texts of scenes

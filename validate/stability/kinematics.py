@@ -118,8 +118,9 @@ def straight_arm(lesson, check):
               f"largest angle after 50 iterations of {name} [rad]", law=0.0, found=moved, within=0.0,
               saw=f"{name}: {moved:g} rad after 50 iterations.")
     return Picture("Out of a straight arm", "distance of the target [m]", "log₁₀ of the growth per iteration", curves,
-                   "FABRIK leaves a nearly straight arm fastest.  No method leaves an exactly straight one whose "
-                   "target is beyond its last joint.")
+                   f"Of these, FABRIK leaves a nearly straight arm fastest; the damped steps have λ = {DAMPING:g} m, "
+                   "and a smaller λ is faster.  No method leaves an exactly straight arm whose target is beyond its "
+                   "last joint.")
 
 
 def step_across(lesson, name, bend, damping=0.0):

@@ -176,8 +176,9 @@ def drift_picture(ts, runs):
         "Energy of a thrown cylinder at 1 ms", "t [s]", "energy gained [%]",
         [*(series(name, fine, 100.0 * (law - 1.0), LINE) for name, law in laws),
          *(series(LABEL[m], ts, 100.0 * runs[m], DOTS) for m in shown)],
-        "First-order steps gain or lose energy, three times as fast if R is renormalised by columns. The midpoint "
-        "turn and the splitting keep it.")
+        "First-order steps gain or lose energy, three times as fast if R is renormalised by columns and the axis of "
+        "the cylinder is the third one. The midpoint turn keeps the energy, and so does the splitting, because two "
+        "moments are equal.")
 
 
 # ---------------------------------------------------------------------------------------------- too fast

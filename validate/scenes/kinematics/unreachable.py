@@ -123,7 +123,7 @@ def too_slow(p):
 
 
 def never_at_rest(p):
-    return "at the edge of the ring the arm is straight, its steps grow without bound, and it never comes to rest"
+    return "at the edge of the ring all links are in one line, where its steps are large: it jumps about for ever"
 
 
 AT_REST = {"order": EXACT, "limit": limit, "predicted": "it is at rest, and nothing but roundings is left"}

@@ -1,7 +1,8 @@
-"""A pendulum swings for 2,000 s, as a bob on a string and as an angle: what is left of the error is phase.
+"""A pendulum swings, as a bob on a string and as an angle: what is left of the error is phase.
 
 No method here changes the length of the string or the height of the swing for long.  Each is early or late by a little
-in every swing, so that its error grows with time, and after 844 swings the order of a method decides.
+in every swing, so that its error grows with time.  This page has the first two swings; the published benchmark lasts
+2,000 s, or 844 swings, after which the order of a method decides.
 """
 
 from typing import Annotated, NamedTuple

@@ -1,6 +1,7 @@
-"""A net of two metres at 24 frames per second, with 1 to 256 of the lecture's steps per frame.
+"""A net of two metres at 24 frames per second: a full run takes 1 to 256 steps per frame, a quick one begins with less.
 
-With one step per frame the run diverges; with four its worst node is off by 3 cm, with sixteen by 8 mm.
+With one of the lecture's steps per frame the run diverges; with four its worst node is off by 3 cm, with sixteen by
+8 mm.
 """
 
 
