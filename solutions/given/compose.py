@@ -4,6 +4,7 @@ compose(model) returns a Loop: the parts that the model needs, in the lecture's 
 there.  A loop has no part for what its model lacks: without shapes it does not search for contacts, without joints it
 closes none, and bodies that cannot turn are only moved.  run_parts runs it.
 *Left out:* seams.  A body that slides over two supports side by side bumps into the second: give it a single support.
+Restitution is Newton's, with which an impact with friction can gain energy, as lesson 7 shows.
 """
 
 from typing import NamedTuple
@@ -292,7 +293,7 @@ def check_explicit_forces(loop, dt):
     grow, most = np.flatnonzero(grows(squared, damping, halved)), float(p.drag * np.max(inv_mass) * dt)
     if grow.size:
         raise BadInput("step dt [s]", dt, f"take a smaller one: with this one, spring {grow[0]} makes the motion grow "
-                       "without end; or take a Distance with a compliance in place of the spring")
+                       "without end; or take a Distance with a compliance, which damps it")
     if grows(0.0, most, halved):
         raise BadInput("step dt [s]", dt, "take a smaller one: with this one, the drag makes motions grow without end")
 

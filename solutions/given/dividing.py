@@ -14,10 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checks import Diverged, finite_number, positive_number
+from ..rotation import quaternion_product
+from ..support.quaternions import exponential
 from ..support.records import check_record
 from ..support.scenes import TOO_DEEP
 from .joints import Joints
-from .passing import both_sides, find_suspects, may_pass, pose_at
+from .passing import both_sides, find_suspects, may_pass
 
 MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
 SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
@@ -38,13 +40,28 @@ class Rough(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- where they touch
 
+def pose_within(before, after, share, dt):
+    """Return (x, q) of all bodies when this share of a step is over; in space they turn by all of ω dt."""
+    return before.x + share * (after.x - before.x), turned(before.q, after.q, after.omega, share, dt)
+
+
+def turned(q, q_new, omega, share, dt):
+    """Return the orientations when this share of a step is over."""
+    if q.ndim == 1:
+        return q + share * (q_new - q)
+    now = np.empty(q.shape)
+    for i in range(q.shape[0]):
+        now[i] = quaternion_product(exponential(share * dt * omega[i]), q[i])
+    return now
+
+
 def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes):
     """Return the overlap (m,) [m] of each suspect when this share of the step is over; 0 of those that are apart.
 
     The backs of planes, which suspects have as well, do not count.
     """
     back = shapes.half.shape[0] + sides.shape[0] // 2
-    pairs, (x, q), overlap = suspects.pairs, pose_at(before, after, share, dt), np.zeros(suspects.way.size)
+    pairs, (x, q), overlap = suspects.pairs, pose_within(before, after, share, dt), np.zeros(suspects.way.size)
     _, _, turn = bounds(x, q, shapes)
     found = narrow(x, turn, shapes, sides, pairs, 0.0)
     for k in range(found.a.size):

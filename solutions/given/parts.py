@@ -133,11 +133,10 @@ def resting_speed(dt, p):
     return dt * np.sqrt(squared)
 
 
-def may_bounce(u_n, contacts, dt, p):
-    """Return whether a contact with e > 0 comes faster than what gravity alone explains."""
-    rests = resting_speed(dt, p)
-    for k in range(u_n.size):
-        if u_n[k] < -rests and p.e_of[contacts.a[k]] > 0.0 and p.e_of[contacts.b[k]] > 0.0:
+def may_bounce(contacts, p):
+    """Return whether a contact has e > 0."""
+    for k in range(contacts.a.size):
+        if p.e_of[contacts.a[k]] > 0.0 and p.e_of[contacts.b[k]] > 0.0:
             return True
     return False
 
@@ -147,7 +146,8 @@ def parting_aims(u_n, pressed, contacts, dt, p):
 
     An open contact may close: −gap/dt.  A closed one leaves with −e times the speed at which it came before forces and
     joints acted, u_n − pressed, if that is faster than what gravity, or all of them, add in a step; a slower one rests.
-    A fast contact with e > 0 that is still open is not stopped in this step, because it has to close before it bounces.
+    With e > 0 an open contact has to close before it bounces.  It is not stopped in this step, unless forces alone
+    could close it: another impact of the same step may throw its bodies at each other.
     pressed: (m,) what all forces and joints have added to u_n in this step [m/s]
 
     Symplectic Euler keeps E − ½ g dt v of a ball that flies up with v, and so does an impact with e = 1 that turns the
@@ -156,11 +156,11 @@ def parting_aims(u_n, pressed, contacts, dt, p):
     aim, rests = np.empty(contacts.a.size), resting_speed(dt, p)
     for k in range(aim.size):
         e, gap, came = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k], u_n[k] - pressed[k]
-        bounces = e > 0.0 and came < -rests and came < pressed[k]
+        added = max(rests, -pressed[k])
         if gap > 0.0:
-            aim[k] = -np.inf if bounces else -gap / dt
+            aim[k] = -np.inf if e > 0.0 and (came < -added or gap > added * dt) else -gap / dt
         else:
-            aim[k] = -e * came if bounces else 0.0
+            aim[k] = -e * came if e > 0.0 and came < -added else 0.0
     return aim
 
 
@@ -238,7 +238,7 @@ def begun(load, t, free, v, omega, dt, p):
     x, q, _, _, contacts, J = free
     J, arms = J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     u_n, pressed = normal_velocities_2d(v, omega, contacts, arms), np.zeros(J.shape[0])
-    if may_bounce(u_n, contacts, dt, p):
+    if may_bounce(contacts, p):
         later, spun = new_velocities_2d(load, t, x, q, free.v, free.omega, dt, p)
         pressed = normal_velocities_2d(v + later - 2.0 * free.v, omega + spun - 2.0 * free.omega, contacts, arms)
     aim, v, omega = parting_aims(u_n, pressed, contacts, dt, p), v.copy(), omega.copy()
@@ -269,18 +269,42 @@ def begun_of_centres(load, t, free, v, omega, dt, p):
     return begun(load, t, free, v, omega, dt, p)
 
 
-def is_settled(J, before, p):
-    """Return whether a sweep has changed no impulse by more than p.settled times the largest one.
+def islands_of(contacts, p):
+    """Return the number (m,) of the island of each contact: of bodies that contacts connect, also through others.
 
+    What does not move connects nothing.  Each body points to one of its island with a smaller number, the first to
+    itself.
+    """
+    first, island = np.arange(p.inv_mass.size), np.empty(contacts.a.size, np.int64)
+    for k in range(contacts.a.size):
+        a, b = contacts.a[k], contacts.b[k]
+        if p.inv_mass[a] > 0.0 and p.inv_mass[b] > 0.0:
+            while first[a] != a:
+                a = first[a]
+            while first[b] != b:
+                b = first[b]
+            first[max(a, b)] = min(a, b)
+    for i in range(first.size):
+        first[i] = first[first[i]]
+    for k in range(contacts.a.size):
+        island[k] = first[contacts.a[k] if p.inv_mass[contacts.a[k]] > 0.0 else contacts.b[k]]
+    return island
+
+
+def is_settled(J, before, island, most, p):
+    """Return whether a sweep has changed no impulse by more than p.settled times the largest one of its island.
+
+    most: (rows,) for the largest impulse of each island; it is written anew
     This runs after each sweep, makes no array, and ends at the first change that is too large.
     """
-    largest = 0.0
+    for k in range(J.shape[0]):
+        most[island[k]] = 0.0
     for k in range(J.shape[0] if p.settled > 0.0 else 0):
         for c in range(J.shape[1]):
-            largest = max(largest, abs(J[k, c]))
+            most[island[k]] = max(most[island[k]], abs(J[k, c]))
     for k in range(J.shape[0]):
         for c in range(J.shape[1]):
-            if abs(J[k, c] - before[k, c]) > p.settled * largest:
+            if abs(J[k, c] - before[k, c]) > p.settled * most[island[k]]:
                 return False
     return True
 
@@ -304,9 +328,14 @@ def share_left(J, before, v, free, contacts, arms):
     return left / most if most > 0.0 else 0.0
 
 
-def is_calm(J, before, v, free, contacts, arms, p):
-    """Return whether a sweep has changed neither the impulses nor, where bodies differ, the velocities any more."""
-    return is_settled(J, before, p) and (p.calm == np.inf or share_left(J, before, v, free, contacts, arms) <= p.calm)
+def is_calm(J, before, v, free, contacts, arms, island, most, p):
+    """Return whether a sweep has changed neither the impulses nor, where bodies differ, the velocities any more.
+
+    island, most: see is_settled
+    """
+    if not is_settled(J, before, island, most, p):
+        return False
+    return p.calm == np.inf or share_left(J, before, v, free, contacts, arms) <= p.calm
 
 
 def are_deep(contacts, p):
@@ -360,13 +389,13 @@ def swept(begin, sweep, load, t, state, dt, p):
     if contacts.a.size == 0:
         return state
     (v, omega, J, aim, arms, inv_inertia), calm = begin(load, t, state, free, spun, dt, p), False
-    before = v, omega, J
+    before, island, most = (v, omega, J), islands_of(contacts, p), np.zeros(p.inv_mass.size)
     for n in range(p.sweeps):
         older, before = before, (v, omega, J)
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         if 2 * n >= p.sweeps:
             v, omega, J = damped((v, omega, J), before, older)
-        calm = is_calm(J, before[2], v, free, contacts, arms, p)
+        calm = is_calm(J, before[2], v, free, contacts, arms, island, most, p)
         if calm:
             break
     check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p)
@@ -398,14 +427,14 @@ def swept_and_closed(begin, sweep, close_all, load, t, state, dt, p):
     if contacts.a.size == 0:
         return PileState(x, q, v, omega, contacts, J)
     (v, omega, J, aim, arms, inv_inertia), calm = begin(load, t, state, v, omega, dt, p), False
-    before = v, omega, J
+    before, island, most = (v, omega, J), islands_of(contacts, p), np.zeros(p.inv_mass.size)
     for n in range(p.sweeps):
         older, before = before, (v, omega, J)
         v, omega, J = sweep(v, omega, J, aim, contacts, arms, inv_inertia, p)
         if 2 * n >= p.sweeps:
             v, omega, J = damped((v, omega, J), before, older)
         v, omega, links = close_all(x, q, v, omega, links, dt, p)
-        calm = is_calm(J, before[2], v, free, contacts, arms, p)
+        calm = is_calm(J, before[2], v, free, contacts, arms, island, most, p)
         if calm:
             break
     check_solved(calm, sweep, v, omega, J, aim, contacts, arms, inv_inertia, free, p)
@@ -434,11 +463,12 @@ def separated(close_all, links, state, dt, p):
     aim, arms = pushing_aims(contacts, dt, p), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     push, spin, J_push, give = np.zeros(v.shape), np.zeros(omega.shape), np.zeros(J.shape), np.zeros(aim.size)
     smooth, still = Smooth(p.inv_mass, p.inv_inertia, 0.0), push
+    island, most = islands_of(contacts, p), np.zeros(p.inv_mass.size)
     for _ in range(p.sweeps):
         before = J_push
         push, spin, J_push = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)
         push, spin, links = close_all(x, q, push, spin, links, dt, p)
-        if is_calm(J_push, before, push, still, contacts, arms, p):
+        if is_calm(J_push, before, push, still, contacts, arms, island, most, p):
             break
     if are_deep(contacts, p):
         _, _, more = velocity_sweep_2d(push, spin, J_push, aim, give, contacts, arms, smooth)

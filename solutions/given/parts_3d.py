@@ -36,6 +36,7 @@ from .parts import (
     check_left,
     forget_bounces,
     is_calm,
+    islands_of,
     leave_open,
     may_bounce,
     parting_aims,
@@ -127,7 +128,7 @@ def begun_in_space(load, t, free, v, omega, dt, p):
     inv_inertia = spatial_inertia(q, p.inv_inertia)
     J, arms = J.copy(), arms_3d(x, p.inv_mass, inv_inertia, contacts)
     u_n, pressed = normal_velocities(v, omega, contacts, arms), np.zeros(J.shape[0])
-    if may_bounce(u_n, contacts, dt, p):
+    if may_bounce(contacts, p):
         later, spun = kick(load, t, x, q, free.v, free.omega, dt, p)
         pressed = normal_velocities(v + later - 2.0 * free.v, omega + spun - 2.0 * free.omega, contacts, arms)
     aim, v, omega = parting_aims(u_n, pressed, contacts, dt, p), v.copy(), omega.copy()
@@ -178,12 +179,12 @@ def separated_in_space(close_all, links, state, dt, p):
     inv_inertia = spatial_inertia(q, p.inv_inertia)
     aim, arms, give = pushing_aims(contacts, dt, p), arms_3d(x, p.inv_mass, inv_inertia, contacts), 0.0 * contacts.gap
     push, spin, J_push = 0.0 * v, 0.0 * omega, 0.0 * J
-    still = push
+    still, island, most = push, islands_of(contacts, p), np.zeros(p.inv_mass.size)
     for _ in range(p.sweeps):
         before = J_push
         push, spin, J_push = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)
         push, spin, links = close_all(x, q, push, spin, links, dt, p)
-        if is_calm(J_push, before, push, still, contacts, arms, p):
+        if is_calm(J_push, before, push, still, contacts, arms, island, most, p):
             break
     if are_deep(contacts, p):
         _, _, more = velocity_sweep(push, spin, J_push, aim, give, contacts, arms, p.inv_mass, inv_inertia, 0.0)

@@ -43,7 +43,9 @@ class Settings(NamedTuple):
     sweeps, which end before the impulses are exact.
     """
     sweeps: int = 100        # over all contacts in a step, at most; more where bodies differ much (see difference)
-    settled: float = 1e-3    # sweeps end when one changes no impulse by more than this share of the largest [-]
+    # sweeps end when one changes no impulse by more than this share of the largest one among bodies that touch, also
+    # through others [-]
+    settled: float = 1e-4
     margin: float | None = None   # gap up to which a contact is found [m]; None: a tenth of the smallest shape's size
 
 

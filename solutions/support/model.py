@@ -74,7 +74,11 @@ class Weld(NamedTuple):
 
 
 class Distance(NamedTuple):
-    """Two points stay as far apart as they are at the start: a rod without mass.  The bodies may collide."""
+    """Two points stay as far apart as they are at the start: a rod without mass.  The bodies may collide.
+
+    Our loop takes the force of a compliant one at the end of the step.  That damps a vibration with ω by
+    e^(−½ ω² dt t), as implicit Euler does.
+    """
     a: int
     b: int                   # or WORLD
     place_a: tuple           # (d,) from the centre of a, in coordinates of a [m]

@@ -190,6 +190,43 @@ def test_a_ball_that_bounces_comes_to_rest_after_the_time_of_its_geometric_serie
     assert np.ptp(late) < 1e-6 and abs(late[0]) < 1e-3                         # it may rest within the slop
 
 
+@pytest.mark.parametrize("gap", [5e-3, 1e-3])
+@pytest.mark.parametrize("dt", [0.01, 0.002])
+def test_balls_in_a_row_with_gaps_hand_the_velocity_on(gap, dt):
+    """One impact after the other, of equal masses with e = 1: the last ball takes all of it."""
+    ball = Body((0.0, 0.0), 1.0, Ball(0.1), e=1.0)
+    row = [ball._replace(v=(1.0, 0.0)), *(ball._replace(x=(0.1 + k * (0.2 + gap), 0.0)) for k in (1, 2, 3))]
+    np.testing.assert_allclose(run(make_model(row, (0.0, 0.0)), 0.6, round(0.6 / dt)).v[:, 0], [0, 0, 0, 1], atol=1e-9)
+
+
+def test_two_balls_one_above_the_other_bounce_off_the_floor_one_after_the_other():
+    """3 kg at −1 m/s comes back with 1 m/s and meets 1 kg at −1 m/s: then they have 0 and 2 m/s."""
+    balls = [Body((0.0, 0.3), 3.0, Ball(0.1), e=1.0, v=(0.0, -1.0)),
+             Body((0.0, 0.505), 1.0, Ball(0.1), e=1.0, v=(0.0, -1.0))]
+    np.testing.assert_allclose(run(make_model([*balls, FLOOR], (0.0, 0.0)), 0.5, 50).v[:2, 1], [0.0, 2.0], atol=1e-9)
+
+
+@pytest.mark.parametrize("press", [0.0, 400.0, 10_000.0])
+def test_a_ball_bounces_off_a_table_however_hard_a_force_presses_that_down(press):
+    table = Body((0.0, 0.5), 1.0, Box((1.0, 0.5)), mu=0.3, e=1.0)
+    ball, down = Body((0.0, 1.6), 1.0, Ball(0.1), e=0.5), lambda t: (0.0, -press)
+    model = make_model([FLOOR._replace(e=0.0), table, ball], DOWN, loads=[Force(1, down, "t")])
+    loop = compose(model)
+    state, fastest = loop.state, 0.0
+    for _ in range(200):
+        state = run_parts(loop, 0.0, state, 0.002, 1)
+        fastest = max(fastest, state_of(loop, state).v[2, 1])
+    assert fastest == pytest.approx(0.5 * np.sqrt(2.0 * G * 0.5), abs=0.02)
+
+
+@pytest.mark.parametrize("press", [0.0, 1e5])
+def test_what_does_not_touch_a_body_does_not_change_its_impact(press):
+    """A ball that is pressed on the floor 10 m away had ended the sweeps early: a plank that falls flat turned."""
+    plank, ball = Body((0.0, 1.0), 1.0, Box((0.5, 0.1)), mu=0.3, e=0.5), Body((10.0, 0.5), 1.0, Ball(0.5))
+    model = make_model([FLOOR, plank, ball], DOWN, loads=[Force(2, lambda t: (0.0, -press), "t")])
+    assert abs(run(model, 0.6, 60).omega[1]) < 2e-3
+
+
 def pressed_by(push, d):
     """Return a bouncy block that a load or a spring presses against a rough wall with 50 N."""
     force = (-50.0, *(0.0,) * (d - 1))

@@ -307,3 +307,14 @@ def test_impacts_friction_and_joints_keep_both_momenta_and_gain_no_energy(seed):
     assert total_momenta(model, s)[1] == pytest.approx(L, abs=2e-2 * np.linalg.norm(L))
     gain = np.max(energies - np.minimum.accumulate(energies))
     assert gain < 2e-2 * model_energy(model, begin)
+
+
+@pytest.mark.parametrize("omega", [100.0, 150.0, 314.16])
+def test_a_rod_that_turns_by_a_radian_or_more_in_a_step_hits_what_is_in_its_way(omega):
+    """A driven rod throws a ball with e = 1 at 0.9 m from its axis away with twice its speed, at every angle."""
+    rod = Body((0.0, 0.0, 0.0), shape=Capsule(1.0, 0.01), mu=1.0, e=1.0, omega=(0.0, 0.0, omega))
+    for angle in (0.2, 0.95, 1.2, 2.2):
+        ball = Body((0.9 * np.cos(angle), 0.9 * np.sin(angle), 0.0), 1.0, Ball(0.03), e=1.0)
+        steps = int(np.ceil(np.pi / omega / 0.01))
+        v = run(make_model([rod, ball], (0.0, 0.0, 0.0)), 0.01 * steps, steps).v[1]
+        assert np.linalg.norm(v) == pytest.approx(2.0 * 0.9 * omega, rel=5e-3), angle

@@ -733,3 +733,35 @@ def test_the_first_velocities_that_open_a_joint_are_found_in_the_plane_and_in_sp
     rod = Body((0.5, 0.0, 0.0), 1.0, inertia=(0.1, 0.1, 0.1), v=(0.0, 0.5, 0.0), omega=(0.0, 0.0, 1.0))
     held = lambda body: make_model([body], (0.0, 0.0, 0.0), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
     assert not derived.opens(held(rod)) and derived.opens(held(rod._replace(omega=(0.0, 0.0, 1.01))))
+
+
+# ---------------------------------------------------------------------------------------------- what a world reports
+
+@every
+def test_the_state_of_a_world_that_is_not_kept_can_be_read(product, settings):
+    """Bodies of some engines end with their world: Python had crashed."""
+    if not product.installed():
+        pytest.skip(f"{product} is not installed: {product.remedy}")
+    state = product.world.build(make_model([BALL], (0.0, -G)), 0.01, **settings).state
+    np.testing.assert_allclose(state().x[0], BALL.x, atol=1e-6)
+    pushes = product.world.build(make_model([BALL], (0.0, -G)), 0.01, **settings).pushes
+    assert pushes() == []
+
+
+@every
+def test_contact_forces_carry_the_weight_and_the_load(product, settings):
+    block = Body((0.0, 0.1), 2.0, Box((0.2, 0.1)), 0.5)
+    model = make_model([FLOOR, block], (0.0, -G), loads=[Force(1, lambda t: (0.0, -3.0), "t")])
+    _, pushes = run(product, model, 1.0, 200, **settings)
+    if product is BOX2D:
+        assert pushes == []                                # its binding does not report them
+    elif product is not RAPIER:                            # its binding does not tell where friction points to
+        assert sum(p.F[1] * (1 if p.a == 1 else -1) for p in pushes) == pytest.approx(2.0 * G + 3.0, rel=0.01)
+
+
+@pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)
+def test_the_force_of_a_hinge_carries_the_weight_and_the_load(product):
+    hanging = make_model([Body((0.0, -0.5), 1.0, inertia=0.1)], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))],
+                         loads=[Force(0, lambda t: (0.0, -10.0), "t")])
+    _, [push] = run(product, hanging, 0.1, 10)
+    assert push.F[1] * (1 if push.a == 0 else -1) == pytest.approx(G + 10.0, rel=1e-3)

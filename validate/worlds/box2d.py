@@ -84,10 +84,7 @@ def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     bodies = add_bodies(world, model, ahead * dt / substeps)
     joints = add_joints(world, model, bodies)
     clock = [0]
-    state = lambda: State(np.array([tuple(body.position) for body in bodies], float),
-                          np.array([body.angle for body in bodies], float),
-                          np.array([tuple(body.linear_velocity) for body in bodies], float),
-                          np.array([body.angular_velocity for body in bodies], float))
+    state = lambda: state_of(world, bodies)
 
     def step():
         if not (model.springs or model.loads):
@@ -97,7 +94,15 @@ def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
             push(model, bodies, loads_at(model, clock[0] * dt / substeps, state()))
             clock[0] += 1
             world.step(dt / substeps, 1)
-    return World(step, state, lambda: pushes(model, joints))
+    return World(step, state, lambda: pushes(world, model, joints))
+
+
+def state_of(world, bodies):
+    """Return the State.  The world is held because its bodies end with it."""
+    return State(np.array([tuple(body.position) for body in bodies], float),
+                 np.array([body.angle for body in bodies], float),
+                 np.array([tuple(body.linear_velocity) for body in bodies], float),
+                 np.array([body.angular_velocity for body in bodies], float))
 
 
 def push(model, bodies, loads):
@@ -182,7 +187,7 @@ def add_joints(world, model, bodies):
     return joints
 
 
-def pushes(model, joints):
-    """Return the forces of joints.  Its binding reports no forces of contacts."""
+def pushes(world, model, joints):
+    """Return the forces of joints.  Its binding reports no forces of contacts.  The world is held, as for the State."""
     return [Push(joint.a, joint.b, np.array(tuple(made.get_constraint_force()), float), n)
             for n, (joint, made) in enumerate(zip(model.joints, joints))]

@@ -76,7 +76,7 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
         step = step_with_forces(space, bodies, forces, dt)
     elif model.loads:
         step = step_with_loads(space, model, bodies, state, dt)
-    return World(step, state, lambda: pushes(bodies, dt))
+    return World(step, state, lambda: pushes(space, bodies, dt))
 
 
 def let_damp(space, model):
@@ -242,8 +242,11 @@ def step_with_loads(space, model, bodies, state, dt):
     return step
 
 
-def pushes(bodies, dt):
-    """Return the contact forces, one for each pair.  Of a joint the engine reports only the size of its impulse."""
+def pushes(space, bodies, dt):
+    """Return the contact forces, one for each pair.  Of a joint the engine reports only the size of its impulse.
+
+    The space is held because contacts end with it.
+    """
     import pymunk
     number, found = {id(body): k for k, body in enumerate(bodies)}, {}
 

@@ -96,14 +96,15 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     advance, take = mujoco.mj_step, mujoco.set_mjcb_passive
     load = forced_by(parts, world, data, order) or pushed_by(parts, world, order)
 
-    def loaded():                                            # the engine has one callback for all worlds
+    def loaded(call, *arguments):                            # the engine has one callback for all worlds
         take(load)
         try:
-            advance(world, data)
+            return call(*arguments)
         finally:
             take(None)
-    return World(loaded if model.loads else lambda: advance(world, data), state,
-                 lambda: pushes(parts, world, data, order))
+    if not model.loads:
+        return World(lambda: advance(world, data), state, lambda: pushes(parts, world, data, order))
+    return World(lambda: loaded(advance, world, data), state, lambda: loaded(pushes, parts, world, data, order))
 
 
 def is_free(parts, k):
@@ -358,7 +359,10 @@ def pushed_by(parts, world, order):
 
 
 def pushes(parts, world, data, order):
-    """Return the forces at the last positions: one for each contact point, one for each joint of the tree."""
+    """Return the forces at the last positions: one for each contact point, one for each joint of the tree.
+
+    The engine's forces of joints leave out what springs and loads do to the bodies beyond.
+    """
     mujoco, found, local = module(), [], np.zeros(6)
     mujoco.mj_forward(world, data)
     mujoco.mj_rnePostConstraint(world, data)
@@ -367,9 +371,18 @@ def pushes(parts, world, data, order):
         mujoco.mj_contactForce(world, data, n, local)
         F = np.array(contact.frame).reshape(3, 3).T @ local[:3]        # on the second
         found.append(Push(number[contact.geom[1]], number[contact.geom[0]], parts.space.push(F)))
+    loads, _ = loads_at(parts.model, data.time, seen(parts, world, data, order))
     for k, (_, n) in parts.above.items():
         if n is not None:
             F = parts.space.push(data.cfrc_int[order[k]][3:])          # on body k, from what carries it
+            F = F - sum(loads[i] for i in range(len(order)) if k in carriers(parts, i))
             joint = parts.model.joints[n]
             found.append(Push(joint.a, joint.b, F if joint.a == k else -F, n))
     return found
+
+
+def carriers(parts, k):
+    """Yield body k, and the bodies above it in the tree that carry it."""
+    while k != WORLD:
+        yield k
+        k = parts.above[k][0] if k in parts.above else WORLD

@@ -701,8 +701,8 @@ def aims_of_pairs(lesson, rng):
     pressed = rng.uniform(-0.6, 0.2, len(speeds)) * np.abs(speeds)
     for k, (a, b, n) in enumerate(zip(*contacts[1:4], strict=True)):
         e, u_n, gap = p.e_of[a] * p.e_of[b], speed_at(state, contacts, k)[0] @ n, contacts.gap[k]
-        came = u_n - pressed[k]
-        bounces = e > 0.0 and -came > max(dt * np.linalg.norm(p.gravity), -pressed[k])
+        came, added = u_n - pressed[k], max(dt * np.linalg.norm(p.gravity), -pressed[k])
+        bounces = e > 0.0 and (-came > added or gap > added * dt)
         truth.append((-np.inf if gap > 0.0 else -e * came) if bounces else (-gap / dt if gap > 0.0 else 0.0))
     return lesson.parting_aims(speeds, pressed, contacts, dt, p), np.array(truth)
 
