@@ -283,7 +283,8 @@ QUANTITIES = {               # as a page shows them, in the order in which they 
     "slip": "residual of Coulomb's law, over g dt [-]",
     "rest": "residual of both at the end, where bodies rest, over g dt [-]",
 }
-MEASURED = {QUANTITIES[name]: f"at most {most:g}, from runs of engines in lesson {lesson}"
+# beside the limits of the laws themselves
+MEASURED = {QUANTITIES[name]: f"at most {most:g} where a rule of the engine breaks it, from runs in lesson {lesson}"
             for name, lesson, most in (("gain", 9, GAINED), ("short", 10, UNREACHED), ("bounce", 10, BOUNCED))}
 MEETING = "short", "bounce"              # judged where bodies meet; their limits were measured on such runs alone
 ITERATED = "normal", "slip"              # what iterations that end early leave while bodies move

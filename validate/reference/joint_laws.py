@@ -29,7 +29,8 @@ QUANTITIES = {
     "energy": "energy gained, less the work of loads, over the largest energy of motion [-]",
 }
 LOST = 2.0                   # times the law's limit that loops closed by springs and dampers may take of the energy [-]
-MEASURED = {QUANTITIES["energy"]: f"at most {LOST:g} (ω dt)², from runs of MuJoCo in lesson 10, which took up to 1.6"}
+MEASURED = {QUANTITIES["energy"]: f"at most {LOST:g} (ω dt)² where a rule of MuJoCo breaks it, from runs in lesson 10, "
+            "which took up to 1.6"}
 
 
 def judged(moments, allowed: JointsAllowed):

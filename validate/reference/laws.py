@@ -43,5 +43,7 @@ def verdict_on(laws, kind, kept):
 
 
 def said(law):
-    """Return a quantity and its value in words."""
-    return f"{law.quantity.removesuffix(' [-]')}: {law.found:.2g}"
+    """Return a quantity and its value in words, with as many digits as tell it from what is allowed."""
+    value = next((text for text in (f"{law.found:.{digits}g}" for digits in (2, 3, 4))
+                  if text != f"{law.allowed:.2g}"), f"{law.found:g}")
+    return f"{law.quantity.removesuffix(' [-]')}: {value}"

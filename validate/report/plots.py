@@ -5,6 +5,7 @@ Colours: Okabe and Ito 2008, which colour-blind readers can distinguish; every c
 
 import json
 import re
+import textwrap
 import warnings
 from hashlib import sha256
 from pathlib import Path
@@ -82,7 +83,7 @@ def convergence(path, result):
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
         # a line has a gap where a run was lost
         seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]
-        order = f": {c['order']:.2f}" if c["order"] is not None else ""
+        order = f": {c['order']:.2f}" if words.is_telling(c) else ""
         own = [(row["dt"], max(error, bottom)) for row, error in words.own_errors(c) if error < TOP]
         if len(lost) < len(seen):
             axes.loglog(*zip(*seen), **look, lw=1.3, label=c["label"] + (order if not own else ""))
@@ -279,6 +280,7 @@ def for_both_schemes(svg):
     return re.sub(r"(<svg[^>]*>)", lambda found: found[1] + style, svg, count=1)
 
 
+DECADE = 1.05                   # length of the shortest logarithmic axis [decades]
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -292,10 +294,14 @@ def _power(x, _):
 def tick(axis):
     """Label powers of ten on a logarithmic axis, and 2 and 5 as well if it has fewer than two of them.
 
-    More labels would overlap.
+    More labels would overlap.  An axis has a decade at least, so that three labels are on it.
     """
     if axis.get_scale() == "log":
-        few = np.ptp(np.log10(axis.get_view_interval())) < 2.0
+        low, high = np.log10(np.sort(axis.get_view_interval()))
+        more = max(0.0, 0.5 * (DECADE - (high - low)))
+        axis.axes.set(**{f"{axis.axis_name}lim": (10.0 ** (low - more), 10.0 ** (high + more))})
+        few = high - low + 2.0 * more < 2.0
+        axis.set_major_locator(LogLocator())
         axis.set_major_formatter(FuncFormatter(_power))
         axis.set_minor_locator(LogLocator(subs=(2, 5)) if few else NullLocator())
         axis.set_minor_formatter(FuncFormatter(_power))
@@ -337,11 +343,12 @@ def _legend_below(figure, axes, title):
     labels = axes.get_legend_handles_labels()[1]
     size = 9 if len(labels) <= MANY else 8
     columns = columns_of(labels, size)
-    lines = -(-len(labels) // columns) + bool(title)
+    axes.set_xlabel(textwrap.fill(axes.get_xlabel(), int(WIDTH / LETTER) - 12))
+    lines = -(-len(labels) // columns) + bool(title) + axes.get_xlabel().count("\n")
     below, height = 0.55 + LINE * size / 9.0 * lines, HEIGHT + LINE * size / 9.0 * lines
     figure.set_size_inches(WIDTH, height)
     left = 0.8
-    figure.subplots_adjust(left / WIDTH, below / height, 1.0 - 0.15 / WIDTH, 1.0 - 0.22 / height)
+    figure.subplots_adjust(left / WIDTH, below / height, 1.0 - 0.25 / WIDTH, 1.0 - 0.22 / height)
     figure.legend(*axes.get_legend_handles_labels(), loc="lower left", bbox_to_anchor=(0.01, 0.0), fontsize=size,
                   title=title, title_fontsize=size, alignment="left", ncols=columns, columnspacing=1.2, borderpad=0.2,
                   handlelength=2.2, labelspacing=0.35)

@@ -43,6 +43,7 @@ LEGEND = {                   # every verdict has one name and one sign
 }
 ARROWS = {"ω": "angular velocity ω", "L": "angular momentum L", "v": "velocity v of the centre", "τ": "torque τ",
           "Rω": "speed Rω of the rim"}                                        # what the arrows of a film in 3D mean
+TOO_STEEP = 1.5              # by which a slope may be larger than the expected order [-]
 BUSY = 0.25                  # cores that other programs use, from which times are doubtful [-]
 BUSY_LOAD = 1.5              # the same where only the load of the machine is known: the run itself counts as 1 [-]
 
@@ -51,7 +52,16 @@ def order(curve):
     """Order of convergence as measured, and in brackets as expected."""
     if curve["expected"] == EXACT:
         return EXACT
-    return f"{'–' if curve['order'] is None else format(curve['order'], '.2f')} ({curve['expected']})"
+    return f"{format(curve['order'], '.2f') if is_telling(curve) else '–'} ({curve['expected']})"
+
+
+def is_telling(curve):
+    """Return whether a measured slope is an order of convergence.
+
+    It is none where nothing should converge, nor where it is far too steep: there the coarsest steps were lost.
+    """
+    order, expected = curve["order"], curve["expected"]
+    return order is not None and not (isinstance(expected, int) and (expected == 0 or order > expected + TOO_STEEP))
 
 
 def with_units(params, table):
@@ -290,7 +300,7 @@ def until(row):
 def best_order(curves):
     """Return the curve of ours that agrees and shows the highest order."""
     agreeing = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES]
-    known = [c for c in agreeing if c["order"] is not None or c["expected"] == EXACT]
+    known = [c for c in agreeing if is_telling(c) or c["expected"] == EXACT]
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 

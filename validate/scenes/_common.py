@@ -27,7 +27,7 @@ def cases_with(parameter, names, cases):
 
 def measured(*parts):
     """Return the field `ablations`: each part that a scene omits and the whole loop of lesson 10 includes."""
-    return dict.fromkeys(parts, "the whole loop of lesson 10 has it, and is measured")
+    return dict.fromkeys(parts, "the whole loop of lesson 10 has it, and a full run measures it")
 
 
 # ---------------------------------------------------------------------------------------------- observed quantities

@@ -433,7 +433,7 @@ def head_on_avoidance(lesson, check):
         "Closest approach", "log₁₀ of the closing speed [m/s]", "log₁₀ of the least gap [m]",
         [log_series("1/(1/reach + u/√(2k)), theory", fine, 1.0 / (1.0 / reach + fine / np.sqrt(2.0 * k)), LINE),
          log_series("Verlet, measured", speeds, gaps, DOTS)],
-        "The two never touch, but at high speed they come so close that the step must shrink with the gap. Avoidance "
+        "Points never touch, but at high speed they come so close that the step must shrink with the gap. Avoidance "
         "does not replace detection.")
 
 

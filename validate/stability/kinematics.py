@@ -274,7 +274,7 @@ def conflicting_targets(lesson, check):
                   law=np.sqrt(2.0 * best.cost), found=np.linalg.norm(e), within=1e-12,
                   saw=f"{name}: |e| = {np.linalg.norm(e):.6f} m, and |Jᵀe| = {np.linalg.norm(e @ J):.0e} m².")
     numbers, measured = np.arange(1.0, len(targets) + 1.0), [f.measured for f in check]
-    return Picture("What no arm can satisfy", "pair of targets", "|e| of the compromise [m]", [
+    return Picture("What no arm can satisfy", "number of the pair of targets", "|e| of the compromise [m]", [
         series("least squares", numbers, [f.predicted for f in check[::2]], LINE),
         series("transpose", numbers, measured[::2], DOTS), series("damped", numbers, measured[1::2], DOTS)],
         "A task is any number of rows stacked into e; the methods stay the same.")

@@ -136,7 +136,7 @@ SCENE = Scene(
         "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend, and the equation would be of fourth degree":
             "short straight pieces of the path lead back to this equation",
-        "response": "the whole loop of lesson 10 has it, and is measured",
+        "response": "the whole loop of lesson 10 has it, and a full run measures it",
         "a cloth in place of the balls: its edges and faces": "triangle_cylinder_gap of this lesson tests them",
     },
 )

@@ -101,6 +101,6 @@ SCENE = Scene(
     ablations={
         "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend": "then the formula is the first step of Newton's method",
-        "response": "the whole loop of lesson 10 has it, and is measured",
+        "response": "the whole loop of lesson 10 has it, and a full run measures it",
     },
 )

@@ -296,8 +296,8 @@ def softly(p, t):
 def too_few(sweeps):
     """Return the reason why this number of sweeps per step does not carry the heavy box, and no error reports it."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
-    return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
-                     "box is inside the light one. It reports no residual, so that nothing warns of it",
+    return Departure(f"a mass ratio of 1,000 already takes 6,912 sweeps, which are {steps:.0f} of its steps. By then "
+                     "the heavy box is inside the light one. It reports no residual, so that nothing warns of it",
                      lambda p, t: np.zeros(1), Whose.DEFAULT)
 
 

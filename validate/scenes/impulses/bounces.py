@@ -1,4 +1,4 @@
-"""A ball dropped from one metre rebounds with 0.8 of its speed: each apex is 0.64 times the one before."""
+"""A ball dropped from one metre rebounds with e times its speed: each apex is e² times the one before."""
 
 from functools import partial
 from itertools import pairwise

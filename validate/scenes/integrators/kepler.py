@@ -35,6 +35,6 @@ SCENE = Scene(
         "the third dimension": planet_in_space,
         "the motion of the sun": "the lighter the planet, the smaller the effect",
         "steps that adapt to the distance": "the scene of the near collision has them",
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "rotation": "the whole loop of lesson 10 has it, and a full run measures it",
     },
 )

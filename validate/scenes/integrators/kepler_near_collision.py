@@ -57,5 +57,5 @@ SCENE = Scene(
     film_seconds=12.6,          # two revolutions [s]
     uses=("one point in the plane", "one step function"),
     ablations={"the third dimension": planet_in_space,
-              "rotation": "the whole loop of lesson 10 has it, and is measured"},
+              "rotation": "the whole loop of lesson 10 has it, and a full run measures it"},
 )

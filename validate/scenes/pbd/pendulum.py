@@ -158,6 +158,6 @@ SCENE = Scene(
     uses=("two coordinates", "one link", "one step function"),
     ablations={
         "the third dimension": in_space(start),
-        "rotation of the bob": "the whole loop of lesson 10 has it, and is measured",
+        "rotation of the bob": "the whole loop of lesson 10 has it, and a full run measures it",
     },
 )

@@ -246,7 +246,7 @@ SCENE = Scene(
     uses=("two coordinates", "links, in sequence", "one step function"),
     ablations={
         "the third dimension": in_space(start),
-        "contact of the rope with itself": "the whole loop of lesson 10 looks for it, and is measured",
+        "contact of the rope with itself": "the whole loop of lesson 10 looks for it, and a full run measures it",
         "bending stiffness": "cloth_step of this lesson has it",
     },
 )

@@ -1,4 +1,4 @@
-"""A block rocks from one lower corner to the other, and each impact removes 5.8 % of its rate.
+"""A block rocks from one lower corner to the other, and each impact removes a part of its rate, 5.8 % of a slender one.
 
 The block is released at half of the angle at which it would tip over.  An impact conserves the angular momentum about
 the new corner, because the impulse acts there and the old corner is free at once.  Our rocking step cuts its step at

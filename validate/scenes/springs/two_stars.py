@@ -133,7 +133,7 @@ SCENE = Scene(
     uses=("two points in the plane", "one force and its reaction", "one step function"),
     ablations={
         "the third dimension": in_space,
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "rotation": "the whole loop of lesson 10 has it, and a full run measures it",
         "a third star": "it has no closed form",
     },
 )

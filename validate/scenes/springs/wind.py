@@ -111,7 +111,7 @@ SCENE = Scene(
     uses=("one point in the plane", "the force of the air", "one step function"),
     ablations={
         "the third dimension": "the acceleration of this scene has two components",
-        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "rotation": "the whole loop of lesson 10 has it, and a full run measures it",
         "a drag that grows with the square of the speed": "a scene of lesson 1 has it",
     },
 )
