@@ -258,10 +258,11 @@ class MuJoCo:
     """A model whose bodies hang on nothing, each with six velocities: of its centre, and about its own axes.
 
     physics: of its bodies, in their order;    pushed: (Motion before) → impulses (n, 3) of springs on their centres
+    state, data: of its world, which are set when that is built
     """
 
-    def __init__(self, world, data, dt, physics, pushed=None):
-        self.data, self.dt, self.physics, self.pushed = data, dt, physics, pushed
+    def __init__(self, world, dt, physics, pushed=None):
+        self.dt, self.physics, self.pushed, self.data = dt, physics, pushed, None
         self.world, self.bodies = world, [k for k in range(world.nbody) if world.body_dofnum[k] == 6]
 
     def motion(self, R):

@@ -62,7 +62,8 @@ def built(product, model, read, watch=None, **settings):
         if watch is None:
             return run
         watching = watch(*made, p, dt)
-        watching.step, watching.state = world.step, world.state      # with the loads of the Model
+        # with the loads of the Model
+        watching.step, watching.state, watching.data = world.step, world.state, world.data
         return run._replace(watched_step=watching.watched)
     return make
 

@@ -24,6 +24,7 @@ class World(NamedTuple):
     state: Callable          # () → State of all bodies, as the Model numbers them; an angle may lack whole turns
     pushes: Callable         # () → [Push, …] of the last step: all that the engine reports of contacts and joints
     close: Callable = lambda: None
+    data: object = None      # the engine's own state, where it keeps that beside its world
 
 
 def unsupported(model, *kinds):

@@ -82,7 +82,7 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     parts = with_damped_joints(Parts(model, start_of(model), Embedding(model.d), *tree(model)), integrator)
     model = parts.model
     world = made(mujoco.MjModel.from_xml_string(xml_of(parts, dt, integrator, time_constant)))
-    data = made(mujoco.MjData(world))
+    data = mujoco.MjData(world)
     first_velocities(parts, world, data)
     order = [0 if only_holds(model, k) else mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}")
              for k in range(len(model.bodies))]
@@ -103,8 +103,9 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
         finally:
             take(None)
     if not model.loads:
-        return World(lambda: advance(world, data), state, lambda: pushes(parts, world, data, order))
-    return World(lambda: loaded(advance, world, data), state, lambda: loaded(pushes, parts, world, data, order))
+        return World(lambda: advance(world, data), state, lambda: pushes(parts, world, data, order), data=data)
+    return World(lambda: loaded(advance, world, data), state, lambda: loaded(pushes, parts, world, data, order),
+                 data=data)
 
 
 def is_free(parts, k):

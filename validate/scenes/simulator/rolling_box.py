@@ -190,8 +190,8 @@ def watch_bullet(bullet, p, dt):
     return watched.Bullet(bullet.pb, dt, None, physics(p), pushed(p, dt))
 
 
-def watch_mujoco(world, data, p, dt):
-    return watched.MuJoCo(world, data, dt, physics(p), pushed(p, dt))
+def watch_mujoco(world, p, dt):
+    return watched.MuJoCo(world, dt, physics(p), pushed(p, dt))
 
 
 RUNNERS = (
