@@ -828,24 +828,36 @@ def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
 
 
-@exercise("6.11", points=0.25, hint="descend only where the boxes of the two nodes touch: that saves the work")
+def displaced(lesson, tree, node, axis, beside):
+    """A false tree: the box of one node is flat, and lies at `beside` along an axis [m]."""
+    low, high = tree.low.copy(), tree.high.copy()
+    low[node, axis] = high[node, axis] = beside
+    return lesson.Tree(low, high, tree.child, tree.first, tree.held, tree.order, tree.item_low, tree.item_high)
+
+
+@exercise("6.11", points=0.25,
+          hint="test the boxes of every pair of nodes, leaves too, before you go on: that saves the work")
 def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
-    """In a false tree, the box of one child of the root is far away. No item of that half may be found."""
-    a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
-    true, other = lesson.build_tree(*a), lesson.build_tree(*b)
-    for half in (1, 2):
-        low, high = true.low.copy(), true.high.copy()
-        low[half] += 1e3
-        high[half] += 1e3
-        lying = lesson.Tree(low, high, true.child, true.first, true.held, true.order, true.item_low, true.item_high)
-        hidden = true.order[true.first[half]:true.first[half] + true.held[half]]
-        expected = touching(*a, *b)
-        seen = expected[~np.isin(expected[:, 0], hidden)]
-        same_pairs("pairs, where the box of one half of tree a is far away", lesson.find_intersections(lying, other),
-                   seen, given="50 and 40 boxes")
-        seen = seen[:, ::-1]
-        same_pairs("pairs, where the box of one half of tree b is far away", lesson.find_intersections(other, lying),
-                   seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
+    """In a false tree, the box of one node is barely beside the other tree. No item of that node may be found.
+
+    Every node but the root takes its turn, as does each side of the other tree; of a tree of many nodes, a few do.
+    """
+    for d, n, m, wide, some in ((2, 50, 40, 9.0, 14), (3, 200, 20, 7.0, 6)):
+        a, b = boxes(draw, n, d, wide), boxes(draw, m, d, wide)
+        true, other = lesson.build_tree(*a), lesson.build_tree(*b)
+        pairs, begin = touching(*a, *b), draw.whole(0, 2 * d - 1)
+        for k, node in enumerate(np.linspace(true.child.max() + 1, 1, some).astype(int), begin):
+            axis, side = k % d, (1.0, -1.0)[k // d % 2]
+            beside = (other.high if side > 0.0 else other.low)[0, axis] + side * 2.0**-10
+            lying = displaced(lesson, true, node, axis, beside)
+            hidden = true.order[true.first[node]:true.first[node] + true.held[node]]
+            seen = pairs[~np.isin(pairs[:, 0], hidden)]
+            same_pairs("pairs, where the box of one node of tree a is beside tree b",
+                       lesson.find_intersections(lying, other), seen, given=f"{n} and {m} boxes, node {node}")
+            seen = seen[:, ::-1]
+            same_pairs("pairs, where the box of one node of tree b is beside tree a",
+                       lesson.find_intersections(other, lying), seen[np.lexsort(seen.T[::-1])],
+                       given=f"{m} and {n} boxes, node {node}")
 
 
 @exercise("6.11", points=0.25,

@@ -550,6 +550,20 @@ edit("6.11", "forgets the first child", "waiting.append((down_a, j))", "pass")
 edit("6.11", "forgets the second child of b", "waiting.append((i, down_b + 1))", "pass")
 edit("6.11", "finds no pair with a tree that is a single leaf", "while len(waiting) > 0",
      "while len(waiting) > 0 and b.child[0] > 0")
+edit("6.11", "searches all items of two nodes below the root, and does not descend",
+     "down_a == 0 and down_b == 0", "i > 0 < j or down_a == 0 and down_b == 0")
+edit("6.11", "searches all items of both nodes where one of them is a leaf",
+     "down_a == 0 and down_b == 0", "down_a == 0 or down_b == 0")
+edit("6.11", "prunes near the root only", "if boxes_touch(", "if max(i, j) > 2 or boxes_touch(")
+edit("6.11", "does not prune at leaves", "if boxes_touch(",
+     "if a.child[i] == b.child[j] == 0 or boxes_touch(")
+edit("6.11", "prunes the first thirty nodes only", "if boxes_touch(", "if max(i, j) > 30 or boxes_touch(")
+edit("6.11", "prunes by the first coordinate only", "boxes_touch(a.low, a.high, i, b.low, b.high, j)",
+     "boxes_touch(a.low[:, :1], a.high[:, :1], i, b.low[:, :1], b.high[:, :1], j)")
+edit("6.11", "prunes by the last coordinate only", "boxes_touch(a.low, a.high, i, b.low, b.high, j)",
+     "boxes_touch(a.low[:, -1:], a.high[:, -1:], i, b.low[:, -1:], b.high[:, -1:], j)")
+edit("6.11", "prunes only nodes that are more than 1 m apart", "boxes_touch(a.low, a.high, i,",
+     "boxes_touch(a.low - 1.0, a.high + 1.0, i,")
 
 
 # 6.12 -----------------------------------------------------------------------------------------------------------
