@@ -171,7 +171,7 @@ def triangle_cylinder_gap(a, b, c, r, R):
 def closest_on_triangle(p, a, b, c):
     """Return the point (3,) of the triangle a b c that is nearest to p (3,).
 
-    N = (b − a) × (c − a),    q = p − ((p − a) · N/N · N) N         the projection of p on the triangle's plane
+    N = (b − a) × (c − a),    q = p − ((p − a) · N)/(N · N) N       the projection of p on the triangle's plane
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
     elsewhere the nearest of the three points closest_on_segment of the edges; nearer(p, q, other) returns q or other
 
@@ -189,7 +189,7 @@ def ball_box(x, r, box):
     y = Rᵀ (x − x_box);   outside: the ball_contact with the point x_box + R q of radius 0, q_i = y_i limited to ±half_i
     inside or on a face (|y_i| ≤ half_i for all i): leave through the nearest face, along the axis i of the least depth
     half_i − |y_i|:
-        n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n
+        n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n,   t = 0
 
     column(box.R, i) is axis i.
     *Source:* Ericson 2005, section 5.1.4, the nearest point of a turned box.

@@ -51,6 +51,16 @@ def frames(draw, d):
     return [axes(draw, d), *(sign * np.roll(np.eye(d), k, axis=0) for k in range(d) for sign in (1.0, -1.0))]
 
 
+def directions(d):
+    """Whole vectors (d,) with one component that is not 0, in each place, and ones whose components add up to 0.
+
+    Who tests whether a vector is 0 by one component, or by their sum, errs there.
+    """
+    rows = [np.array(row) for row in itertools.product((0.0, 1.0, -1.0), repeat=d)]
+    rows = [row for row in rows if np.sum(row != 0.0) == 1 or (row.any() and np.sum(row) == 0.0)]
+    return rows + [np.roll([1.0, 1.0, -2.0], k) for k in range(3 if d == 3 else 0)]
+
+
 def never(quantity, got, given=""):
     """The answer must be infinity: there is no impact."""
     if got is None or np.ndim(got) > 0 or np.asarray(got).dtype.kind not in "iuf":
@@ -65,6 +75,7 @@ def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
     close("gap of the contact [m]", got.gap, gap, tolerance, given)
     close("p_a of the contact [m]", got.p_a, p_a, tolerance, given)
     close("p_b of the contact [m]", got.p_b, p_b, tolerance, given)
+    close("t of the contact [s]: it is there at once", got.t, 0.0, 0.0, given)
 
 
 # ---------------------------------------------------------------------------------------------- points and planes
@@ -119,10 +130,10 @@ def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_ne
 @exercise("6.2", points=0.25,
           hint="d₁ ≤ 0: return t, also of a ball at rest; d₂ < 0: NEVER; else the share of the step is d₁/(d₁ + d₂)")
 def test_a_ball_that_rests_slides_or_falls_along_an_axis_meets_a_plane_when_its_gap_is_gone(lesson, draw):
-    """Whole numbers and powers of two: no round-off."""
+    """Whole numbers and powers of two: no round-off.  Along 4 m, the components of some moves add up to 0."""
     shares = {(2.0, 2.0): np.inf, (0.0, 0.0): 0.0, (-1.0, -1.0): 0.0, (0.0, 2.0): 0.0, (2.0, 0.0): 1.0,
               (2.0, -2.0): 0.5, (6.0, -2.0): 0.75}
-    for rows, (gaps, share), along in itertools.product(frames(draw, 3)[1:], shares.items(), (0.0, 3.0)):
+    for rows, (gaps, share), along in itertools.product(frames(draw, 3)[1:], shares.items(), (0.0, 3.0, 4.0)):
         t, dt, r = float(draw.whole(-2, 2)), 2.0 ** draw.whole(-20, 6), float(draw.whole(0, 1))
         foot = np.floor(draw.sparse(-4.0, 4.0, 3))
         plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
@@ -187,7 +198,8 @@ def test_a_ball_and_a_cylinder_are_nearest_across_the_axis(lesson, draw):
                      n, gap, 1e-11, f"x = {x}, r = {r}, R = {R}")
     for ball, cylinder, foot in itertools.product((r, 0.0), (R, 0.0), (np.array([along, 0.0, 0.0]), np.zeros(3))):
         reach = ball + cylinder
-        for y, z, length in ((0.0, 2.0, 2.0), (-0.5, 0.0, 0.5), (3.0, -4.0, 5.0), (0.0, -R - r, R + r)):
+        for y, z, length in ((0.0, 2.0, 2.0), (-0.5, 0.0, 0.5), (3.0, -4.0, 5.0), (3.0, -3.0, np.sqrt(18.0)),
+                             (0.0, -R - r, R + r)):
             x, n = foot + np.array([0.0, y, z]), np.array([0.0, y, z]) / length
             same_contact(lesson.cylinder_contact(x, ball, cylinder), x - ball * n, foot + cylinder * n, n,
                          length - reach, ROUND_OFF, f"x = {x}, r = {ball}, R = {cylinder}")
@@ -313,11 +325,17 @@ def touches_first(draw, got, t, dt, x_0, x_1, rho, size, given):
 @exercise("6.4", points=0.25,
           hint="a radius of 0, a path along an axis or none at all need no case of their own: test C, B, D and s")
 def test_a_ball_that_rests_or_flies_along_an_axis_touches_the_cylinder_when_it_arrives(lesson, draw):
-    """Both radii together are 2 m.  Whole numbers: only the division rounds."""
+    """Both radii together are 2 m.  Along y or z, with whole numbers, only the division rounds.
+
+    Across both, the components of the move add up to 0; what is exactly at the limit is left out there.
+    """
     shares = {(6.0, 2.0): 1.0, (6.0, 0.0): 2.0 / 3.0, (6.0, -6.0): 1.0 / 3.0, (6.0, 3.0): np.inf, (6.0, 6.0): np.inf,
               (6.0, 8.0): np.inf, (2.0, 2.0): 0.0, (1.0, 1.0): 0.0, (0.0, 0.0): 0.0, (0.0, 6.0): 0.0, (2.0, 6.0): 0.0}
-    for ((begin, end), share), r, k in itertools.product(shares.items(), (0.0, 0.5, 2.0), range(4)):
-        e, along = (np.eye(3)[1], np.eye(3)[2], -np.eye(3)[1], -np.eye(3)[2])[k], np.array([draw.whole(0, 1), 0.0, 0.0])
+    for ((begin, end), share), r, k in itertools.product(shares.items(), (0.0, 0.5, 2.0), range(6)):
+        e, along = np.append(0.0, directions(2)[k]), np.array([draw.whole(0, 1), 0.0, 0.0])
+        if e.all(axis=0, where=[False, True, True]) and 2.0 in (begin, end):
+            continue
+        e = e / np.linalg.norm(e)
         t, dt = float(draw.whole(-2, 2)), 2.0 ** draw.whole(-20, 6)
         x_0, x_1 = along + begin * e, draw.whole(0, 2) * along + end * e
         got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, 2.0 - r)
@@ -377,12 +395,13 @@ def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
                             *((q + aside, q) for q in nearly)):
             close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF,
                   given=f"p = {p}, a = {a}, b = {b}")
-    for e in (*np.eye(1), *np.eye(2), *np.eye(3)):                       # along an axis, from and to the origin, too
+    for e in (*directions(1), *directions(2), *directions(3)):           # from and to the origin, too
         along = 4.0 * e
         for a, share in itertools.product((0.0 * e, -along, np.floor(draw.sparse(-4.0, 4.0, len(e)))),
                                           (-1.0, 0.0, 0.25, 0.5, 1.0, 2.0)):
-            p = a + share * along + draw.sparse(-3.0, 3.0, len(e)) * (1.0 - e)
-            close("nearest point of a segment along an axis [m]", lesson.closest_on_segment(p, a, a + along),
+            aside = draw.sparse(-3.0, 3.0, len(e))
+            p = a + share * along + aside - aside @ e / (e @ e) * e
+            close("nearest point of a segment along a simple direction [m]", lesson.closest_on_segment(p, a, a + along),
                   a + min(1.0, abs(share)) * (share > 0.0) * along, ROUND_OFF, f"p = {p}, a = {a}, b = {a + along}")
 
 
@@ -470,6 +489,11 @@ def test_the_nearest_edge_gives_the_gap_of_a_face_that_is_not_pierced(lesson, dr
         close("gap of a triangle whose plane contains the axis, which does not pass through it [m]",
               lesson.triangle_cylinder_gap(*corners, r, R), shares.min() * np.linalg.norm(way) - R - r, ROUND_OFF,
               f"corners {corners}, r = {r}, R = {R}")
+    for e, k in itertools.product(directions(2), range(3)):              # the first edge is the nearest one
+        up = np.array([-e[1], e[0]])
+        corners = [np.append(draw(-3.0, 3.0), y) for y in np.roll([2.0 * up - 2.0 * e, 2.0 * up + e, 5.0 * up], k, 0)]
+        close("gap of a triangle with an edge across the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R),
+              2.0 * np.linalg.norm(e) - R - r, ROUND_OFF, f"corners {corners}, r = {r}, R = {R}")
     a = np.array([0.0, height, 0.0])
     corners = a, a + np.array([draw(1.0, 3.0), 0.0, 0.0]), np.array([0.0, height + 1.0, draw(-1.0, 1.0)])
     close("gap of a triangle with an edge along the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R),
@@ -582,7 +606,8 @@ def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson,
                 is_nearest("nearest point of the triangle", q, p, corners, size, f"p = {p}, corners {corners.tolist()}")
     # p at the corners, the middles of the edges, inside and beyond, in the triangle's plane and above a point of it
     shares = np.array([*np.eye(3), *(1.0 - np.eye(3)) / 2.0, [0.25, 0.25, 0.5], [2.0, 0.0, -1.0], [1.5, 1.5, -2.0]])
-    for k, rows in enumerate(frames(draw, 3)):
+    balanced = np.array([[[1, 1, 0], [0, 0, 1], [1, -1, 0]], [[1, -1, 0], [1, 1, 1], [1, 1, -2]]], float)
+    for k, rows in enumerate([*frames(draw, 3), *balanced]):                # of balanced ones, n adds up to 0
         corners = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]) @ rows[:2]
         corners = corners - shares[k] @ corners                          # one of them is the origin
         for q in shares @ corners:
@@ -606,7 +631,7 @@ def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
                      np.linalg.norm(away) - r, 1e-11, f"x = {x}, r = {r}, {box}")
 
 
-@exercise("6.8", points=0.125,
+@exercise("6.8", points=0.0625,
           hint="inside, the least half_i − |y_i| determines the face; n points out of it, and p_b lies on it")
 def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
     for axis in range(3):
@@ -632,15 +657,24 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
                 given = f"x = {x}, on or beside a face of {cube}"
                 same_contact(lesson.ball_box(x, r, cube), x - r * n,
                              x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
-    for size in SIZES:                                                   # just outside an edge
-        cube, out = lesson.Box(np.zeros(3), np.eye(3), size * np.ones(3)), size * 2.0**-11
-        x = np.array([size + out, 0.25 * size, -size - out])
-        n, gap = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.sqrt(2.0) * out
-        c = lesson.ball_box(x, size, cube)
-        given = f"x = {x}, r = {size}, just outside an edge of {cube}"
-        close("n of the contact: from b to a", c.n, n, 1e-11, given)
-        close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
-              np.concatenate(([gap - size], x - size * n, x - gap * n)) / size, 1e-11, given)
+
+
+@exercise("6.8", points=0.0625,
+          hint="a centre is inside only if |y_i| ≤ half_i for all i, without a tolerance; t of the contact is 0")
+def test_a_centre_barely_outside_an_edge_or_a_corner_is_not_inside(lesson, draw):
+    """Powers of two: all differences are exact.  Ways out that add up to 0 are among them."""
+    signs = np.array(list(itertools.product((0.0, 1.0, -1.0), repeat=3)))
+    for beyond in signs[np.count_nonzero(signs, axis=1) > 1]:
+        for size, out in itertools.product(SIZES, (2.0**-11, 2.0**-30)):
+            cube, way = lesson.Box(np.zeros(3), np.eye(3), size * np.ones(3)), size * out * beyond
+            x = size * np.where(beyond == 0.0, 0.25, beyond) + way
+            n, gap = beyond / np.linalg.norm(beyond), np.linalg.norm(beyond) * out
+            c = lesson.ball_box(x, size, cube)
+            given = f"x = {x}, r = {size}, {out} of the size outside an edge or a corner of {cube}"
+            close("n of the contact: from b to a", c.n, n, 1e-11, given)
+            close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
+                  np.concatenate(([gap * size - size], x - size * n, x - way)) / size, 1e-11, given)
+            close("t of the contact [s]: it is there at once", c.t, 0.0, 0.0, given)
 
 
 def corners_of(box):
@@ -673,8 +707,9 @@ def touches_box(lesson, x, r, box, size):
         close("depth below that face, over the size [-]: the least", depths[face] / size, -expected / size, KNOWN,
               given)
     close("gap over the size [-]", c.gap / size, (expected - r) / size, KNOWN, given)
-    close("p_a − p_b over the size: gap times n [-]", (c.p_a - c.p_b) / size, c.gap * n / size, KNOWN, given)
-    close("p_a over the size: x − r n [-]", (c.p_a - x) / size, -r * n / size, KNOWN, given)
+    close("p_a − p_b over the size: gap times n [-]", (np.asarray(c.p_a) - c.p_b) / size, c.gap * n / size, KNOWN,
+          given)
+    close("p_a over the size: x − r n [-]", (np.asarray(c.p_a) - x) / size, -r * n / size, KNOWN, given)
 
 
 @exercise("6.8", points=0.25,
@@ -706,7 +741,7 @@ def test_a_swept_box_holds_the_box_at_every_moment_and_no_more(lesson, draw):
         low = draw(-3.0, 3.0, d)
         move = draw(0.5, 5.0, d) * np.resize([1.0, -1.0], d) * (2 * draw.whole(0, 1) - 1)       # of mixed signs
         high = low + draw(0.2, 2.0, d)
-        for way in (move, np.zeros(d)):
+        for way in (move, np.zeros(d), *directions(d)):                  # some components add up to 0
             s = np.linspace(0.0, 1.0, 5)[:, None]
             got = lesson.swept_box(low, high, way)
             close("low corner of the swept box [m]", got[0], (low + s * way).min(axis=0), ROUND_OFF,
@@ -828,24 +863,36 @@ def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
 
 
-@exercise("6.11", points=0.25, hint="descend only where the boxes of the two nodes touch: that saves the work")
+def displaced(lesson, tree, node, axis, beside):
+    """A false tree: the box of one node is flat, and lies at `beside` along an axis [m]."""
+    low, high = tree.low.copy(), tree.high.copy()
+    low[node, axis] = high[node, axis] = beside
+    return lesson.Tree(low, high, tree.child, tree.first, tree.held, tree.order, tree.item_low, tree.item_high)
+
+
+@exercise("6.11", points=0.25,
+          hint="test the boxes of every pair of nodes, leaves too, before you go on: that saves the work")
 def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
-    """In a false tree, the box of one child of the root is far away. No item of that half may be found."""
-    a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
-    true, other = lesson.build_tree(*a), lesson.build_tree(*b)
-    for half in (1, 2):
-        low, high = true.low.copy(), true.high.copy()
-        low[half] += 1e3
-        high[half] += 1e3
-        lying = lesson.Tree(low, high, true.child, true.first, true.held, true.order, true.item_low, true.item_high)
-        hidden = true.order[true.first[half]:true.first[half] + true.held[half]]
-        expected = touching(*a, *b)
-        seen = expected[~np.isin(expected[:, 0], hidden)]
-        same_pairs("pairs, where the box of one half of tree a is far away", lesson.find_intersections(lying, other),
-                   seen, given="50 and 40 boxes")
-        seen = seen[:, ::-1]
-        same_pairs("pairs, where the box of one half of tree b is far away", lesson.find_intersections(other, lying),
-                   seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
+    """In a false tree, the box of one node is barely beside the other tree. No item of that node may be found.
+
+    Every node but the root takes its turn, as does each side of the other tree; of a tree of many nodes, a few do.
+    """
+    for d, n, m, wide, some in ((2, 50, 40, 9.0, 14), (3, 200, 20, 7.0, 6)):
+        a, b = boxes(draw, n, d, wide), boxes(draw, m, d, wide)
+        true, other = lesson.build_tree(*a), lesson.build_tree(*b)
+        pairs, begin = touching(*a, *b), draw.whole(0, 2 * d - 1)
+        for k, node in enumerate(np.linspace(true.child.max() + 1, 1, some).astype(int), begin):
+            axis, side = k % d, (1.0, -1.0)[k // d % 2]
+            beside = (other.high if side > 0.0 else other.low)[0, axis] + side * 2.0**-10
+            lying = displaced(lesson, true, node, axis, beside)
+            hidden = true.order[true.first[node]:true.first[node] + true.held[node]]
+            seen = pairs[~np.isin(pairs[:, 0], hidden)]
+            same_pairs("pairs, where the box of one node of tree a is beside tree b",
+                       lesson.find_intersections(lying, other), seen, given=f"{n} and {m} boxes, node {node}")
+            seen = seen[:, ::-1]
+            same_pairs("pairs, where the box of one node of tree b is beside tree a",
+                       lesson.find_intersections(other, lying), seen[np.lexsort(seen.T[::-1])],
+                       given=f"{m} and {n} boxes, node {node}")
 
 
 @exercise("6.11", points=0.25,
@@ -1065,8 +1112,12 @@ def test_a_cut_segment_keeps_two_ends(lesson, draw):
         for n, first, second in ((rows[0], a, middle), (-rows[0], middle, b)):
             got = numbers("ends of a cut segment [m]", lesson.clip(np.stack((a, b)), n, float(n @ middle)), (2, d),
                           given=f"{a} to {b}")
-            close("ends of a cut segment, sorted by position [m]", got[np.argsort(got @ rows[0])],
-                  [first, second], ROUND_OFF, given=f"{a} to {b}")
+            close("ends of a cut segment, in its order [m]", got, [first, second], ROUND_OFF, given=f"{a} to {b}")
+        for e, side in itertools.product(directions(d), (1.0, -1.0)):    # some components add up to 0
+            begin, on, end = np.floor(draw(-4.0, 4.0, d)) + np.array([-e, 0.0 * e, 3.0 * e])
+            n = side * e / np.linalg.norm(e)
+            close("ends of a cut segment, in its order [m]", lesson.clip(np.stack((begin, end)), n, float(n @ on)),
+                  [begin, on] if side > 0.0 else [on, end], ROUND_OFF, f"{begin} to {end}, n = {n}")
         close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0),
               [a, b], 0.0)
         level = float(rows[0] @ a)
@@ -1271,6 +1322,15 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
         a, b = (lesson.Box(np.floor(draw.sparse(-2.0, 3.0, 3)), AXIS_TURNS[j].copy(), np.floor(draw(1.0, 3.0, 3)))
                 for j in (k % 4, k // 4))
         well_separated(lesson, a, b, 1.0)
+    for k in range(3):                                   # an eighth of a turn: the components of b's axis i add up to 0
+        i, j, R = (k + 1) % 3, (k + 2) % 3, np.eye(3)
+        R[i, i], R[j, i], R[i, j], R[j, j] = np.sqrt(0.5) * np.array([1.0, -1.0, 1.0, 1.0])
+        half = np.floor(draw(1.0, 3.0, (2, 3)))
+        b = lesson.Box(np.floor(draw(-3.0, 3.0, 3)), R, half[0])
+        for apart in (2.0, -9.0):
+            a = lesson.Box(b.x + apart * R[:, i], np.eye(3), half[1])
+            well_separated(lesson, a, b, 1.0)
+            well_separated(lesson, b, a, 1.0)
 
 
 # ---------------------------------------------------------------------------------------------- any two convex bodies
@@ -1378,6 +1438,13 @@ def test_bodies_of_any_kind_are_as_far_apart_as_least_squares_over_all_differenc
                   KNOWN if expected > 0.01 else 1e-8, given)
             holds("p_a", c.p_a, a, given)
             holds("p_b", c.p_b, b, given)
+    for e in (e for d in (2, 3) for e in directions(d)):                 # the first difference has a 0, or adds up to 0
+        a, b = np.floor(draw(-3.0, 4.0, (2, 4, len(e)))) + 0.0
+        a[0], b[1:, 0] = b[0] + 3.0 * e, 9.0
+        c, expected, given = lesson.gjk(a, b), distance(a, b), f"a = {a.tolist()}, b = {b.tolist()}"
+        close("distance of bodies with whole-number corners [m]", c.gap, expected, KNOWN if expected > 0.01 else 1e-8,
+              given)
+        close("t of the contact [s]: it is there at once", c.t, 0.0, 0.0, given)
 
 
 # ---------------------------------------------------------------------------------------------- avoidance
@@ -1422,8 +1489,15 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
             g, strength = near * size, (1.0 / near - 1.0) / near**2 / size**3
             for centre in (corner, 0.0 * corner, (wide + g) * e):
                 got = lesson.repulsion(centre - (wide + g) * e, centre, wide, size, k)
-                close("acceleration near the surface over (1/g − 1/reach)/g² [m⁴/s²]", got / strength, -k * e,
-                      ROUND_OFF * k, f"gap {g} m, radius {wide} m, reach {size} m, k = {k}, centre {centre}")
+                close("acceleration near the surface over (1/g − 1/reach)/g² [m⁴/s²]", np.asarray(got) / strength,
+                      -k * e, ROUND_OFF * k, f"gap {g} m, radius {wide} m, reach {size} m, k = {k}, centre {centre}")
+    for e in (e for d in (2, 3) for e in directions(d)):                 # some components add up to 0
+        for x, centre in ((0.0 * e, -e), (e, 0.0 * e)):
+            size = np.linalg.norm(e)
+            close("acceleration at half the reach from the surface [m/s²]",
+                  lesson.repulsion(x, centre, size - 0.5, 1.0, 2.0), 8.0 * e / size, 1e-11,
+                  f"x = {x}, centre {centre}, gap 0.5 m, reach 1 m, k = 2")
+    centre = draw(-3.0, 3.0, 2)
     for share in (0.0, *draw.within()):
         raises("a position inside the obstacle", BadInput,
                lesson.repulsion, centre + share * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
@@ -1459,7 +1533,18 @@ def test_the_steered_body_is_abreast_of_the_centre_at_the_radius_and_was_nearer_
                 1.0 / np.hypot(1.0, size * tau / speed), 1.0, given)
 
 
-@exercise("6.17", points=0.5,
+@exercise("6.17", points=0.25,
+          hint="at rest all components of v are 0, and straight ahead all of y: test |v| and |y|, not a sum")
+def test_a_body_whose_velocity_or_offset_adds_up_to_0_steers_like_any_other(lesson, draw):
+    for v, tau, offset in itertools.product([*directions(2), np.ones(2)], range(1, 25), (0.5, -0.5)):
+        left, x = np.array([-v[1], v[0]]), np.floor(draw(-9.0, 9.0, 2))
+        centre, radius = x + tau * v + offset * left, np.linalg.norm(v)
+        close("acceleration, times τ² over the radius [-]",
+              np.asarray(lesson.steer(x, v, centre, radius, 40.0)) * tau**2 / radius, -2.0 * offset * left / radius,
+              1e-11, f"x = {x}, v = {v}, centre {centre}, radius {radius}")
+
+
+@exercise("6.17", points=0.25,
           hint="obstacle behind, too far ahead, far enough aside, or at rest: 0; straight ahead: turn left")
 def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
     rows = axes(draw, 2)

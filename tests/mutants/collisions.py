@@ -89,6 +89,11 @@ edit("6.2", "divides by the distance after only", "(before + after)", "after")
 edit("6.2", "finds no impact of a ball that does not move",
      "before <= 0.0:", "np.all(x_0 == x_1): return NEVER\n    if before <= 0.0:")
 edit("6.2", "takes steps of at most 1 s", "t + dt * before", "t + min(dt, 1.0) * before")
+edit("6.2", "takes a ball for at rest where the components of its move add up to 0",
+     "after < 0.0", "after < 0.0 or np.sum(x_1 - x_0) == 0.0")
+edit("6.2", "takes a ball for at rest where the first component of its move is 0",
+     "after < 0.0", "after < 0.0 or x_1[0] == x_0[0]")
+
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
@@ -121,6 +126,10 @@ edit("6.3", "takes the part across the axis for the foot", "np.array([x[0], 0.0,
 edit("6.3", "adds the ball's radius to the cylinder's, and keeps it", "0.0]), R)", "0.0]), R + r)")
 edit("6.3", "returns the centre as both points of a ball on the axis",
      "return", "if not x[1:].any(): return Contact(x, x, np.array([0.0, 1.0, 0.0]), -R - r, 0.0)\n    return")
+edit("6.3", "takes a ball for on the axis where y + z is 0", "return",
+     "if x[1] + x[2] == 0.0: return Contact(x, x, np.array([0.0, 1.0, 0.0]), -R - r, 0.0)\n    return")
+edit("6.3", "returns NEVER for the time of a contact", "R)", "R)._replace(t=NEVER)")
+
 
 
 # 6.4 ------------------------------------------------------------------------------------------------------------
@@ -197,6 +206,11 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
 edit("6.4", "compares the share s of the step with dt, not with 1", "s > 1.0", "s > dt")
 edit("6.4", "misses a ball of radius 0, a point", "D < 0.0", "r == 0.0 or D < 0.0")
 edit("6.4", "finds no impact at once on the axis itself", "C <= 0.0", "C <= 0.0 < y @ y")
+edit("6.4", "takes a ball for at rest where the components of its move add up to 0",
+     "B >= 0.0 or", "np.sum(w) == 0.0 or B >= 0.0 or")
+edit("6.4", "takes a ball for at rest where it does not move along y", "B >= 0.0 or", "w[0] == 0.0 or B >= 0.0 or")
+edit("6.4", "takes a ball for at rest where it does not move along z", "B >= 0.0 or", "w[1] == 0.0 or B >= 0.0 or")
+
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
@@ -242,6 +256,10 @@ edit("6.5", "adds the share to the other end", "return a + np", "return b + np")
 edit("6.5", "subtracts the share from a", "return a + np", "return a - np")
 edit("6.5", "returns the first end for a point at the second one", "return a +", "return a if np.all(p == b) else a +")
 edit("6.5", "takes points on one coordinate for ends", "return a +", "return a if len(p) == 1 else a +")
+edit("6.5", "refuses a segment whose components add up to 0", "length_squared == 0.0", "np.sum(along) == 0.0")
+edit("6.5", "refuses a segment without a first component", "length_squared == 0.0", "along[0] == 0.0")
+edit("6.5", "refuses a segment without a last component", "length_squared == 0.0", "along[-1] == 0.0")
+
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
@@ -283,6 +301,10 @@ edit("6.6", "takes the first two coordinates: projects along z",
 edit("6.6", "has a wrong sign in a cross product", "c[1] * a[2] - c[2] * a[1]", "a[1] * c[2] - a[2] * c[1]")
 edit("6.6", "returns a gap of zero where a corner lies on the axis", "turns = np.array(",
      "if not (a[1:].any() and b[1:].any() and c[1:].any()): return 0.0\n    turns = np.array(")
+edit("6.6", "takes an edge for parallel to the axis where the components across add up to 0",
+     "np.minimum(edge_axis_distance(a, b), edge",
+     "np.minimum(edge_axis_distance(a, b) if np.sum(b[1:] - a[1:]) else np.sqrt(a[1:] @ a[1:]), edge")
+
 
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
@@ -348,6 +370,11 @@ edit("6.7", "takes q as inside where one of the three tests holds",
 edit("6.7", "projects p itself, not p − a", "dot(p - a, N) /", "dot(p, N) /")
 edit("6.7", "returns the first corner for a point in the plane of the triangle",
      "dot(N, N) * N", "dot(N, N) * N if dot(p - a, N) else a")
+edit("6.7", "refuses a triangle whose normal has components that add up to 0",
+     "if not np.sqrt", "if np.sum(N) == 0.0 or not np.sqrt")
+edit("6.7", "refuses a triangle whose normal has no first component", "if not np.sqrt", "if N[0] == 0.0 or not np.sqrt")
+edit("6.7", "refuses a triangle whose normal has no last component", "if not np.sqrt", "if N[2] == 0.0 or not np.sqrt")
+
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
@@ -400,6 +427,21 @@ edit("6.8", "rotates q by the transpose", "box.R @ q", "box.R.T @ q")
 edit("6.8", "treats a point on an edge as outside", "depth[i] < 0.0", "depth[i] < 0.0 or np.sum(depth == 0.0) > 1")
 edit("6.8", "takes the middle of the box for a point beyond the middle of a face",
      "np.minimum(box.half, np.maximum(-box.half, y))", "np.minimum(box.half, np.maximum(-box.half, y)) * np.all(y)")
+edit("6.8", "treats a centre as inside that is outside by less than a ten-thousandth of an edge",
+     "depth[i] < 0.0", "np.any(depth < -1e-4 * box.half)")
+edit("6.8", "treats a centre as inside that is outside by less than a millionth of an edge",
+     "depth[i] < 0.0", "np.any(depth < -1e-6 * box.half)")
+edit("6.8", "takes a centre for inside where the components of the way to the nearest point add up to 0",
+     "if depth[i] < 0.0", "if depth[i] < 0.0 and np.sum(y - np.minimum(box.half, np.maximum(-box.half, y)))")
+edit("6.8", "returns NEVER for the time of a contact inside", "-depth[i] - r, 0.0", "-depth[i] - r, NEVER")
+edit("6.8", "returns NEVER for the time of a contact outside", "q, 0.0)", "q, 0.0)._replace(t=NEVER)")
+
+
+@right("6.8", "with lists in the contact")
+def ball_box(x, r, box):
+    c = worked.ball_box(x, r, box)
+    return worked.Contact(list(c.p_a), list(c.p_b), list(c.n), float(c.gap), 0)
+
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -433,6 +475,9 @@ edit("6.9", "adds the move to the width: the upper corner from the lower one",
      "np.maximum(high, high + move)", "np.maximum(high, low + move)")
 edit("6.9", "leaves a flat box where it is",
      "return", "move = 0.0 * move if np.any(low == high) else move; return")
+edit("6.9", "leaves a box where it is if the components of its move add up to 0",
+     "return", "move = 0.0 * move if np.sum(move) == 0.0 else move; return")
+
 
 
 # 6.10 -----------------------------------------------------------------------------------------------------------
@@ -550,6 +595,20 @@ edit("6.11", "forgets the first child", "waiting.append((down_a, j))", "pass")
 edit("6.11", "forgets the second child of b", "waiting.append((i, down_b + 1))", "pass")
 edit("6.11", "finds no pair with a tree that is a single leaf", "while len(waiting) > 0",
      "while len(waiting) > 0 and b.child[0] > 0")
+edit("6.11", "searches all items of two nodes below the root, and does not descend",
+     "down_a == 0 and down_b == 0", "i > 0 < j or down_a == 0 and down_b == 0")
+edit("6.11", "searches all items of both nodes where one of them is a leaf",
+     "down_a == 0 and down_b == 0", "down_a == 0 or down_b == 0")
+edit("6.11", "prunes near the root only", "if boxes_touch(", "if max(i, j) > 2 or boxes_touch(")
+edit("6.11", "does not prune at leaves", "if boxes_touch(",
+     "if a.child[i] == b.child[j] == 0 or boxes_touch(")
+edit("6.11", "prunes the first thirty nodes only", "if boxes_touch(", "if max(i, j) > 30 or boxes_touch(")
+edit("6.11", "prunes by the first coordinate only", "boxes_touch(a.low, a.high, i, b.low, b.high, j)",
+     "boxes_touch(a.low[:, :1], a.high[:, :1], i, b.low[:, :1], b.high[:, :1], j)")
+edit("6.11", "prunes by the last coordinate only", "boxes_touch(a.low, a.high, i, b.low, b.high, j)",
+     "boxes_touch(a.low[:, -1:], a.high[:, -1:], i, b.low[:, -1:], b.high[:, -1:], j)")
+edit("6.11", "prunes only nodes that are more than 1 m apart", "boxes_touch(a.low, a.high, i,",
+     "boxes_touch(a.low - 1.0, a.high + 1.0, i,")
 
 
 # 6.12 -----------------------------------------------------------------------------------------------------------
@@ -594,6 +653,13 @@ edit("6.12", "does not start the minimum again for each edge",
 edit("6.12", "uses the first hundred corners of b only", "range(len(b))", "range(min(len(b), 100))")
 edit("6.12", "skips an edge that touches the other polygon exactly",
      "not gap <= greatest", "gap and not gap <= greatest")
+edit("6.12", "refuses an edge whose components add up to 0", "n, gap = outward(a, i), np.inf",
+     'if np.sum(a[(i + 1) % len(a)] - a[i]) == 0.0: raise BadInput("an edge", 0.0, "")\n'
+     "        n, gap = outward(a, i), np.inf")
+edit("6.12", "refuses an edge without a first component", "n, gap = outward(a, i), np.inf",
+     'if a[(i + 1) % len(a), 0] == a[i, 0]: raise BadInput("an edge", 0.0, "")\n'
+     "        n, gap = outward(a, i), np.inf")
+
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
@@ -643,6 +709,10 @@ edit("6.13", "adds a crossing only where it comes in", "s_i * s_j < 0.0", "s_i >
 edit("6.13", "adds the whole edge vector", "s_i / (s_i - s_j) * (y[j] - y[i])", "s_i / (s_i - s_j) * y[j]")
 edit("6.13", "has room for 100 corners only", "2 * len(y)", "100")
 edit("6.13", "drops the ends of a segment that are on the plane", "s_i <= 0.0", "s_i <= 0.0 and (k > 2 or s_i < 0.0)")
+edit("6.13", "skips an edge whose components add up to 0", "s_i * s_j < 0.0", "s_i * s_j < 0.0 != np.sum(y[j] - y[i])")
+edit("6.13", "skips an edge without a first component", "s_i * s_j < 0.0", "s_i * s_j < 0.0 != y[j, 0] - y[i, 0]")
+edit("6.13", "puts the crossing of a segment behind its second corner", "(k > 2 or i == 0)", "(k != 2 or i == 1)")
+
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
@@ -702,6 +772,10 @@ edit("6.14", "skips an axis along which the boxes touch exactly",
      "not gap <= greatest +", "gap and not gap <= greatest +")
 edit("6.14", "takes the faces alone where a is not rotated",
      "range(15)", "range(6 if np.all(a.R == np.eye(3)) else 15)")
+edit("6.14", "skips an axis whose components add up to 0", "dot(axis, axis) > 0.0", "np.sum(axis) != 0.0")
+edit("6.14", "skips an axis without a first component", "dot(axis, axis) > 0.0", "axis[0] != 0.0")
+edit("6.14", "skips an axis without a last component", "dot(axis, axis) > 0.0", "axis[2] != 0.0")
+
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
@@ -748,6 +822,14 @@ edit("6.15", "stops where it should go on, and goes on where it should stop", "i
 edit("6.15", "adds the corner of b in place of subtracting it", "a[i] - b[j])", "a[i] + b[j])")
 edit("6.15", "exchanges the bodies where both are single points", "weights @ p, 0.0, weights @ q, 0.0",
      "*((b[0], 0.0, a[0], 0.0) if len(a) == len(b) == 1 else (weights @ p, 0.0, weights @ q, 0.0))")
+edit("6.15", "takes the bodies for overlapping where the components of v add up to 0",
+     "if far_enough(", "if np.sum(v) == 0.0 or far_enough(")
+edit("6.15", "takes the bodies for overlapping where the first component of v is 0",
+     "if far_enough(", "if v[0] == 0.0 or far_enough(")
+edit("6.15", "takes the bodies for overlapping where the last component of v is 0",
+     "if far_enough(", "if v[-1] == 0.0 or far_enough(")
+edit("6.15", "returns NEVER for the time of a contact", "weights @ q, 0.0)", "weights @ q, 0.0)._replace(t=NEVER)")
+
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
@@ -798,6 +880,16 @@ edit("6.16", "repels by the gap itself, not by one over it",
      "k * (1.0 / g - 1.0 / reach) / (g * g * distance) * r", "k * (reach - g) / distance * r")
 edit("6.16", "takes a k of at most 10 m⁴/s²", "else k *", "else min(k, 10.0) *")
 edit("6.16", "gives an obstacle of radius 0 no field", "g >= reach", "radius == 0.0 or g >= reach")
+edit("6.16", "refuses a body whose offset has components that add up to 0",
+     "not g > 0.0", "np.sum(r) == 0.0 or not g > 0.0")
+edit("6.16", "refuses a body whose offset has no first component", "not g > 0.0", "r[0] == 0.0 or not g > 0.0")
+edit("6.16", "gives no field where the offset has no last component", "g >= reach", "g >= reach or r[-1] == 0.0")
+
+
+@right("6.16", "as a list")
+def repulsion(x, centre, radius, reach, k):
+    return list(worked.repulsion(x, centre, radius, reach, k))
+
 
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
@@ -863,6 +955,11 @@ edit("6.17", "divides by the square of the speed for the time",
 edit("6.17", "takes the distance for the time: does not divide by the speed",
      "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along")
 edit("6.17", "steers aside from a disc of radius 0", "offset >= radius", "offset >= radius > 0.0")
+edit("6.17", "treats v as zero where its components add up to 0", "speed == 0.0", "np.sum(v) == 0.0")
+edit("6.17", "treats v as zero where its second component is zero", "speed == 0.0", "v[1] == 0.0")
+edit("6.17", "treats an offset as head-on where its components add up to 0", "offset > 0.0", "np.sum(y) != 0.0")
+edit("6.17", "treats an offset as head-on where its first component is zero", "offset > 0.0", "y[0] != 0.0")
+
 
 
 # 6.18 --------------------------------------------------------------------------------------------------------------
