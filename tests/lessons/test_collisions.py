@@ -54,7 +54,7 @@ def frames(draw, d):
 def directions(d):
     """Whole vectors (d,) with one component that is not 0, in each place, and ones whose components add up to 0.
 
-    Who tests whether a vector is 0 by one component, or by their sum, errs there.
+    A test for zero by one component, or by their sum, errs there.
     """
     rows = [np.array(row) for row in itertools.product((0.0, 1.0, -1.0), repeat=d)]
     rows = [row for row in rows if np.sum(row != 0.0) == 1 or (row.any() and np.sum(row) == 0.0)]

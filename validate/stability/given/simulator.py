@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from scipy.optimize import lsq_linear
+from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from solutions.given import passing
@@ -1332,7 +1333,7 @@ def share_of_a_touch(lesson, rng):
 def share_of_a_turn(lesson, rng):
     """Turn a bar about its centre, at a height h over a plane that it is parallel to at first:  a sin θ + b cos θ = h.
 
-    In a step the angle grows evenly in the plane, and tan ½θ in space.
+    In a step the angle grows evenly, in the plane and in space.
     """
     d, dt, (a, b), wide = rng.choice((2, 3)), 0.1, rng.uniform((0.8, 0.2), (1.2, 0.3)), rng.uniform(0.4, 0.8)
     h, turn, side = rng.uniform(1.5 * b, a - b), rng.uniform(0.5, 0.8) * np.pi, rng.choice((-1.0, 1.0))
@@ -1344,11 +1345,12 @@ def share_of_a_turn(lesson, rng):
         model.Body(tuple(h * n), 1.0, bar, q=q if d == 2 else tuple(q)),
         model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(n)))], (0.0,) * d))
     now, omega = loop.state.q.copy(), loop.state.omega.copy()
-    omega[0] = side * (turn if d == 2 else 2.0 * np.tan(0.5 * turn) * R[:, 1]) / dt
-    now[0] = q + dt * omega[0] if d == 2 else quaternion_from_matrix(turned_by(omega[0], dt) @ R)
+    omega[0] = side * turn * (1.0 if d == 2 else R[:, 1]) / dt
+    now[0] = q + dt * omega[0] if d == 2 else quaternion_from_matrix(
+        Rotation.from_rotvec(dt * omega[0]).as_matrix() @ R)
     share = loop.touch(loop.bounds, loop.narrow, loop.state, loop.state._replace(q=now, omega=omega), dt, loop.p)
     touch = np.arcsin(h / np.hypot(a, b)) - np.arctan2(b, a)
-    return share, touch / turn if d == 2 else np.tan(0.5 * touch) / np.tan(0.5 * turn)
+    return share, touch / turn
 
 
 @random_law("A step is tested where the way and the turn of a body may take a point farther than half of the smallest "
