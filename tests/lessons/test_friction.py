@@ -44,6 +44,21 @@ def along_surface(draw, axes, size):
     return size * (np.cos(heading) * axes[1] + np.sin(heading) * axes[2])
 
 
+def plain_pairs():
+    """Pairs (n, along) of unit vectors (d,), a normal and a direction along its surface, in 2 and 3 dimensions.
+
+    All coordinates of `along` but one are 0, or they add up to exactly 0.  A test for zero that looks at one
+    coordinate, or at the sum, the product or the largest of them, takes some of these vectors for zero.
+    """
+    pairs = []
+    for d in (2, 3):
+        axes = np.eye(d)
+        pairs += [(axes[k], axes[i]) for k, i in itertools.permutations(range(d), 2)]
+        pairs += [(axes[k], np.sqrt(0.5) * (axes[k - 2] - axes[k - 1])) for k in range(d) if d == 3]
+    pairs.append((np.sqrt([0.5, 0.5]), np.sqrt([0.5, 0.5]) * [1.0, -1.0]))
+    return [(n, sign * along) for n, along in pairs for sign in (1.0, -1.0)]
+
+
 # ---------------------------------------------------------------------------------------------- at rest and sliding
 
 @exercise("3.1", points=1, hint="the part of F against n: −F · n, but never less than zero")
@@ -71,6 +86,11 @@ def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
             close("friction on a body that holds [N]", got, -pull, ROUND_OFF,
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
+    for n, along in plain_pairs():
+        pull = draw(0.1, 0.9) * mu * load * along
+        close("friction on a body that a pull along an axis or a diagonal does not move [N]",
+              lesson.static_friction(pull - load * n, n, mu), -pull, ROUND_OFF,
+              given=f"pull {pull} N, load {load} N, n = {n}, μ = {mu}")
 
 
 @exercise("3.2", points=0.25,
@@ -84,6 +104,11 @@ def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
             expected = -friction * load * pull / np.linalg.norm(pull)
             close("friction on a body that slips [N]", got, expected, ROUND_OFF,
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
+    for n, along in plain_pairs():
+        pull = draw(1.1, 3.0) * mu * load * along
+        close("friction on a body that a pull along an axis or a diagonal moves [N]",
+              lesson.static_friction(pull - load * n, n, mu), -mu * load * along, ROUND_OFF,
+              given=f"pull {pull} N, load {load} N, n = {n}, μ = {mu}")
 
 
 @exercise("3.2", points=0.25,
@@ -123,6 +148,11 @@ def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(le
             # Friction has the direction of v_t, whose round-off is 1e-16 of v.
             close("friction on a sliding body [N]", got, -mu * load * direction, 1e-8 if speed < 1e-3 else 1e-11,
                   given=f"F = {F} N, speed {speed} m/s, sinking {sinking} m/s, μ = {mu}")
+    for n, along in plain_pairs():
+        v = draw(0.5, 9.0) * along
+        close("friction on a body that slides along an axis or a diagonal [N]",
+              lesson.kinetic_friction(-load * n, v, n, mu), -mu * load * along, ROUND_OFF,
+              given=f"load {load} N, v = {v} m/s, n = {n}, μ = {mu}")
 
 
 @exercise("3.3", points=0.5, hint="where v_t is zero there is no direction to oppose: return zeros before dividing")
@@ -174,6 +204,9 @@ def test_a_block_holds_up_to_the_angle_whose_tangent_is_mu(lesson, draw):
                         (draw(0.2, 0.9) * edge, 0.0)):
         close("acceleration of a block that holds [m/s²]", lesson.incline_acceleration(theta, mu, mu_k, g), 0.0, 0.0,
               given=f"θ = {theta}, μ_s = {mu}, μ_k = {mu_k}")
+    tiny = draw(1e-9, 2e-9)                              # its sine and its tangent are the same float, its cosine is 1
+    close("acceleration where sin θ is exactly μ_s cos θ [m/s²]: the block holds",
+          lesson.incline_acceleration(tiny, tiny, 0.5 * tiny, g), 0.0, 0.0, given=f"θ = {tiny}, μ_s = {tiny}")
     between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g),
             1e-12, 2e-5 * g, given=f"μ = {mu}")
     for mu_s in (0.0, mu):
@@ -212,7 +245,7 @@ def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
         left = energies(v, m, np.asarray(J, dtype=float)[None])[0]
         between("remaining kinetic energy [J]: the least that any impulse in the cone leaves", left,
                 0.0, energies(v, m, allowed).min() + ROUND_OFF, given=given)
-        close("remaining speed [m/s]", np.linalg.norm(v + J / m), max(0.0, 1.0 - share) * speed, ROUND_OFF,
+        close("remaining speed [m/s]", np.linalg.norm(v + np.asarray(J) / m), max(0.0, 1.0 - share) * speed, ROUND_OFF,
               given=given)
 
 
@@ -234,10 +267,10 @@ def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(les
     for mu in (np.inf, draw(0.2, 1.0)):
         close("impulse where j_n = 0 [N s]", lesson.friction_impulse(v, m, 0.0, mu), still, 0.0,
               given=f"v_t = {v}, μ = {mu}")
-    along = draw(1.0, 3.0, 3) * np.eye(3)
-    for v in (*along, along[0, :2], along[0, :1]):
-        close("impulse on a body that slides along an axis [N s]",
-              lesson.friction_impulse(v, m, 0.5 * m, 0.8), -0.4 * m * (v > 0.0), ROUND_OFF, given=f"v_t = {v}, m = {m}")
+    for along in (*(along for _, along in plain_pairs()), np.ones(1), -np.ones(1)):
+        v = draw(1.0, 3.0) * along
+        close("impulse on a body that slides along an axis or a diagonal [N s]",
+              lesson.friction_impulse(v, m, 0.5 * m, 0.8), -0.4 * m * along, ROUND_OFF, given=f"v_t = {v}, m = {m}")
     raises("a negative μ", BadInput, lesson.friction_impulse, v, m, j_n, -1.0)
 
 
@@ -260,6 +293,13 @@ def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
         expected = [-np.sign(y) * min(abs(y), 1.0) * limit for y in (first, second)]
         close("components of the impulse along t_1, t_2 and n [N s]", np.stack([t_1, t_2, n]) @ J, [*expected, 0.0],
               ROUND_OFF, given=given)
+    for normal, first in plain_pairs():
+        if len(normal) == 3:
+            second = np.cross(normal, first)
+            for slip in (first, second, np.sqrt(0.5) * (first + second)):
+                close("impulse on a body that slides along an axis or a diagonal, and stops [N s]",
+                      lesson.pyramid_impulse(slip, m, 10.0, 1.0, first, second), -m * slip, ROUND_OFF,
+                      given=f"v_t = {slip} m/s, m = {m} kg, t_1 = {first}, t_2 = {second}")
     for load, friction in ((0.0, np.inf), (0.0, mu), (limit, 0.0)):
         close("impulse where μ or j_n is 0 [N s]", lesson.pyramid_impulse(v, m, load, friction, t_1, t_2), np.zeros(3),
               0.0, given=f"v_t = {v}, j_n = {load}, μ = {friction}")

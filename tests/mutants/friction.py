@@ -20,6 +20,13 @@ def unit(y):
     return y / size(y) if size(y) > 0.0 else 0.0 * y
 
 
+def partial_tests(of):
+    """(in words, in code): numbers of a vector, the text `of`, that a careless test for zero asks in its place."""
+    return [(words, code.format(of)) for words, code in (
+        ("its first coordinate", "{}[0]"), ("its last coordinate", "{}[-1]"), ("its largest coordinate", "np.max({})"),
+        ("the sum of its coordinates", "np.sum({})"), ("the product of its coordinates", "np.prod({})"))]
+
+
 # 3.1 ------------------------------------------------------------------------------------------------------------
 @right("3.1", "one by one")
 def normal_force(F, n):
@@ -76,6 +83,10 @@ edit("3.2", "compares the squared force with the limit", "size <= limit", "size 
 edit("3.2", "compares the size of F, not that of its tangential part, with the limit", "size <= limit",
      "np.sqrt(F @ F) <= limit")
 edit("3.2", "holds a body that nothing presses", "size <= limit", "size <= limit or F @ n == 0.0")
+for words, test in partial_tests("F_t"):
+    edit("3.2", f"takes a pull for none if {words} is 0", "return -", f"return 0.0 * F_t if {test} == 0.0 else -")
+    edit("3.2", f"does not limit the friction against a pull if {words} is 0", "size <= limit",
+         f"size <= limit or {test} == 0.0")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -108,6 +119,8 @@ edit("3.3", "limits the friction to the force along the surface, as at rest", "c
 edit("3.3", "divides by the speed of the whole motion, not by that along the surface", "-limit / speed",
      "-limit / np.sqrt(v @ v)")
 edit("3.3", "divides by zero where the whole motion is along n", "speed > 0.0", "np.any(v)")
+for words, test in partial_tests("v_t"):
+    edit("3.3", f"takes a slip for none if {words} is 0", "speed > 0.0", f"{test} != 0.0")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -147,6 +160,7 @@ edit("3.4", "reverses the difference: friction minus gravity",
 edit("3.4", "compares the angle itself with μ",
      "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))", "theta <= cone_radius(mu_s, 1.0)")
 edit("3.4", "takes the static coefficient for a block that slides", "cone_radius(mu_k", "cone_radius(mu_s")
+edit("3.4", "slides exactly at the limit of static friction", "<= cone_radius(mu_s", "< cone_radius(mu_s")
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
@@ -178,6 +192,14 @@ edit("3.5", "returns a change of velocity, not an impulse, when it stops the bod
 edit("3.5", "divides by the mass", "return -m * v_t", "return -v_t / m")
 edit("3.5", "forgets the mass in the minimum", "np.minimum(limit, m * speed)", "np.minimum(limit, speed)")
 edit("3.5", "stops whatever slides along an axis", "m * speed <= limit", "m * speed <= limit or np.any(v_t == 0.0)")
+for words, test in partial_tests("v_t"):
+    edit("3.5", f"takes a slip for none if {words} is 0", "return -m",
+         f"return 0.0 * v_t if {test} == 0.0 else -m")
+
+
+@right("3.5", "as a list")
+def friction_impulse(v_t, m, j_n, mu):
+    return worked.friction_impulse(v_t, m, j_n, mu).tolist()
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
@@ -225,6 +247,9 @@ edit("3.6", "shortens the impulse of the pyramid to the radius of the cone", "re
      "return -min(1.0, limit / max(np.hypot(first, second), 1e-300)) * (first * t_1 + second * t_2)")
 edit("3.6", "leaves out a body that slides along one of the tangents", "return -first * t_1 - second * t_2",
      "return (-first * t_1 - second * t_2) * (first * second != 0.0)")
+for words, test in partial_tests("v_t"):
+    edit("3.6", f"takes a slip for none if {words} is 0", "return -first",
+         f"return 0.0 * v_t if {test} == 0.0 else -first")
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
