@@ -340,6 +340,30 @@ def tethered_acceleration(t, x, v, p):
     return p.gravity + np.cos(p.omega * t) * p.drive - 1000.0 * (x - (p.n + p.drive))
 
 
+def resisted_acceleration(t, x, v, p):
+    """The load of a Block that a spring pulls to the origin and a fluid slows: each of t, x and v changes it."""
+    return p.gravity + np.cos(p.omega * t) * p.drive - 40.0 * x - 0.2 * v
+
+
+def resisted_slide(p, to, t, x, speed):
+    """Return (way, speed) along `to` after τ, as functions of τ, of a slide under resisted_acceleration.
+
+    It is a midpoint step along a straight line, written with numbers in place of vectors.  The height of x over the
+    origin is part of the load.
+    """
+    brake = p.mu_k * (40.0 * (x @ p.n) - p.gravity @ p.n)
+
+    def a(t, s, u):
+        return np.cos(p.omega * t) * (p.drive @ to) - 40.0 * s - 0.2 * u - brake
+
+    def halfway(tau):
+        return speed + 0.5 * tau * a(t, x @ to, speed)
+
+    def end(tau):
+        return speed + tau * a(t + 0.5 * tau, x @ to + 0.5 * tau * speed, halfway(tau))
+    return lambda tau: tau * halfway(tau), end
+
+
 def run(lesson, step, p, x, v, dt, steps, t=0.0):
     for n in range(steps):
         x, v = step(lesson.driven_acceleration, t + n * dt, x, v, dt, p)
@@ -395,7 +419,7 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     p = block(lesson, axes[0], mu, mu, -G * axes[0], drive, omega)
     x = along_surface(draw, axes, 1.0)
     v = along_surface(draw, axes, draw(1.0, 3.0))
-    before = x.copy(), v.copy()
+    begin, before = x, (x.copy(), v.copy())
     x_new, v_new = lesson.sliding_step(lesson.driven_acceleration, t, x, v, dt, p)
     given = f"{p}, t = {t} s, dt = {dt} s, v = {v} m/s"
     now = drive * np.cos(omega * t)
@@ -407,7 +431,13 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     close("displacement over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
     close("velocity under the load of its place [m/s]",
           lesson.sliding_step(tethered_acceleration, t, anchor(p), v, dt, p)[1], v_new, ROUND_OFF, given=given)
-    close("input x and v after the call: return new arrays", np.array((x, v)), np.array(before), 0.0)
+    x = along_surface(draw, axes, 0.05) + draw(0.05, 0.1) * axes[0]
+    a = resisted_acceleration(t, x, v, p)
+    free = v + dt * (a - (a @ axes[0]) * axes[0])
+    close("velocity where the acceleration depends on t, x and v [m/s]",
+          lesson.sliding_step(resisted_acceleration, t, x, v, dt, p)[1],
+          free + mu * dt * (a @ axes[0]) * free / np.linalg.norm(free), ROUND_OFF, given=f"{given}, x = {x} m")
+    close("input x and v after the call: return new arrays", np.array((begin, v)), np.array(before), 0.0)
 
 
 @exercise("3.7", points=0.25,
@@ -421,6 +451,11 @@ def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(l
     v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, level)[1]
     close("velocity of a block on a level floor [m/s]", v, (speed - 0.3 * G * dt) * along, ROUND_OFF,
           given=f"v = {speed * along}, {level}")
+    for n, to in plain_pairs():
+        floor = block(lesson, n, 0.8, 0.3, -G * n)
+        v = lesson.sliding_step(pull, 0.0, 0.0 * n, speed * to, dt, floor)[1]
+        close("velocity of a block that slides along an axis or a diagonal [m/s]", v, (speed - 0.3 * G * dt) * to,
+              ROUND_OFF, given=f"v = {speed * to} m/s, {floor}")
     between_the_two, down, tangent, press = slope(draw, lesson, 1.5, 0.5)
     for slow in (1e-4, 1e-10):
         v = lesson.sliding_step(pull, 0.0, np.zeros(3), slow * down, dt, between_the_two)[1]
@@ -481,6 +516,11 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
         got = lesson.slip_direction(tethered_acceleration, turn / omega, anchor(p), np.zeros(2), p)
         close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
               expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
+    # A spring to the origin: beside it the block is pulled back, and above it pressed down, by more than by the drive.
+    for place, turn, expected in ((-draw(1.0, 2.0) * to, 0.5 * np.pi, to), (draw(1.0, 2.0) * p.n, 0.0, 0.0 * to)):
+        got = lesson.slip_direction(resisted_acceleration, turn / omega, place, np.zeros(2), p)
+        close("slip direction where the acceleration depends on t, x and v [-]", got, expected, ROUND_OFF,
+              given=f"{p}, t = {turn / omega} s, x = {place} m")
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     lifted = 5.0 * along + 10.0 * up
     for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up),
@@ -496,6 +536,11 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     for slow in (1e-4, 1e-10):
         got = lesson.slip_direction(pull, 0.0, still, -slow * down, gentle)
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
+    for n, to in plain_pairs():
+        tilted = block(lesson, n, 0.5, 0.3, -G * n, 0.6 * G * to)
+        for v, expected in ((0.0 * n, to), (-2.0 * to, -to)):
+            close("direction of a block that is pulled, or moves, along an axis or a diagonal [-]",
+                  lesson.slip_direction(pull, 0.0, 0.0 * n, v, tilted), expected, ROUND_OFF, given=f"{tilted}, v = {v}")
 
 
 @exercise("3.9", points=0.25,
@@ -520,7 +565,7 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
 
 
 @exercise("3.9", points=0.25,
-          hint="pass t and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
+          hint="pass acceleration, t, x and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
 def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, draw):
     """Brent's method finds the root of v(τ) = v + τ (drive cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
     omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
@@ -534,6 +579,15 @@ def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, 
     got = lesson.stopping_time(lesson.driven_acceleration, t, np.zeros(2), speed * to, 1.5 * stop, to, p)
     # At the root v falls with more than 0.1 μ g > 0.3 m/s² and has an error of 1e-14.
     close("time to the stop under a drive [s]", got, stop, 1e-11, given=f"{p}, v = {speed} m/s, t = {t} s")
+    x = draw(0.05, 0.2) * to + draw(0.05, 0.2) * p.n
+    _, end = resisted_slide(p, to, t, x, speed)
+    stop = brentq(end, 0.0, 0.5, xtol=1e-14)
+    got = lesson.stopping_time(resisted_acceleration, t, x, speed * to, 1.5 * stop, to, p)
+    close("time to the stop where the acceleration depends on t, x and v [s]", got, stop, 1e-11,
+          given=f"{p}, x = {x} m, v = {speed} m/s, t = {t} s")
+    part = draw(0.2, 0.9) * stop
+    got = lesson.stopping_time(resisted_acceleration, t, x, speed * to, part, to, p)
+    close("time of a step that ends before that stop [s]", got, part, 0.0, given=f"{p}, x = {x} m, dt = {part} s")
     from_rest = p._replace(drive=draw(1.2, 2.0) * p.mu_s * G * to)
     amplitude, speed = from_rest.drive @ to, 0.0
     stop = brentq(along, 1e-3, 2.0 * (np.pi / omega - t), xtol=1e-14)
@@ -560,6 +614,18 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     for still in (level._replace(drive=rest), p._replace(drive=rest, gravity=rest)):
         got = lesson.breakaway_time(lesson.driven_acceleration, 0.0, rest, rest, late, still)
         close("time that a block holds without a pull [s]: the whole step", got, late, 0.0, given=f"{still}")
+    for n, to in plain_pairs():
+        floor = block(lesson, n, p.mu_s, p.mu_k, -G * n, amplitude * p.mu_s * G * to, omega)
+        got = lesson.breakaway_time(tethered_acceleration, t, anchor(floor), 0.0 * n, late, floor)
+        close("time to a slip along an axis or a diagonal [s]", got, slips - t, 1e-13, given=f"{floor}, t = {t} s")
+    # A spring to the origin, 40/s² times the place, pulls along the surface and presses: both in shares of μ_s g and g.
+    back, presses = draw(0.3, 0.5), draw(0.05, 0.2)
+    x = (back * p.drive / amplitude + presses * G * p.n) / 40.0
+    late_slip = np.arccos((back - 1.0 - presses) / amplitude) / omega
+    dt = late_slip - t + draw(0.2, 0.8) * (np.pi / omega - late_slip)
+    got = lesson.breakaway_time(resisted_acceleration, t, x, rest, dt, p)
+    close("time to the slip where the acceleration depends on t, x and v [s]", got, late_slip - t, 1e-13,
+          given=f"{p}, t = {t} s, x = {x} m, dt = {dt} s")
     # At t = 0 a slope's pull and the drive cancel: the block slips where s (1 − cos ωt) = μ_s g.
     s = draw(0.8, 1.5) * level.drive
     first = np.arccos(1.0 - level.mu_s * G / np.linalg.norm(s)) / omega
@@ -576,7 +642,33 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
           given=f"{both}, t = {t} s")
 
 
-@exercise("3.11", points=0.5,
+@exercise("3.11", points=0.25,
+          hint="slide with kinetic_friction_step(acceleration, t, x, v, τ, d, p), and return τ, not t + τ")
+def test_a_slide_obeys_the_acceleration_of_its_time_and_place(lesson, draw):
+    """Under a force that depends on t, x and v: to a stop, in a step that ends before it, and from rest.
+
+    Blocks that slide along an axis or a diagonal are among them.
+    """
+    omega, t = draw(1.0, 2.0), draw(1.0, 2.0)
+    frames = [frame(draw, d)[:2] for d in (2, 3)]
+    for n, to in (*frames, *plain_pairs()):
+        mu, speed = draw(0.3, 0.6), draw(0.1, 0.4)
+        p = block(lesson, n, mu, 0.8 * mu, -G * n, draw(0.1, 0.5) * mu * G * to, omega)
+        x = draw(0.02, 0.2) * to + draw(0.05, 0.2) * n
+        # From rest the spring, 40 s² times the place, must exceed μ (g + 40 height) and the drive: 27 m/s² at most.
+        far = x - draw(1.0, 1.5) * to
+        stop = brentq(resisted_slide(p, to, t, x, speed)[1], 0.0, 0.5, xtol=1e-14)
+        for place, u, dt, tau in ((x, speed, draw(1.1, 2.0) * stop, stop), (x, speed, 0.5 * stop, 0.5 * stop),
+                                  (far, 0.0, 0.02, 0.02)):
+            way, end = resisted_slide(p, to, t, place, u)
+            got, x_new, v_new = lesson.advance_to_event(resisted_acceleration, t, place, u * to, dt, p)
+            given = f"{p}, t = {t} s, x = {place} m, v = {u * to} m/s, dt = {dt} s"
+            close("time to the stop, or of the step [s]", got, tau, 1e-11, given=given)
+            close("displacement meanwhile [m]", x_new - place, way(tau) * to, 1e-11, given=given)
+            close("velocity then [m/s]", v_new, end(tau) * to, 1e-11, given=given)
+
+
+@exercise("3.11", points=0.25,
           hint="after a stop set v to exact zeros: a remaining round-off would count as motion")
 def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     p, down, tangent, press = slope(draw, lesson, 1.5, 1.2)

@@ -307,6 +307,13 @@ edit("3.7", "exchanges place and velocity in the call of the acceleration", "acc
      "acceleration(t, v, x, p)")
 edit("3.7", "returns the state unchanged where there is no load", "if not np.any(v) and",
      "if not np.any(a) or not np.any(v) and")
+for words, test in partial_tests("v"):
+    edit("3.7", f"takes a block for one at rest if {words} is 0", "not np.any(v)", f"{test} == 0.0")
+edit("3.7", "computes the acceleration of a block at rest", "acceleration(t, x, v, p)",
+     "acceleration(t, x, 0.0 * v, p)")
+edit("3.7", "computes the acceleration at the origin", "acceleration(t, x, v, p)", "acceleration(t, 0.0 * x, v, p)")
+edit("3.7", "uses a law of the lesson in place of the one that is passed in", "acceleration(t, x, v, p)",
+     "driven_acceleration(t, x, v, p)")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -348,6 +355,12 @@ edit("3.8", "exchanges place and velocity in the call of the acceleration", "acc
 GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
 edit("3.8", "lets the block slip exactly on the edge of the cone", "pull > cone", "pull >= cone")
 edit("3.8", "does not break away where there is no friction", "pull > cone", "p.mu_s > 0.0 and pull > cone")
+for words, test in partial_tests("v"):
+    edit("3.8", f"takes a block for one at rest if {words} is 0", "speed != 0.0", f"{test} != 0.0")
+for words, test in partial_tests("a_t"):
+    edit("3.8", f"takes a pull for none if {words} is 0", "a_t / pull if", f"a_t / pull if {test} != 0.0 and")
+edit("3.8", "uses a law of the lesson in place of the one that is passed in", "acceleration(t, x, v, p)",
+     "driven_acceleration(t, x, v, p)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -386,6 +399,14 @@ edit("3.9", "returns zero for a block that goes on", "return dt", "return 0.0")
 edit("3.9", "interpolates the speed along a straight line between the ends of the step", "return stopped",
      "return dt * (v @ d) / ((v - kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1]) @ d)")
 edit("3.9", "does not stop where there is no friction", "return stopped", "return stopped if p.mu_k > 0.0 else dt")
+WHOLE, PART = "acceleration, t, x, v, dt, d, p", "acceleration, t, x, v, middle, d, p"
+for story, old, new in (("takes the place of the block to be the origin", "t, x", "t, 0.0 * x"),
+                        ("begins at time 0", "t, x", "0.0, x"),
+                        ("uses a law of the lesson in place of the one that is passed in", "acceleration",
+                         "driven_acceleration")):
+    edit("3.9", f"{story}, while it halves", PART, PART.replace(old, new))
+edit("3.9", "uses a law of the lesson in place of the one that is passed in, for the whole step", WHOLE,
+     f"driven_{WHOLE}")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -423,6 +444,14 @@ edit("3.10", "returns infinity if the block still holds", "return dt", "return n
 edit("3.10", "takes a slip along an axis for rest", "if np.any(slip", "if np.all(slip")
 edit("3.10", "exchanges place and velocity", "t + middle, x, v, p", "t + middle, v, x, p")
 edit("3.10", "holds for the whole step if it begins at t = 0", "return slips", "return slips if t > 0.0 else dt")
+for words, test in partial_tests("slip_direction(acceleration, t + middle, x, v, p)"):
+    edit("3.10", f"takes a slip for rest if {words} is 0", "np.any(slip_direction(acceleration, t + middle, x, v, p))",
+         f"{test} != 0.0")
+for words, test in partial_tests("slip_direction(acceleration, t + dt, x, v, p)"):
+    edit("3.10", f"takes a slip at the end of the step for rest if {words} is 0",
+         "not np.any(slip_direction(acceleration, t + dt, x, v, p))", f"{test} == 0.0")
+edit("3.10", "uses a law of the lesson in place of the one that is passed in", "acceleration, t + middle",
+     "driven_acceleration, t + middle")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -456,6 +485,21 @@ edit("3.11", "returns the rest of the step as the time", "return tau, x, v if", 
 edit("3.11", "exchanges the two cases", "if not np.any(d)", "if np.any(d)")
 edit("3.11", "stops the block that goes on, and lets the other one go on", "tau == dt", "tau != dt")
 edit("3.11", "stops a block without friction", "v if tau == dt", "v if tau == dt and p.mu_k > 0.0")
+for words, test in partial_tests("d"):
+    edit("3.11", f"takes a slip for rest if {words} is 0", "not np.any(d)", f"{test} == 0.0")
+edit("3.11", "returns the time of the stop in place of the duration of the slide", "return tau, x", "return t + tau, x")
+for name, call in (("stopping_time", "acceleration, t, x, v, dt, d, p"),
+                   ("kinetic_friction_step", "acceleration, t, x, v, tau, d, p"),
+                   ("slip_direction", "acceleration, t, x, v, p")):
+    for story, old, new in (("at time 0", " t,", " 0.0,"), ("at the origin", " x,", " 0.0 * x,"),
+                            ("under a law of the lesson, not the one that is passed in", "acc", "driven_acc")):
+        edit("3.11", f"calls {name} {story}", f"{name}({call})", f"{name}({call.replace(old, new)})")
+edit("3.11", "slides with the deceleration of the start", "kinetic_friction_step(acceleration, t, x, v, tau, d, p)",
+     "(lambda b: (x + tau * v + 0.5 * tau * tau * b, v + tau * b))("
+     "(kinetic_friction_step(acceleration, t, x, v, 1e-7 * dt, d, p)[1] - v) / (1e-7 * dt))")
+edit("3.11", "slides along the motion, with friction of the static coefficient",
+     "kinetic_friction_step(acceleration, t, x, v, tau, d, p)",
+     "kinetic_friction_step(acceleration, t, x, v, tau, d, p._replace(mu_k=p.mu_s))")
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
