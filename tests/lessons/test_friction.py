@@ -748,6 +748,12 @@ def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw
             close("gap φ [m]: positive inside, negative beyond the wall", phi, (1.0 - share) * p.radius, ROUND_OFF,
                   given=given)
             close("normal n [-]: inward", n, -out, ROUND_OFF, given=given)
+    for across, out in plain_pairs():
+        for axis in (0.0 * across, across * (len(out) - 2)):
+            p = bowl(lesson, draw, axis, len(out))
+            x, p = 0.5 * p.radius * out, p._replace(centre=0.0 * out)
+            close("normal n at a place along a coordinate axis or a diagonal [-]: inward",
+                  lesson.particle_bowl_gap(x, p)[1], -out, ROUND_OFF, given=f"{p}, x = {x} m")
 
 
 @exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
@@ -780,6 +786,13 @@ def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_t
         close("normal velocity after [m/s]", after @ axes[0], e * v_n, ROUND_OFF, given=given)
         close("tangential velocity after [m/s]", after - (after @ axes[0]) * axes[0],
               max(0.0, 1.0 - 1.0 / speed) * slip, ROUND_OFF, given=given)
+    for n, along in plain_pairs():
+        m, e, v_n, mu = draw(0.5, 5.0), draw(0.1, 0.9), draw(0.5, 5.0), draw(0.1, 0.5)
+        limit = mu * (1.0 + e) * v_n
+        v = draw(1.1, 3.0) * limit * along - v_n * n
+        after = v + np.asarray(lesson.particle_contact_impulse(v, n, m, e, mu)) / m
+        close("velocity after an impact with a slip along an axis or a diagonal [m/s]", after,
+              v + (1.0 + e) * v_n * n - limit * along, ROUND_OFF, given=f"v = {v} m/s, n = {n}, m = {m} kg, e = {e}")
 
 
 @exercise("3.13", points=1, hint="v · n ≥ 0 means that the particle is leaving: the impulse is then zero")
@@ -815,7 +828,14 @@ def above(lesson, draw, mu, e, theta=0.0, d=3, turned=True):
 
 
 def swinging_acceleration(t, x, v, p):
-    return np.cos(t) * p.gravity - 10.0 * (x - p.point)
+    return np.cos(t) * p.gravity - 10.0 * (x - p.point) - 3.0 * v
+
+
+def hill_gap(x, p):
+    """A surface that is not in the lesson: (φ, n) of a round hill of radius 1 m around `point`; it ignores p.n."""
+    r = x - p.point
+    distance = np.sqrt(r @ r)
+    return distance - 1.0, r / distance
 
 
 def fly(lesson, step, p, x, v, dt, steps):
@@ -857,8 +877,9 @@ def check_fall(lesson, step, draw, grips, p, down):
 
     t = draw(0.3, 1.0)
     x, v_new = step(swinging_acceleration, lesson.particle_plane_gap, t, begin, v, dt, p)
-    close("velocity where a = g cos t − 10 (x − point) [m/s]", v_new,
-          v + dt * (np.cos(t) * p.gravity - 10.0 * height * p.n), ROUND_OFF, given=f"{p}, v = {v} m/s, t = {t} s")
+    close("velocity where a = g cos t − 10 (x − point) − 3 v [m/s]", v_new,
+          v + dt * (np.cos(t) * p.gravity - 10.0 * height * p.n - 3.0 * v), ROUND_OFF,
+          given=f"{p}, v = {v} m/s, t = {t} s")
     x, v_new = fly(lesson, step, p, p.point + 5e-4 * p.n, 3.0 * down - 1e-3 * dt * p.gravity, dt * 1e-3, 1)
     close("height of a particle that passes half a millimetre above the plane [m]", (x - p.point) @ p.n, 5e-4, 1e-11,
           given=f"{p}")
@@ -878,9 +899,33 @@ def check_fall(lesson, step, draw, grips, p, down):
           p.e * arrives * p.n + (slip - p.mu * (1.0 + p.e) * arrives) * down, ROUND_OFF, given=given)
 
 
+def check_hill(lesson, step, draw, grips):
+    """A particle on a round hill of the test, above and below its top.  p.n is the normal of another surface.
+
+    grips: as in check_fall
+    """
+    for (d, turned), depth in itertools.product(WAYS, (draw(0.005, 0.01), -draw(0.005, 0.01))):
+        p, _ = above(lesson, draw, draw(0.1, 0.3), draw(0.2, 0.9), d=d, turned=turned)
+        axes, dt = frame(draw, d), 0.01
+        n, along = axes[0], along_surface(draw, axes, 1.0)
+        slip, arrives = draw(3.0, 5.0), draw(1.0, 2.0)
+        ends = p.point + (1.0 - depth) * n                               # where it would be without the hill
+        v_free = slip * along - arrives * n
+        x, v = ends - dt * v_free, v_free - dt * p.gravity
+        x_new, v_new = step(lesson.falling_acceleration, hill_gap, 0.0, x, v, dt, p)
+        given = f"{p}, x = {x} m, v = {v} m/s, dt = {dt} s"
+        hits = depth > 0.0
+        close("position after a step at a hill of 1 m around the point, a surface of the test [m]", x_new,
+              ends + hits * depth * (n - grips * p.mu * along), ROUND_OFF, given=given)
+        close("velocity after a step at that hill [m/s]", v_new,
+              v_free + hits * (1.0 + p.e) * arrives * (n - p.mu * along), ROUND_OFF, given=given)
+
+
 @exercise("3.14", points=0.5,
-          hint="put the particle back by −φ n even if its velocity already points out; then do not change its velocity")
+          hint="use φ and n of the surface that is passed in; put the particle back by −φ n even if its velocity "
+               "already points out; then do not change its velocity")
 def test_a_leaving_particle_inside_is_put_back_and_keeps_its_velocity(lesson, draw):
+    check_hill(lesson, lesson.contact_step, draw, 0.0)
     check_way_out(lesson, lesson.contact_step, draw)
     check_just_touching(lesson, lesson.contact_step, draw)
     theta, dt = draw(0.2, 0.8), draw(0.005, 0.02)
@@ -939,9 +984,11 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
         close("tangential correction without displacement, depth or friction [m]: none",
               lesson.friction_position_correction(moved, axes[0], depth, friction), np.zeros(3), 0.0,
               given=f"moved by {moved} m, depth {depth} m, μ = {friction}")
-    for n, along in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0), strict=True):
-        close("tangential correction of a displacement along an axis [m]",
-              lesson.friction_position_correction(along, n, 0.1, 0.5), -0.05 * along, ROUND_OFF, given=f"n = {n}")
+    for n, along in plain_pairs():
+        for size, expected in ((1.0, 0.05), (0.01, 0.01)):
+            got = lesson.friction_position_correction(size * along, n, 0.1, 0.5)
+            close("tangential correction of a displacement along an axis or a diagonal [m]", got, -expected * along,
+                  ROUND_OFF, given=f"moved by {size * along} m, n = {n}, depth 0.1 m, μ = 0.5")
     straight = lesson.friction_position_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
     close("tangential correction of a displacement along −n [m]: none", straight, np.zeros(2), 0.0)
 
@@ -965,9 +1012,11 @@ def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
 
 
 @exercise("3.16", points=0.5,
-          hint="free flight, impact and leaving are as in contact_step; do not correct the slip of a leaving particle")
+          hint="free flight, impact and leaving are as in contact_step, with φ and n of the surface that is passed in; "
+               "do not correct the slip of a leaving particle")
 def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
     falls(lesson, lesson.position_friction_step, draw, 1.0)
+    check_hill(lesson, lesson.position_friction_step, draw, 1.0)
     check_way_out(lesson, lesson.position_friction_step, draw)
     check_just_touching(lesson, lesson.position_friction_step, draw)
     level = lesson.ParticleOnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
@@ -986,17 +1035,18 @@ def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
           hint="½mv² is used up by μ m g times the way: first by that on the strip, the rest behind it")
 def test_a_block_slides_as_far_as_the_times_on_both_materials_allow(lesson, draw):
     for share in (0.0, *draw.within(), *draw.beyond(3.0)):               # of the speed that just crosses the strip
-        width, near, far = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6)
-        v = share * np.sqrt(2.0 * near * G * width)
+        width, near, far, g = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6), draw(1.0, 15.0)
+        v = share * np.sqrt(2.0 * near * g * width)
         if share <= 1.0:
-            expected = v * (v / (near * G)) - 0.5 * near * G * (v / (near * G)) ** 2
+            expected = v * (v / (near * g)) - 0.5 * near * g * (v / (near * g)) ** 2
         else:
             # v t − ½ μ g t² = width at the first root; then half the speed that is left, for the time to rest
-            crossing = (v - np.sqrt(v * v - 2.0 * near * G * width)) / (near * G)
-            slower = v - near * G * crossing
-            expected = width + 0.5 * slower * slower / (far * G)
-        close("way of a block over two materials [m]", lesson.sliding_distance(v, width, near, far, G), expected,
-              ROUND_OFF, given=f"v = {v:.4g} m/s, width = {width:.4g} m, μ = {near:.4g} and {far:.4g}")
+            crossing = (v - np.sqrt(v * v - 2.0 * near * g * width)) / (near * g)
+            slower = v - near * g * crossing
+            expected = width + 0.5 * slower * slower / (far * g)
+        close("way of a block over two materials [m]", lesson.sliding_distance(v, width, near, far, g), expected,
+              ROUND_OFF,
+              given=f"v = {v:.4g} m/s, width = {width:.4g} m, μ = {near:.4g} and {far:.4g}, g = {g:.4g} m/s²")
 
 
 @exercise("3.18", points=1, hint="what holds a block that nothing pulls? And what is the force on it when it slides?")
@@ -1008,7 +1058,8 @@ def test_the_chosen_friction_balances_the_pull_up_to_its_limit_and_is_kinetic_be
     choice("the letter of Coulomb's friction", lesson.dry_friction_is(), right)
 
 
-@exercise("3.19", points=1, hint="multiply v_t by a factor from 0 to 1, or each of its components by one of its own")
+@exercise("3.19", points=1, hint="multiply v_t by a factor from 0 to 1, or each of its components by one of its own; "
+               "without a load, j_n = 0, there is no friction")
 def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, draw):
     m, mu, dt = draw(0.5, 2.0), draw(0.3, 0.6), 0.02
     j_n = m * G * dt
@@ -1019,6 +1070,9 @@ def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, dra
         close("velocity 4 s after a throw at 3 m/s [m/s]", v, np.zeros(2), ROUND_OFF, given=f"μ = {mu:.4g}")
     for speed in (1e-3, 1.0, 30.0):
         slowed(lesson, speed * draw(-1.0, 1.0, 2), m, draw(0.0, 2.0) * j_n, mu)
+    for v in (*draw(-3.0, 3.0, (4, 2)), *3.0 * np.eye(2), *-3.0 * np.eye(2), np.zeros(2)):
+        close("impulse of your floor without a load, j_n = 0 [N s]", lesson.my_friction(v, m, 0.0, mu), np.zeros(2),
+              0.0, given=f"v_t = {v} m/s, μ = {mu}")
     v = draw(1.5, 3.0, 2)
     got = np.array([lesson.my_friction(k * v, m, j_n, mu) for k in (1.0, 0.3, -1.0)])
     cone = np.array([-mu * j_n * k * v / np.linalg.norm(k * v) for k in (1.0, 0.3, -1.0)])      # none of them stops

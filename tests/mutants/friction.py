@@ -534,6 +534,8 @@ edit("3.12", "compares the squared distance with the radius", "distance = np.sqr
 edit("3.12", "divides the normal of a trough by the distance from its centre, not from its axis", "-r / distance if",
      "-r / np.sqrt((x - p.centre) @ (x - p.centre)) if")
 edit("3.12", "divides by zero on the axis of a trough", "distance > 0.0", "np.any(x != p.centre)")
+for words, test in partial_tests("r"):
+    edit("3.12", f"takes a place for the centre if {words} is 0, seen from there", "distance > 0.0", f"{test} != 0.0")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
@@ -574,6 +576,9 @@ edit("3.13", "returns a velocity: divides by the mass",
      "(j_n * n + friction_impulse(tangential(v, n), m, j_n, mu)) / m")
 edit("3.13", "returns the velocity after the impact", "return j_n * n + f", "return v + j_n * n + f")
 edit("3.13", "stops a particle that does not bounce", "return j_n * n", "return -m * v if e == 0.0 else j_n * n")
+for words, test in partial_tests("tangential(v, n)"):
+    edit("3.13", f"omits the friction of a slip if {words} is 0", "+ friction_impulse(tangential(v, n)",
+         f"+ ({test} != 0.0) * friction_impulse(tangential(v, n)")
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
@@ -638,6 +643,16 @@ edit("3.16", "returns the velocity before the impulse",
      "v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m", "pass")
 edit("3.14", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
 edit("3.16", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
+SURFACE = "phi, n = surface(x, p)"
+for number in ("3.14", "3.16"):
+    edit(number, "always takes the plane, whatever surface is passed in", SURFACE, "phi, n = particle_plane_gap(x, p)")
+    edit(number, "takes the normal of the plane on every surface", SURFACE, f"{SURFACE}; n = p.n")
+    edit(number, "computes the acceleration of a particle at rest", "acceleration(t, x, v, p)",
+         "acceleration(t, x, 0.0 * v, p)")
+    edit(number, "takes the normal of the plane for the impulse", "particle_contact_impulse(v, n,",
+         "particle_contact_impulse(v, p.n,")
+edit("3.16", "takes the normal of the plane for the displacement", "friction_position_correction(moved, n",
+     "friction_position_correction(moved, p.n")
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
@@ -664,6 +679,9 @@ edit("3.15", "returns the whole displacement along the surface",
 edit("3.15", "takes the normal part of the displacement for the depth", "1.0, depth", "1.0, max(0.0, -(moved @ n))")
 edit("3.15", "takes back everything where there is no depth", "return friction_impulse",
      "return -tangential(moved, n) if depth == 0.0 else friction_impulse")
+for words, test in partial_tests("tangential(moved, n)"):
+    edit("3.15", f"corrects no displacement if {words} is 0", "return friction_impulse",
+         f"return ({test} != 0.0) * friction_impulse")
 
 
 # 3.17 -----------------------------------------------------------------------------------------------------------
@@ -689,6 +707,9 @@ edit("3.17", "divides by the mean of both frictions behind the strip", "left / (
      "left / (0.5 * (mu_near + mu_far)")
 edit("3.17", "slides over the whole strip from rest", "return 0.5 * v * v / (mu_near * g)",
      "return 0.5 * v * v / (mu_near * g) if v > 0.0 else width")
+edit("3.17", "takes the gravity of the earth on the strip", "mu_near * g * width", "mu_near * 9.81 * width")
+edit("3.17", "takes the gravity of the earth behind the strip", "mu_far * g", "mu_far * 9.81")
+edit("3.17", "takes the gravity of the earth for a block that stops on the strip", "(mu_near * g)", "(mu_near * 9.81)")
 
 
 # 3.18 -----------------------------------------------------------------------------------------------------------
@@ -733,5 +754,8 @@ edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST,
 edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST, "return -mu * j_n * v_t")
 edit("3.19", "turns the block round without slowing it", FIRST, "return -2.0 * m * v_t")
 edit("3.19", "brakes along the blade only", "np.sign(v_t[1]) * across", "0.0")
+edit("3.19", "stops the block at once, even without a load", FIRST, "return -m * v_t")
+edit("3.19", "takes the load of a block of 1 kg, whatever the load is", FIRST,
+     "j_n = 0.2; along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",
      "[np.sign(v_t[1]) * across, np.sign(v_t[0]) * along]")
