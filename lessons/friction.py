@@ -212,10 +212,10 @@ def kinetic_friction_step(acceleration, t, x, v, dt, d, p):
 def stopping_time(acceleration, t, x, v, dt, d, p):
     """Return the time [s] until a block that slides along d stops: the τ in (0, dt] at which its speed along d is 0.
 
-    If  kinetic_friction_step(acceleration, t, x, v, dt, d, p)  ends with  v · d > 0,  the block goes on: return dt.
-    Otherwise halve the interval (0, dt] HALVINGS times.  Keep the half in which the sign changes: after a slide to its
-    beginning the block still moves (v · d > 0), after a slide to its end it does not.  Return the end of the last
-    interval.
+    A slide over τ is  kinetic_friction_step(acceleration, t, x, v, τ, d, p).  If the slide over dt ends with
+    v · d > 0,  the block goes on: return dt.  Otherwise halve the interval (0, dt] HALVINGS times.  Keep the half in
+    which the sign changes: after a slide over the τ at its beginning the block still moves (v · d > 0), after a slide
+    over the τ at its end it does not.  Return the end of the last interval.
     *Source:* bisection; second lecture deck, “go back to time of impact”, for the idea.
     """
     # YOUR CODE HERE
@@ -239,7 +239,8 @@ def advance_to_event(acceleration, t, x, v, dt, p):
 
     Let d = slip_direction(acceleration, t, x, v, p).  Then
     where d is zeros:   τ = breakaway_time,   x and v unchanged
-    elsewhere:          τ = stopping_time,    (x, v) from slide over τ;   if τ < dt the block has stopped: v = 0 exactly
+    elsewhere:          τ = stopping_time,    (x, v) = kinetic_friction_step(acceleration, t, x, v, τ, d, p);
+                        if τ < dt the block has stopped: v = 0 exactly
 
     *Source:* event-driven simulation; second lecture deck, “Option 1”.
     *Left out:* curved paths, where the force is not along the motion: use sliding_step for those.
@@ -362,6 +363,7 @@ def my_friction(v_t, m, j_n, mu):
     *Make it*: j_n ≥ 0 is the normal impulse of this step, and μ the friction.  Many laws are right.  The judge demands:
 
     - It never adds energy: the block is not faster after the impulse, whatever its velocity.
+    - Without a load, j_n = 0, it gives no impulse.
     - A block that is thrown at 3 m/s in any direction over a floor with μ ≥ 0.3 is at rest after 4 s, and stays.
     - It is neither friction_impulse nor pyramid_impulse along x and y.
     """

@@ -44,6 +44,21 @@ def along_surface(draw, axes, size):
     return size * (np.cos(heading) * axes[1] + np.sin(heading) * axes[2])
 
 
+def plain_pairs():
+    """Pairs (n, along) of unit vectors (d,), a normal and a direction along its surface, in 2 and 3 dimensions.
+
+    All coordinates of `along` but one are 0, or they add up to exactly 0.  A test for zero that looks at one
+    coordinate, or at the sum, the product or the largest of them, takes some of these vectors for zero.
+    """
+    pairs = []
+    for d in (2, 3):
+        axes = np.eye(d)
+        pairs += [(axes[k], axes[i]) for k, i in itertools.permutations(range(d), 2)]
+        pairs += [(axes[k], np.sqrt(0.5) * (axes[k - 2] - axes[k - 1])) for k in range(d) if d == 3]
+    pairs.append((np.sqrt([0.5, 0.5]), np.sqrt([0.5, 0.5]) * [1.0, -1.0]))
+    return [(n, sign * along) for n, along in pairs for sign in (1.0, -1.0)]
+
+
 # ---------------------------------------------------------------------------------------------- at rest and sliding
 
 @exercise("3.1", points=1, hint="the part of F against n: −F · n, but never less than zero")
@@ -71,6 +86,11 @@ def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
             close("friction on a body that holds [N]", got, -pull, ROUND_OFF,
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
+    for n, along in plain_pairs():
+        pull = draw(0.1, 0.9) * mu * load * along
+        close("friction on a body that a pull along an axis or a diagonal does not move [N]",
+              lesson.static_friction(pull - load * n, n, mu), -pull, ROUND_OFF,
+              given=f"pull {pull} N, load {load} N, n = {n}, μ = {mu}")
 
 
 @exercise("3.2", points=0.25,
@@ -84,6 +104,11 @@ def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
             expected = -friction * load * pull / np.linalg.norm(pull)
             close("friction on a body that slips [N]", got, expected, ROUND_OFF,
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
+    for n, along in plain_pairs():
+        pull = draw(1.1, 3.0) * mu * load * along
+        close("friction on a body that a pull along an axis or a diagonal moves [N]",
+              lesson.static_friction(pull - load * n, n, mu), -mu * load * along, ROUND_OFF,
+              given=f"pull {pull} N, load {load} N, n = {n}, μ = {mu}")
 
 
 @exercise("3.2", points=0.25,
@@ -123,6 +148,11 @@ def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(le
             # Friction has the direction of v_t, whose round-off is 1e-16 of v.
             close("friction on a sliding body [N]", got, -mu * load * direction, 1e-8 if speed < 1e-3 else 1e-11,
                   given=f"F = {F} N, speed {speed} m/s, sinking {sinking} m/s, μ = {mu}")
+    for n, along in plain_pairs():
+        v = draw(0.5, 9.0) * along
+        close("friction on a body that slides along an axis or a diagonal [N]",
+              lesson.kinetic_friction(-load * n, v, n, mu), -mu * load * along, ROUND_OFF,
+              given=f"load {load} N, v = {v} m/s, n = {n}, μ = {mu}")
 
 
 @exercise("3.3", points=0.5, hint="where v_t is zero there is no direction to oppose: return zeros before dividing")
@@ -174,6 +204,9 @@ def test_a_block_holds_up_to_the_angle_whose_tangent_is_mu(lesson, draw):
                         (draw(0.2, 0.9) * edge, 0.0)):
         close("acceleration of a block that holds [m/s²]", lesson.incline_acceleration(theta, mu, mu_k, g), 0.0, 0.0,
               given=f"θ = {theta}, μ_s = {mu}, μ_k = {mu_k}")
+    tiny = draw(1e-9, 2e-9)                              # its sine and its tangent are the same float, its cosine is 1
+    close("acceleration where sin θ is exactly μ_s cos θ [m/s²]: the block holds",
+          lesson.incline_acceleration(tiny, tiny, 0.5 * tiny, g), 0.0, 0.0, given=f"θ = {tiny}, μ_s = {tiny}")
     between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g),
             1e-12, 2e-5 * g, given=f"μ = {mu}")
     for mu_s in (0.0, mu):
@@ -212,7 +245,7 @@ def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
         left = energies(v, m, np.asarray(J, dtype=float)[None])[0]
         between("remaining kinetic energy [J]: the least that any impulse in the cone leaves", left,
                 0.0, energies(v, m, allowed).min() + ROUND_OFF, given=given)
-        close("remaining speed [m/s]", np.linalg.norm(v + J / m), max(0.0, 1.0 - share) * speed, ROUND_OFF,
+        close("remaining speed [m/s]", np.linalg.norm(v + np.asarray(J) / m), max(0.0, 1.0 - share) * speed, ROUND_OFF,
               given=given)
 
 
@@ -234,10 +267,10 @@ def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(les
     for mu in (np.inf, draw(0.2, 1.0)):
         close("impulse where j_n = 0 [N s]", lesson.friction_impulse(v, m, 0.0, mu), still, 0.0,
               given=f"v_t = {v}, μ = {mu}")
-    along = draw(1.0, 3.0, 3) * np.eye(3)
-    for v in (*along, along[0, :2], along[0, :1]):
-        close("impulse on a body that slides along an axis [N s]",
-              lesson.friction_impulse(v, m, 0.5 * m, 0.8), -0.4 * m * (v > 0.0), ROUND_OFF, given=f"v_t = {v}, m = {m}")
+    for along in (*(along for _, along in plain_pairs()), np.ones(1), -np.ones(1)):
+        v = draw(1.0, 3.0) * along
+        close("impulse on a body that slides along an axis or a diagonal [N s]",
+              lesson.friction_impulse(v, m, 0.5 * m, 0.8), -0.4 * m * along, ROUND_OFF, given=f"v_t = {v}, m = {m}")
     raises("a negative μ", BadInput, lesson.friction_impulse, v, m, j_n, -1.0)
 
 
@@ -260,6 +293,13 @@ def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
         expected = [-np.sign(y) * min(abs(y), 1.0) * limit for y in (first, second)]
         close("components of the impulse along t_1, t_2 and n [N s]", np.stack([t_1, t_2, n]) @ J, [*expected, 0.0],
               ROUND_OFF, given=given)
+    for normal, first in plain_pairs():
+        if len(normal) == 3:
+            second = np.cross(normal, first)
+            for slip in (first, second, np.sqrt(0.5) * (first + second)):
+                close("impulse on a body that slides along an axis or a diagonal, and stops [N s]",
+                      lesson.pyramid_impulse(slip, m, 10.0, 1.0, first, second), -m * slip, ROUND_OFF,
+                      given=f"v_t = {slip} m/s, m = {m} kg, t_1 = {first}, t_2 = {second}")
     for load, friction in ((0.0, np.inf), (0.0, mu), (limit, 0.0)):
         close("impulse where μ or j_n is 0 [N s]", lesson.pyramid_impulse(v, m, load, friction, t_1, t_2), np.zeros(3),
               0.0, given=f"v_t = {v}, j_n = {load}, μ = {friction}")
@@ -298,6 +338,30 @@ def tethered_acceleration(t, x, v, p):
     It is compiled, too, and so calls no other function of this file.
     """
     return p.gravity + np.cos(p.omega * t) * p.drive - 1000.0 * (x - (p.n + p.drive))
+
+
+def resisted_acceleration(t, x, v, p):
+    """The load of a Block that a spring pulls to the origin and a fluid slows: each of t, x and v changes it."""
+    return p.gravity + np.cos(p.omega * t) * p.drive - 40.0 * x - 0.2 * v
+
+
+def resisted_slide(p, to, t, x, speed):
+    """Return (way, speed) along `to` after τ, as functions of τ, of a slide under resisted_acceleration.
+
+    It is a midpoint step along a straight line, written with numbers in place of vectors.  The height of x over the
+    origin is part of the load.
+    """
+    brake = p.mu_k * (40.0 * (x @ p.n) - p.gravity @ p.n)
+
+    def a(t, s, u):
+        return np.cos(p.omega * t) * (p.drive @ to) - 40.0 * s - 0.2 * u - brake
+
+    def halfway(tau):
+        return speed + 0.5 * tau * a(t, x @ to, speed)
+
+    def end(tau):
+        return speed + tau * a(t + 0.5 * tau, x @ to + 0.5 * tau * speed, halfway(tau))
+    return lambda tau: tau * halfway(tau), end
 
 
 def run(lesson, step, p, x, v, dt, steps, t=0.0):
@@ -355,7 +419,7 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     p = block(lesson, axes[0], mu, mu, -G * axes[0], drive, omega)
     x = along_surface(draw, axes, 1.0)
     v = along_surface(draw, axes, draw(1.0, 3.0))
-    before = x.copy(), v.copy()
+    begin, before = x, (x.copy(), v.copy())
     x_new, v_new = lesson.sliding_step(lesson.driven_acceleration, t, x, v, dt, p)
     given = f"{p}, t = {t} s, dt = {dt} s, v = {v} m/s"
     now = drive * np.cos(omega * t)
@@ -367,7 +431,13 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     close("displacement over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
     close("velocity under the load of its place [m/s]",
           lesson.sliding_step(tethered_acceleration, t, anchor(p), v, dt, p)[1], v_new, ROUND_OFF, given=given)
-    close("input x and v after the call: return new arrays", np.array((x, v)), np.array(before), 0.0)
+    x = along_surface(draw, axes, 0.05) + draw(0.05, 0.1) * axes[0]
+    a = resisted_acceleration(t, x, v, p)
+    free = v + dt * (a - (a @ axes[0]) * axes[0])
+    close("velocity where the acceleration depends on t, x and v [m/s]",
+          lesson.sliding_step(resisted_acceleration, t, x, v, dt, p)[1],
+          free + mu * dt * (a @ axes[0]) * free / np.linalg.norm(free), ROUND_OFF, given=f"{given}, x = {x} m")
+    close("input x and v after the call: return new arrays", np.array((begin, v)), np.array(before), 0.0)
 
 
 @exercise("3.7", points=0.25,
@@ -381,6 +451,11 @@ def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(l
     v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, level)[1]
     close("velocity of a block on a level floor [m/s]", v, (speed - 0.3 * G * dt) * along, ROUND_OFF,
           given=f"v = {speed * along}, {level}")
+    for n, to in plain_pairs():
+        floor = block(lesson, n, 0.8, 0.3, -G * n)
+        v = lesson.sliding_step(pull, 0.0, 0.0 * n, speed * to, dt, floor)[1]
+        close("velocity of a block that slides along an axis or a diagonal [m/s]", v, (speed - 0.3 * G * dt) * to,
+              ROUND_OFF, given=f"v = {speed * to} m/s, {floor}")
     between_the_two, down, tangent, press = slope(draw, lesson, 1.5, 0.5)
     for slow in (1e-4, 1e-10):
         v = lesson.sliding_step(pull, 0.0, np.zeros(3), slow * down, dt, between_the_two)[1]
@@ -441,6 +516,11 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
         got = lesson.slip_direction(tethered_acceleration, turn / omega, anchor(p), np.zeros(2), p)
         close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
               expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
+    # A spring to the origin: beside it the block is pulled back, and above it pressed down, by more than by the drive.
+    for place, turn, expected in ((-draw(1.0, 2.0) * to, 0.5 * np.pi, to), (draw(1.0, 2.0) * p.n, 0.0, 0.0 * to)):
+        got = lesson.slip_direction(resisted_acceleration, turn / omega, place, np.zeros(2), p)
+        close("slip direction where the acceleration depends on t, x and v [-]", got, expected, ROUND_OFF,
+              given=f"{p}, t = {turn / omega} s, x = {place} m")
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     lifted = 5.0 * along + 10.0 * up
     for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up),
@@ -456,6 +536,11 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     for slow in (1e-4, 1e-10):
         got = lesson.slip_direction(pull, 0.0, still, -slow * down, gentle)
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
+    for n, to in plain_pairs():
+        tilted = block(lesson, n, 0.5, 0.3, -G * n, 0.6 * G * to)
+        for v, expected in ((0.0 * n, to), (-2.0 * to, -to)):
+            close("direction of a block that is pulled, or moves, along an axis or a diagonal [-]",
+                  lesson.slip_direction(pull, 0.0, 0.0 * n, v, tilted), expected, ROUND_OFF, given=f"{tilted}, v = {v}")
 
 
 @exercise("3.9", points=0.25,
@@ -480,7 +565,7 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
 
 
 @exercise("3.9", points=0.25,
-          hint="pass t and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
+          hint="pass acceleration, t, x and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
 def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, draw):
     """Brent's method finds the root of v(τ) = v + τ (drive cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
     omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
@@ -494,6 +579,15 @@ def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, 
     got = lesson.stopping_time(lesson.driven_acceleration, t, np.zeros(2), speed * to, 1.5 * stop, to, p)
     # At the root v falls with more than 0.1 μ g > 0.3 m/s² and has an error of 1e-14.
     close("time to the stop under a drive [s]", got, stop, 1e-11, given=f"{p}, v = {speed} m/s, t = {t} s")
+    x = draw(0.05, 0.2) * to + draw(0.05, 0.2) * p.n
+    _, end = resisted_slide(p, to, t, x, speed)
+    stop = brentq(end, 0.0, 0.5, xtol=1e-14)
+    got = lesson.stopping_time(resisted_acceleration, t, x, speed * to, 1.5 * stop, to, p)
+    close("time to the stop where the acceleration depends on t, x and v [s]", got, stop, 1e-11,
+          given=f"{p}, x = {x} m, v = {speed} m/s, t = {t} s")
+    part = draw(0.2, 0.9) * stop
+    got = lesson.stopping_time(resisted_acceleration, t, x, speed * to, part, to, p)
+    close("time of a step that ends before that stop [s]", got, part, 0.0, given=f"{p}, x = {x} m, dt = {part} s")
     from_rest = p._replace(drive=draw(1.2, 2.0) * p.mu_s * G * to)
     amplitude, speed = from_rest.drive @ to, 0.0
     stop = brentq(along, 1e-3, 2.0 * (np.pi / omega - t), xtol=1e-14)
@@ -520,6 +614,18 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     for still in (level._replace(drive=rest), p._replace(drive=rest, gravity=rest)):
         got = lesson.breakaway_time(lesson.driven_acceleration, 0.0, rest, rest, late, still)
         close("time that a block holds without a pull [s]: the whole step", got, late, 0.0, given=f"{still}")
+    for n, to in plain_pairs():
+        floor = block(lesson, n, p.mu_s, p.mu_k, -G * n, amplitude * p.mu_s * G * to, omega)
+        got = lesson.breakaway_time(tethered_acceleration, t, anchor(floor), 0.0 * n, late, floor)
+        close("time to a slip along an axis or a diagonal [s]", got, slips - t, 1e-13, given=f"{floor}, t = {t} s")
+    # A spring to the origin, 40/s² times the place, pulls along the surface and presses: both in shares of μ_s g and g.
+    back, presses = draw(0.3, 0.5), draw(0.05, 0.2)
+    x = (back * p.drive / amplitude + presses * G * p.n) / 40.0
+    late_slip = np.arccos((back - 1.0 - presses) / amplitude) / omega
+    dt = late_slip - t + draw(0.2, 0.8) * (np.pi / omega - late_slip)
+    got = lesson.breakaway_time(resisted_acceleration, t, x, rest, dt, p)
+    close("time to the slip where the acceleration depends on t, x and v [s]", got, late_slip - t, 1e-13,
+          given=f"{p}, t = {t} s, x = {x} m, dt = {dt} s")
     # At t = 0 a slope's pull and the drive cancel: the block slips where s (1 − cos ωt) = μ_s g.
     s = draw(0.8, 1.5) * level.drive
     first = np.arccos(1.0 - level.mu_s * G / np.linalg.norm(s)) / omega
@@ -536,7 +642,33 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
           given=f"{both}, t = {t} s")
 
 
-@exercise("3.11", points=0.5,
+@exercise("3.11", points=0.25,
+          hint="slide with kinetic_friction_step(acceleration, t, x, v, τ, d, p), and return τ, not t + τ")
+def test_a_slide_obeys_the_acceleration_of_its_time_and_place(lesson, draw):
+    """Under a force that depends on t, x and v: to a stop, in a step that ends before it, and from rest.
+
+    Blocks that slide along an axis or a diagonal are among them.
+    """
+    omega, t = draw(1.0, 2.0), draw(1.0, 2.0)
+    frames = [frame(draw, d)[:2] for d in (2, 3)]
+    for n, to in (*frames, *plain_pairs()):
+        mu, speed = draw(0.3, 0.6), draw(0.1, 0.4)
+        p = block(lesson, n, mu, 0.8 * mu, -G * n, draw(0.1, 0.5) * mu * G * to, omega)
+        x = draw(0.02, 0.2) * to + draw(0.05, 0.2) * n
+        # From rest the spring, 40 s² times the place, must exceed μ (g + 40 height) and the drive: 27 m/s² at most.
+        far = x - draw(1.0, 1.5) * to
+        stop = brentq(resisted_slide(p, to, t, x, speed)[1], 0.0, 0.5, xtol=1e-14)
+        for place, u, dt, tau in ((x, speed, draw(1.1, 2.0) * stop, stop), (x, speed, 0.5 * stop, 0.5 * stop),
+                                  (far, 0.0, 0.02, 0.02)):
+            way, end = resisted_slide(p, to, t, place, u)
+            got, x_new, v_new = lesson.advance_to_event(resisted_acceleration, t, place, u * to, dt, p)
+            given = f"{p}, t = {t} s, x = {place} m, v = {u * to} m/s, dt = {dt} s"
+            close("time to the stop, or of the step [s]", got, tau, 1e-11, given=given)
+            close("displacement meanwhile [m]", x_new - place, way(tau) * to, 1e-11, given=given)
+            close("velocity then [m/s]", v_new, end(tau) * to, 1e-11, given=given)
+
+
+@exercise("3.11", points=0.25,
           hint="after a stop set v to exact zeros: a remaining round-off would count as motion")
 def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     p, down, tangent, press = slope(draw, lesson, 1.5, 1.2)
@@ -616,6 +748,12 @@ def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw
             close("gap φ [m]: positive inside, negative beyond the wall", phi, (1.0 - share) * p.radius, ROUND_OFF,
                   given=given)
             close("normal n [-]: inward", n, -out, ROUND_OFF, given=given)
+    for across, out in plain_pairs():
+        for axis in (0.0 * across, across * (len(out) - 2)):
+            p = bowl(lesson, draw, axis, len(out))
+            x, p = 0.5 * p.radius * out, p._replace(centre=0.0 * out)
+            close("normal n at a place along a coordinate axis or a diagonal [-]: inward",
+                  lesson.particle_bowl_gap(x, p)[1], -out, ROUND_OFF, given=f"{p}, x = {x} m")
 
 
 @exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
@@ -648,6 +786,13 @@ def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_t
         close("normal velocity after [m/s]", after @ axes[0], e * v_n, ROUND_OFF, given=given)
         close("tangential velocity after [m/s]", after - (after @ axes[0]) * axes[0],
               max(0.0, 1.0 - 1.0 / speed) * slip, ROUND_OFF, given=given)
+    for n, along in plain_pairs():
+        m, e, v_n, mu = draw(0.5, 5.0), draw(0.1, 0.9), draw(0.5, 5.0), draw(0.1, 0.5)
+        limit = mu * (1.0 + e) * v_n
+        v = draw(1.1, 3.0) * limit * along - v_n * n
+        after = v + np.asarray(lesson.particle_contact_impulse(v, n, m, e, mu)) / m
+        close("velocity after an impact with a slip along an axis or a diagonal [m/s]", after,
+              v + (1.0 + e) * v_n * n - limit * along, ROUND_OFF, given=f"v = {v} m/s, n = {n}, m = {m} kg, e = {e}")
 
 
 @exercise("3.13", points=1, hint="v · n ≥ 0 means that the particle is leaving: the impulse is then zero")
@@ -683,7 +828,14 @@ def above(lesson, draw, mu, e, theta=0.0, d=3, turned=True):
 
 
 def swinging_acceleration(t, x, v, p):
-    return np.cos(t) * p.gravity - 10.0 * (x - p.point)
+    return np.cos(t) * p.gravity - 10.0 * (x - p.point) - 3.0 * v
+
+
+def hill_gap(x, p):
+    """A surface that is not in the lesson: (φ, n) of a round hill of radius 1 m around `point`; it ignores p.n."""
+    r = x - p.point
+    distance = np.sqrt(r @ r)
+    return distance - 1.0, r / distance
 
 
 def fly(lesson, step, p, x, v, dt, steps):
@@ -725,8 +877,9 @@ def check_fall(lesson, step, draw, grips, p, down):
 
     t = draw(0.3, 1.0)
     x, v_new = step(swinging_acceleration, lesson.particle_plane_gap, t, begin, v, dt, p)
-    close("velocity where a = g cos t − 10 (x − point) [m/s]", v_new,
-          v + dt * (np.cos(t) * p.gravity - 10.0 * height * p.n), ROUND_OFF, given=f"{p}, v = {v} m/s, t = {t} s")
+    close("velocity where a = g cos t − 10 (x − point) − 3 v [m/s]", v_new,
+          v + dt * (np.cos(t) * p.gravity - 10.0 * height * p.n - 3.0 * v), ROUND_OFF,
+          given=f"{p}, v = {v} m/s, t = {t} s")
     x, v_new = fly(lesson, step, p, p.point + 5e-4 * p.n, 3.0 * down - 1e-3 * dt * p.gravity, dt * 1e-3, 1)
     close("height of a particle that passes half a millimetre above the plane [m]", (x - p.point) @ p.n, 5e-4, 1e-11,
           given=f"{p}")
@@ -746,9 +899,33 @@ def check_fall(lesson, step, draw, grips, p, down):
           p.e * arrives * p.n + (slip - p.mu * (1.0 + p.e) * arrives) * down, ROUND_OFF, given=given)
 
 
+def check_hill(lesson, step, draw, grips):
+    """A particle on a round hill of the test, above and below its top.  p.n is the normal of another surface.
+
+    grips: as in check_fall
+    """
+    for (d, turned), depth in itertools.product(WAYS, (draw(0.005, 0.01), -draw(0.005, 0.01))):
+        p, _ = above(lesson, draw, draw(0.1, 0.3), draw(0.2, 0.9), d=d, turned=turned)
+        axes, dt = frame(draw, d), 0.01
+        n, along = axes[0], along_surface(draw, axes, 1.0)
+        slip, arrives = draw(3.0, 5.0), draw(1.0, 2.0)
+        ends = p.point + (1.0 - depth) * n                               # where it would be without the hill
+        v_free = slip * along - arrives * n
+        x, v = ends - dt * v_free, v_free - dt * p.gravity
+        x_new, v_new = step(lesson.falling_acceleration, hill_gap, 0.0, x, v, dt, p)
+        given = f"{p}, x = {x} m, v = {v} m/s, dt = {dt} s"
+        hits = depth > 0.0
+        close("position after a step at a hill of 1 m around the point, a surface of the test [m]", x_new,
+              ends + hits * depth * (n - grips * p.mu * along), ROUND_OFF, given=given)
+        close("velocity after a step at that hill [m/s]", v_new,
+              v_free + hits * (1.0 + p.e) * arrives * (n - p.mu * along), ROUND_OFF, given=given)
+
+
 @exercise("3.14", points=0.5,
-          hint="put the particle back by −φ n even if its velocity already points out; then do not change its velocity")
+          hint="use φ and n of the surface that is passed in; put the particle back by −φ n even if its velocity "
+               "already points out; then do not change its velocity")
 def test_a_leaving_particle_inside_is_put_back_and_keeps_its_velocity(lesson, draw):
+    check_hill(lesson, lesson.contact_step, draw, 0.0)
     check_way_out(lesson, lesson.contact_step, draw)
     check_just_touching(lesson, lesson.contact_step, draw)
     theta, dt = draw(0.2, 0.8), draw(0.005, 0.02)
@@ -807,9 +984,11 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
         close("tangential correction without displacement, depth or friction [m]: none",
               lesson.friction_position_correction(moved, axes[0], depth, friction), np.zeros(3), 0.0,
               given=f"moved by {moved} m, depth {depth} m, μ = {friction}")
-    for n, along in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0), strict=True):
-        close("tangential correction of a displacement along an axis [m]",
-              lesson.friction_position_correction(along, n, 0.1, 0.5), -0.05 * along, ROUND_OFF, given=f"n = {n}")
+    for n, along in plain_pairs():
+        for size, expected in ((1.0, 0.05), (0.01, 0.01)):
+            got = lesson.friction_position_correction(size * along, n, 0.1, 0.5)
+            close("tangential correction of a displacement along an axis or a diagonal [m]", got, -expected * along,
+                  ROUND_OFF, given=f"moved by {size * along} m, n = {n}, depth 0.1 m, μ = 0.5")
     straight = lesson.friction_position_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
     close("tangential correction of a displacement along −n [m]: none", straight, np.zeros(2), 0.0)
 
@@ -833,9 +1012,11 @@ def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
 
 
 @exercise("3.16", points=0.5,
-          hint="free flight, impact and leaving are as in contact_step; do not correct the slip of a leaving particle")
+          hint="free flight, impact and leaving are as in contact_step, with φ and n of the surface that is passed in; "
+               "do not correct the slip of a leaving particle")
 def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
     falls(lesson, lesson.position_friction_step, draw, 1.0)
+    check_hill(lesson, lesson.position_friction_step, draw, 1.0)
     check_way_out(lesson, lesson.position_friction_step, draw)
     check_just_touching(lesson, lesson.position_friction_step, draw)
     level = lesson.ParticleOnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
@@ -854,17 +1035,18 @@ def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
           hint="½mv² is used up by μ m g times the way: first by that on the strip, the rest behind it")
 def test_a_block_slides_as_far_as_the_times_on_both_materials_allow(lesson, draw):
     for share in (0.0, *draw.within(), *draw.beyond(3.0)):               # of the speed that just crosses the strip
-        width, near, far = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6)
-        v = share * np.sqrt(2.0 * near * G * width)
+        width, near, far, g = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6), draw(1.0, 15.0)
+        v = share * np.sqrt(2.0 * near * g * width)
         if share <= 1.0:
-            expected = v * (v / (near * G)) - 0.5 * near * G * (v / (near * G)) ** 2
+            expected = v * (v / (near * g)) - 0.5 * near * g * (v / (near * g)) ** 2
         else:
             # v t − ½ μ g t² = width at the first root; then half the speed that is left, for the time to rest
-            crossing = (v - np.sqrt(v * v - 2.0 * near * G * width)) / (near * G)
-            slower = v - near * G * crossing
-            expected = width + 0.5 * slower * slower / (far * G)
-        close("way of a block over two materials [m]", lesson.sliding_distance(v, width, near, far, G), expected,
-              ROUND_OFF, given=f"v = {v:.4g} m/s, width = {width:.4g} m, μ = {near:.4g} and {far:.4g}")
+            crossing = (v - np.sqrt(v * v - 2.0 * near * g * width)) / (near * g)
+            slower = v - near * g * crossing
+            expected = width + 0.5 * slower * slower / (far * g)
+        close("way of a block over two materials [m]", lesson.sliding_distance(v, width, near, far, g), expected,
+              ROUND_OFF,
+              given=f"v = {v:.4g} m/s, width = {width:.4g} m, μ = {near:.4g} and {far:.4g}, g = {g:.4g} m/s²")
 
 
 @exercise("3.18", points=1, hint="what holds a block that nothing pulls? And what is the force on it when it slides?")
@@ -876,7 +1058,8 @@ def test_the_chosen_friction_balances_the_pull_up_to_its_limit_and_is_kinetic_be
     choice("the letter of Coulomb's friction", lesson.dry_friction_is(), right)
 
 
-@exercise("3.19", points=1, hint="multiply v_t by a factor from 0 to 1, or each of its components by one of its own")
+@exercise("3.19", points=1, hint="multiply v_t by a factor from 0 to 1, or each of its components by one of its own; "
+               "without a load, j_n = 0, there is no friction")
 def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, draw):
     m, mu, dt = draw(0.5, 2.0), draw(0.3, 0.6), 0.02
     j_n = m * G * dt
@@ -887,6 +1070,9 @@ def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, dra
         close("velocity 4 s after a throw at 3 m/s [m/s]", v, np.zeros(2), ROUND_OFF, given=f"μ = {mu:.4g}")
     for speed in (1e-3, 1.0, 30.0):
         slowed(lesson, speed * draw(-1.0, 1.0, 2), m, draw(0.0, 2.0) * j_n, mu)
+    for v in (*draw(-3.0, 3.0, (4, 2)), *3.0 * np.eye(2), *-3.0 * np.eye(2), np.zeros(2)):
+        close("impulse of your floor without a load, j_n = 0 [N s]", lesson.my_friction(v, m, 0.0, mu), np.zeros(2),
+              0.0, given=f"v_t = {v} m/s, μ = {mu}")
     v = draw(1.5, 3.0, 2)
     got = np.array([lesson.my_friction(k * v, m, j_n, mu) for k in (1.0, 0.3, -1.0)])
     cone = np.array([-mu * j_n * k * v / np.linalg.norm(k * v) for k in (1.0, 0.3, -1.0)])      # none of them stops

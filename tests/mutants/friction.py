@@ -20,6 +20,13 @@ def unit(y):
     return y / size(y) if size(y) > 0.0 else 0.0 * y
 
 
+def partial_tests(of):
+    """(in words, in code): numbers of a vector, the text `of`, that a careless test for zero asks in its place."""
+    return [(words, code.format(of)) for words, code in (
+        ("its first coordinate", "{}[0]"), ("its last coordinate", "{}[-1]"), ("its largest coordinate", "np.max({})"),
+        ("the sum of its coordinates", "np.sum({})"), ("the product of its coordinates", "np.prod({})"))]
+
+
 # 3.1 ------------------------------------------------------------------------------------------------------------
 @right("3.1", "one by one")
 def normal_force(F, n):
@@ -76,6 +83,10 @@ edit("3.2", "compares the squared force with the limit", "size <= limit", "size 
 edit("3.2", "compares the size of F, not that of its tangential part, with the limit", "size <= limit",
      "np.sqrt(F @ F) <= limit")
 edit("3.2", "holds a body that nothing presses", "size <= limit", "size <= limit or F @ n == 0.0")
+for words, test in partial_tests("F_t"):
+    edit("3.2", f"takes a pull for none if {words} is 0", "return -", f"return 0.0 * F_t if {test} == 0.0 else -")
+    edit("3.2", f"does not limit the friction against a pull if {words} is 0", "size <= limit",
+         f"size <= limit or {test} == 0.0")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -108,6 +119,8 @@ edit("3.3", "limits the friction to the force along the surface, as at rest", "c
 edit("3.3", "divides by the speed of the whole motion, not by that along the surface", "-limit / speed",
      "-limit / np.sqrt(v @ v)")
 edit("3.3", "divides by zero where the whole motion is along n", "speed > 0.0", "np.any(v)")
+for words, test in partial_tests("v_t"):
+    edit("3.3", f"takes a slip for none if {words} is 0", "speed > 0.0", f"{test} != 0.0")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -147,6 +160,7 @@ edit("3.4", "reverses the difference: friction minus gravity",
 edit("3.4", "compares the angle itself with μ",
      "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))", "theta <= cone_radius(mu_s, 1.0)")
 edit("3.4", "takes the static coefficient for a block that slides", "cone_radius(mu_k", "cone_radius(mu_s")
+edit("3.4", "slides exactly at the limit of static friction", "<= cone_radius(mu_s", "< cone_radius(mu_s")
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
@@ -178,6 +192,14 @@ edit("3.5", "returns a change of velocity, not an impulse, when it stops the bod
 edit("3.5", "divides by the mass", "return -m * v_t", "return -v_t / m")
 edit("3.5", "forgets the mass in the minimum", "np.minimum(limit, m * speed)", "np.minimum(limit, speed)")
 edit("3.5", "stops whatever slides along an axis", "m * speed <= limit", "m * speed <= limit or np.any(v_t == 0.0)")
+for words, test in partial_tests("v_t"):
+    edit("3.5", f"takes a slip for none if {words} is 0", "return -m",
+         f"return 0.0 * v_t if {test} == 0.0 else -m")
+
+
+@right("3.5", "as a list")
+def friction_impulse(v_t, m, j_n, mu):
+    return worked.friction_impulse(v_t, m, j_n, mu).tolist()
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
@@ -225,6 +247,9 @@ edit("3.6", "shortens the impulse of the pyramid to the radius of the cone", "re
      "return -min(1.0, limit / max(np.hypot(first, second), 1e-300)) * (first * t_1 + second * t_2)")
 edit("3.6", "leaves out a body that slides along one of the tangents", "return -first * t_1 - second * t_2",
      "return (-first * t_1 - second * t_2) * (first * second != 0.0)")
+for words, test in partial_tests("v_t"):
+    edit("3.6", f"takes a slip for none if {words} is 0", "return -first",
+         f"return 0.0 * v_t if {test} == 0.0 else -first")
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
@@ -282,6 +307,13 @@ edit("3.7", "exchanges place and velocity in the call of the acceleration", "acc
      "acceleration(t, v, x, p)")
 edit("3.7", "returns the state unchanged where there is no load", "if not np.any(v) and",
      "if not np.any(a) or not np.any(v) and")
+for words, test in partial_tests("v"):
+    edit("3.7", f"takes a block for one at rest if {words} is 0", "not np.any(v)", f"{test} == 0.0")
+edit("3.7", "computes the acceleration of a block at rest", "acceleration(t, x, v, p)",
+     "acceleration(t, x, 0.0 * v, p)")
+edit("3.7", "computes the acceleration at the origin", "acceleration(t, x, v, p)", "acceleration(t, 0.0 * x, v, p)")
+edit("3.7", "uses a law of the lesson in place of the one that is passed in", "acceleration(t, x, v, p)",
+     "driven_acceleration(t, x, v, p)")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -323,6 +355,12 @@ edit("3.8", "exchanges place and velocity in the call of the acceleration", "acc
 GRAVITY = edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
 edit("3.8", "lets the block slip exactly on the edge of the cone", "pull > cone", "pull >= cone")
 edit("3.8", "does not break away where there is no friction", "pull > cone", "p.mu_s > 0.0 and pull > cone")
+for words, test in partial_tests("v"):
+    edit("3.8", f"takes a block for one at rest if {words} is 0", "speed != 0.0", f"{test} != 0.0")
+for words, test in partial_tests("a_t"):
+    edit("3.8", f"takes a pull for none if {words} is 0", "a_t / pull if", f"a_t / pull if {test} != 0.0 and")
+edit("3.8", "uses a law of the lesson in place of the one that is passed in", "acceleration(t, x, v, p)",
+     "driven_acceleration(t, x, v, p)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -361,6 +399,14 @@ edit("3.9", "returns zero for a block that goes on", "return dt", "return 0.0")
 edit("3.9", "interpolates the speed along a straight line between the ends of the step", "return stopped",
      "return dt * (v @ d) / ((v - kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1]) @ d)")
 edit("3.9", "does not stop where there is no friction", "return stopped", "return stopped if p.mu_k > 0.0 else dt")
+WHOLE, PART = "acceleration, t, x, v, dt, d, p", "acceleration, t, x, v, middle, d, p"
+for story, old, new in (("takes the place of the block to be the origin", "t, x", "t, 0.0 * x"),
+                        ("begins at time 0", "t, x", "0.0, x"),
+                        ("uses a law of the lesson in place of the one that is passed in", "acceleration",
+                         "driven_acceleration")):
+    edit("3.9", f"{story}, while it halves", PART, PART.replace(old, new))
+edit("3.9", "uses a law of the lesson in place of the one that is passed in, for the whole step", WHOLE,
+     f"driven_{WHOLE}")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -398,6 +444,14 @@ edit("3.10", "returns infinity if the block still holds", "return dt", "return n
 edit("3.10", "takes a slip along an axis for rest", "if np.any(slip", "if np.all(slip")
 edit("3.10", "exchanges place and velocity", "t + middle, x, v, p", "t + middle, v, x, p")
 edit("3.10", "holds for the whole step if it begins at t = 0", "return slips", "return slips if t > 0.0 else dt")
+for words, test in partial_tests("slip_direction(acceleration, t + middle, x, v, p)"):
+    edit("3.10", f"takes a slip for rest if {words} is 0", "np.any(slip_direction(acceleration, t + middle, x, v, p))",
+         f"{test} != 0.0")
+for words, test in partial_tests("slip_direction(acceleration, t + dt, x, v, p)"):
+    edit("3.10", f"takes a slip at the end of the step for rest if {words} is 0",
+         "not np.any(slip_direction(acceleration, t + dt, x, v, p))", f"{test} == 0.0")
+edit("3.10", "uses a law of the lesson in place of the one that is passed in", "acceleration, t + middle",
+     "driven_acceleration, t + middle")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -431,6 +485,21 @@ edit("3.11", "returns the rest of the step as the time", "return tau, x, v if", 
 edit("3.11", "exchanges the two cases", "if not np.any(d)", "if np.any(d)")
 edit("3.11", "stops the block that goes on, and lets the other one go on", "tau == dt", "tau != dt")
 edit("3.11", "stops a block without friction", "v if tau == dt", "v if tau == dt and p.mu_k > 0.0")
+for words, test in partial_tests("d"):
+    edit("3.11", f"takes a slip for rest if {words} is 0", "not np.any(d)", f"{test} == 0.0")
+edit("3.11", "returns the time of the stop in place of the duration of the slide", "return tau, x", "return t + tau, x")
+for name, call in (("stopping_time", "acceleration, t, x, v, dt, d, p"),
+                   ("kinetic_friction_step", "acceleration, t, x, v, tau, d, p"),
+                   ("slip_direction", "acceleration, t, x, v, p")):
+    for story, old, new in (("at time 0", " t,", " 0.0,"), ("at the origin", " x,", " 0.0 * x,"),
+                            ("under a law of the lesson, not the one that is passed in", "acc", "driven_acc")):
+        edit("3.11", f"calls {name} {story}", f"{name}({call})", f"{name}({call.replace(old, new)})")
+edit("3.11", "slides with the deceleration of the start", "kinetic_friction_step(acceleration, t, x, v, tau, d, p)",
+     "(lambda b: (x + tau * v + 0.5 * tau * tau * b, v + tau * b))("
+     "(kinetic_friction_step(acceleration, t, x, v, 1e-7 * dt, d, p)[1] - v) / (1e-7 * dt))")
+edit("3.11", "slides along the motion, with friction of the static coefficient",
+     "kinetic_friction_step(acceleration, t, x, v, tau, d, p)",
+     "kinetic_friction_step(acceleration, t, x, v, tau, d, p._replace(mu_k=p.mu_s))")
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
@@ -465,6 +534,8 @@ edit("3.12", "compares the squared distance with the radius", "distance = np.sqr
 edit("3.12", "divides the normal of a trough by the distance from its centre, not from its axis", "-r / distance if",
      "-r / np.sqrt((x - p.centre) @ (x - p.centre)) if")
 edit("3.12", "divides by zero on the axis of a trough", "distance > 0.0", "np.any(x != p.centre)")
+for words, test in partial_tests("r"):
+    edit("3.12", f"takes a place for the centre if {words} is 0, seen from there", "distance > 0.0", f"{test} != 0.0")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
@@ -505,6 +576,9 @@ edit("3.13", "returns a velocity: divides by the mass",
      "(j_n * n + friction_impulse(tangential(v, n), m, j_n, mu)) / m")
 edit("3.13", "returns the velocity after the impact", "return j_n * n + f", "return v + j_n * n + f")
 edit("3.13", "stops a particle that does not bounce", "return j_n * n", "return -m * v if e == 0.0 else j_n * n")
+for words, test in partial_tests("tangential(v, n)"):
+    edit("3.13", f"omits the friction of a slip if {words} is 0", "+ friction_impulse(tangential(v, n)",
+         f"+ ({test} != 0.0) * friction_impulse(tangential(v, n)")
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
@@ -569,6 +643,16 @@ edit("3.16", "returns the velocity before the impulse",
      "v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m", "pass")
 edit("3.14", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
 edit("3.16", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
+SURFACE = "phi, n = surface(x, p)"
+for number in ("3.14", "3.16"):
+    edit(number, "always takes the plane, whatever surface is passed in", SURFACE, "phi, n = particle_plane_gap(x, p)")
+    edit(number, "takes the normal of the plane on every surface", SURFACE, f"{SURFACE}; n = p.n")
+    edit(number, "computes the acceleration of a particle at rest", "acceleration(t, x, v, p)",
+         "acceleration(t, x, 0.0 * v, p)")
+    edit(number, "takes the normal of the plane for the impulse", "particle_contact_impulse(v, n,",
+         "particle_contact_impulse(v, p.n,")
+edit("3.16", "takes the normal of the plane for the displacement", "friction_position_correction(moved, n",
+     "friction_position_correction(moved, p.n")
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
@@ -595,6 +679,9 @@ edit("3.15", "returns the whole displacement along the surface",
 edit("3.15", "takes the normal part of the displacement for the depth", "1.0, depth", "1.0, max(0.0, -(moved @ n))")
 edit("3.15", "takes back everything where there is no depth", "return friction_impulse",
      "return -tangential(moved, n) if depth == 0.0 else friction_impulse")
+for words, test in partial_tests("tangential(moved, n)"):
+    edit("3.15", f"corrects no displacement if {words} is 0", "return friction_impulse",
+         f"return ({test} != 0.0) * friction_impulse")
 
 
 # 3.17 -----------------------------------------------------------------------------------------------------------
@@ -620,6 +707,9 @@ edit("3.17", "divides by the mean of both frictions behind the strip", "left / (
      "left / (0.5 * (mu_near + mu_far)")
 edit("3.17", "slides over the whole strip from rest", "return 0.5 * v * v / (mu_near * g)",
      "return 0.5 * v * v / (mu_near * g) if v > 0.0 else width")
+edit("3.17", "takes the gravity of the earth on the strip", "mu_near * g * width", "mu_near * 9.81 * width")
+edit("3.17", "takes the gravity of the earth behind the strip", "mu_far * g", "mu_far * 9.81")
+edit("3.17", "takes the gravity of the earth for a block that stops on the strip", "(mu_near * g)", "(mu_near * 9.81)")
 
 
 # 3.18 -----------------------------------------------------------------------------------------------------------
@@ -664,5 +754,8 @@ edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST,
 edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST, "return -mu * j_n * v_t")
 edit("3.19", "turns the block round without slowing it", FIRST, "return -2.0 * m * v_t")
 edit("3.19", "brakes along the blade only", "np.sign(v_t[1]) * across", "0.0")
+edit("3.19", "stops the block at once, even without a load", FIRST, "return -m * v_t")
+edit("3.19", "takes the load of a block of 1 kg, whatever the load is", FIRST,
+     "j_n = 0.2; along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",
      "[np.sign(v_t[1]) * across, np.sign(v_t[0]) * along]")
