@@ -33,6 +33,24 @@ def direction(draw, d):
     return y / np.linalg.norm(y)
 
 
+def never_zero(draw, d):
+    """Vectors (d,) that are not 0: some with one component, and some whose components add up to exactly 0.
+
+    A test for zero by the sum of the components, or by one of them, takes some of these for 0.  They are multiples of
+    ¼, and so are the positions to which they are added: so differences are exact.
+    """
+    axes = np.eye(d)
+    others = [np.roll(axes[0] - axes[1], k) for k in range(d)]
+    if d == 3:
+        others += [np.roll([1.0, 1.0, -2.0], k) for k in range(3)]
+    return [0.25 * draw.whole(1, 8) * sign * y for y in (*axes, *others) for sign in (1.0, -1.0)]
+
+
+def whole_place(draw, d):
+    """A drawn position (d,) [m] in whole numbers."""
+    return np.array([float(draw.whole(-3, 3)) for _ in range(d)])
+
+
 def network(lesson, inv_mass, pairs, rest, d=2, stiffness=1.0, alpha=0.0, sweeps=1, g=G):
     """A ConstraintNetwork that the lesson has not checked; gravity along the negative last axis."""
     pairs = np.array(pairs, dtype=np.int64)
@@ -106,6 +124,12 @@ def a_new_array(quantity, got, given):
           hint="C is positive where the points are too far apart; n points from j to i and has length 1")
 def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw):
     for d in (2, 3):
+        for r in never_zero(draw, d):
+            x_j, rest, length = whole_place(draw, d), draw(0.5, 3.0), np.linalg.norm(r)
+            C, gradient = lesson.distance_constraint(x_j + r, x_j, rest)
+            given = f"x_i = {x_j + r} m, x_j = {x_j} m, rest = {rest} m"
+            close("constraint C of a link that has a length [m]", C, length - rest, ROUND_OFF, given=given)
+            close("gradient of C of a link that has a length [-]", gradient, r / length, ROUND_OFF, given=given)
         for n in (direction(draw, d), *np.eye(d), *-np.eye(d)):
             length, rest = draw(0.5, 3.0), draw(0.5, 3.0)
             for x_j in (draw(-2.0, 2.0, d), draw.sparse(-2.0, 2.0, d), np.zeros(d), 0.0 - length * n):

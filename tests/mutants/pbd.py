@@ -44,6 +44,8 @@ edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
 edit("8.1", "treats a link that is too long as satisfied", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "reverses the gradient where the link is too short", "r / length", "r / length * np.sign(rest - length)")
 edit("8.1", "refuses links along the second axis", "length == 0.0", "r[0] == 0.0")
+edit("8.1", "refuses links whose components add up to 0", "length == 0.0", "np.sum(r) == 0.0")
+
 edit("8.1", "refuses a link whose first end is at the origin", "length == 0.0", "length == 0.0 or not x_i.any()")
 edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 edit("8.1", "adds the rest length", "length - rest", "length + rest")
