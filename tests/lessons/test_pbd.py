@@ -176,7 +176,7 @@ def test_subtracting_C_n_restores_the_rest_length_at_any_size_and_place(lesson, 
                       np.linalg.norm(x_i - place) / size, ROUND_OFF, given)
 
 
-@exercise("8.2", points=1,
+@exercise("8.2", points=0.5,
           hint="Λ = −C/Σ w|∇C|² is the same for all points; each point moves by w Λ along its own gradient")
 def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse_mass(lesson, draw):
     for k, d in ((2, 2), (4, 3)):
@@ -199,6 +199,25 @@ def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse
     g, w, C = draw(0.5, 2.0, (1, 3)), draw(0.2, 2.0, 1), draw(0.5, 2.0)
     close("correction of a constraint of one point [m]", lesson.constraint_correction(C, g, w),
           -C / np.sum(g * g) * g, ROUND_OFF, given=f"C = {C}, ∇C = {g.tolist()}, w = {w}")
+
+
+@exercise("8.2", points=0.5,
+          hint="Σ w |∇C|² is a sum of squares: it is above 0 where the gradients add up to 0, as those of a link do")
+def test_gradients_that_add_up_to_zero_share_the_correction_too(lesson, draw):
+    """The gradients of a link are n and −n.  Truth: Σ Δx²/w is the least, which NumPy's pseudoinverse finds."""
+    for d in (2, 3):
+        for n in never_zero(draw, d):
+            heavy, C = 2.0 ** draw.whole(-2, 2), draw(0.5, 2.0) * (2 * draw.whole(0, 1) - 1)
+            ends = np.stack((n, -n))
+            for gradients, w in ((ends, (heavy, heavy)), (ends, (0.0, heavy)), (2.0 * ends, draw(0.2, 2.0, 2)),
+                                 (np.stack((2.0 * n, -n)), (heavy, 2.0 * heavy)), (n[None], (heavy,)),
+                                 (np.stack((n, n, -2.0 * n)), (heavy, heavy, heavy))):
+                w = np.array(w)
+                root = np.sqrt(w)[:, None]
+                least = np.linalg.pinv((root * gradients).reshape(1, -1)).reshape(-1, d)
+                close("corrections of points whose gradients, or their components, add up to 0 [m]",
+                      lesson.constraint_correction(C, gradients, w), -C * root * least, ROUND_OFF * 10.0,
+                      given=f"C = {C}, ∇C = {gradients.tolist()}, w = {w}")
 
 
 @exercise("8.2", points=0.5, hint="if Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
@@ -316,8 +335,14 @@ def test_redundant_links_share_a_change_of_their_multipliers_by_the_trace(lesson
     ε is 1e-13 of w_i + w_j, whose round-off is 1e-16. So ε is effective to a thousandth, and after a few dozen
     operations to a few per cent.
     """
+    # In the second and third the sum of two is neither the larger of both nor twice it.
+    for w in ([0.25, 1.0, 4.0], [4.0, 4.0, 0.25], [4.0, 0.25, 4.0]):
+        check_redundant_links(lesson, draw, np.array(w))
+
+
+def check_redundant_links(lesson, draw, w):
+    """Compare the multipliers of three collinear points, of these inverse masses, with what their ε select."""
     dt = draw(0.1, 0.3)
-    w = np.array([0.25, 1.0, 4.0])
     gaps = 2.0 ** np.array([draw.whole(-1, 1), draw.whole(-1, 1)])
     # In powers of two C is exactly 0.
     x = np.array([[0.0, 0.0], [gaps[0], 0.0], [gaps[0] + gaps[1], 0.0]])
@@ -343,7 +368,8 @@ def carried_along(step, lesson, draw, x, dt, p, left):
     The immovable point keeps its velocity. The other has its own acceleration. The link keeps the share `left` of its
     error.
     """
-    v = np.stack((draw(1.0, 2.0, 2), draw(-0.5, 0.5, 2)))
+    d = x.shape[1]
+    v = np.stack((draw(1.0, 2.0, d), draw(-0.5, 0.5, d)))
     t = draw(0.5, 2.0)
     new, v_new = step(swirl, t, x, v, dt, p)
     held = x[0] + dt * v[0]
@@ -356,11 +382,22 @@ def carried_along(step, lesson, draw, x, dt, p, left):
     close("velocities of both points [m/s]", v_new, (expected - x) / dt, 1e-11 / dt, given=given)
 
 
-@exercise("8.5", points=0.5,
+@exercise("8.5", points=0.25,
           hint="the velocity is the displacement of the points over dt; "
                "repeat Newton's iterations until nothing changes")
 def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gravity(lesson, draw):
-    x, p = chain(lesson, draw, 3, 2, held=False)
+    for d in (2, 3):
+        check_free_chain(lesson, draw, d)
+        dt, length = draw(0.02, 0.1), draw(0.5, 2.0)
+        x = np.stack((np.zeros(d), -length * np.eye(d)[-1]))
+        for g in (G, 0.0):
+            p = network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, d, g=g)
+            carried_along(lesson.constraint_projection_step, lesson, draw, x, dt, p, 0.0)
+
+
+def check_free_chain(lesson, draw, d):
+    """Check lengths, velocity and momentum of a free chain after a step, and its points without their links."""
+    x, p = chain(lesson, draw, 3, d, held=False)
     p = p._replace(rest=lengths(x, p))
     v = draw(-1.0, 1.0, x.shape)
     dt = draw(0.02, 0.1)
@@ -377,11 +414,6 @@ def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gra
                                                    without_links(p)._replace(inv_mass=p.inv_mass[:len(free)]))
         close("positions of points without links after a step [m]", new, free + dt * rest + dt * dt * p.gravity,
               ROUND_OFF, given=f"x = {free.tolist()} m, v = {rest.tolist()} m/s, dt = {dt} s, g = {p.gravity} m/s²")
-    length = draw(0.5, 2.0)
-    x = np.array([[0.0, 0.0], [0.0, -length]])
-    for g in (G, 0.0):
-        p = network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, g=g)
-        carried_along(lesson.constraint_projection_step, lesson, draw, x, dt, p, 0.0)
 
 
 @exercise("8.5", points=0.25,
@@ -425,6 +457,34 @@ def test_fast_points_and_short_links_converge_from_where_the_step_begins(lesson,
         new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, 0.0 * x, 0.01, p)
         close("lengths of a long and a short link after a step [m]", lengths(np.asarray(new, dtype=float), p),
               rest, 1e-11, given=f"x = {x.tolist()} m, at rest, dt = 0.01 s, g = 1e-4 m/s², {p}")
+
+
+@exercise("8.5", points=0.25,
+          hint="test |Δx| of every coordinate of every point: those of two points, or of two coordinates, may cancel")
+def test_two_points_turn_until_their_link_is_in_line_with_the_prediction(lesson, draw):
+    """The link pulls along its new direction, and both points with the same force.
+
+    So the new ends are on the line of the predicted ones, and their centre of mass is the predicted one.  Where the
+    masses are equal and the velocities opposite, the corrections add up to 0.  Where a link turns out of an axis, the
+    first correction along that axis is 0.
+    """
+    for d in (2, 3):
+        axes, size = np.eye(d), draw(0.5, 2.0)
+        cases = [(a, b, w, 0.0) for a in axes for b in axes if a @ b == 0.0
+                 for w in ((1.0, 1.0), (0.0, 1.0), (1.0, 0.0))]
+        cases += [(direction(draw, d), draw(-1.0, 1.0, d), w, g)
+                  for w, g in (((1.0, 1.0), 0.0), (draw(0.5, 2.0, 2), G), ((0.0, 1.0), G), ((1.0, 0.0), G))]
+        cases += [(y / np.linalg.norm(y), np.roll(y, 1), (1.0, 1.0), 0.0) for y in never_zero(draw, d)[::3]]
+        for n, across, w, g in cases:
+            w, dt = np.array(w), draw(0.05, 0.1)
+            x, v = 0.5 * size * np.stack((-n, n)), draw(1.0, 3.0) * size * np.stack((-across, across))
+            p = network(lesson, w, [(1, 0)], size, d, g=g)
+            goal = x + dt * v + dt * dt * np.where(w[:, None] > 0.0, p.gravity, 0.0)
+            r = goal[1] - goal[0]
+            push = (np.linalg.norm(r) - size) / w.sum() * r / np.linalg.norm(r)
+            new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, v, dt, p)
+            close("two points after a step [m]", new, goal + np.stack((w[0] * push, -w[1] * push)), 1e-11,
+                  given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, {p}")
 
 
 @exercise("8.5", points=0.25,
@@ -474,6 +534,7 @@ def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(less
     # Along an axis, from the origin, where the other coordinates of the ends are equal.
     begins += [np.stack((np.zeros(d), sign * draw(2.0, 3.0) * axis)) for d in (2, 3) for sign in (1.0, -1.0)
                for axis in np.eye(d)]
+    begins += [np.stack((y, np.zeros(d))) for d in (2, 3) for y in never_zero(draw, d)]
     for x in begins:
         d, s, w = x.shape[1], draw(0.2, 0.9), draw(0.3, 2.0, 2)
         almost = np.linalg.norm(x[0] - x[1]) * (1.0 + 1e-8 * draw(0.5, 2.0))
@@ -816,6 +877,8 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
 def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(lesson, draw):
     axes = [(d, draw(0.001, 0.1), draw(0.5, 1.0), np.stack((np.zeros(d), sign * draw(2.0, 3.0) * axis)))
             for d in (2, 3) for axis in np.eye(d) for sign in (1.0, -1.0)]               # from the origin along an axis
+    axes += [(d, draw(0.001, 0.1), draw(0.5, 1.0), np.stack((y, np.zeros(d)))) for d in (2, 3)
+             for y in never_zero(draw, d)]
     for d, alpha, rest, *x in ((2, draw(0.001, 0.1), draw(0.5, 1.0)), (3, draw(0.001, 0.1), draw(8.0, 9.0)),
                                (2, 0.0, draw(0.5, 1.0)), (3, 0.0, draw(8.0, 9.0)),   # α = 0 pulls and pushes, too
                                (2, draw(0.001, 0.1), None), *axes):      # at its rest length its old Λ acts alone
@@ -902,9 +965,9 @@ def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, d
         soft = 1.0 / (k * dt * dt)
         for gravity in (p.gravity, np.zeros(2)):
             carried_along(lesson.xpbd_step, lesson, draw, x, dt, p._replace(gravity=gravity), soft / (1.0 / m + soft))
-        # Three parallel springs: more links than points, each with its own Λ.
-        soft = soft * draw(0.5, 2.0, 3)
-        side_by_side = network(lesson, [0.0, 1.0 / m], [(0, 1)] * 3, rest, 2, 1.0, soft * dt * dt)
+        # Parallel springs: more links than points and than coordinates, each with its own Λ.
+        soft = soft * draw(0.5, 2.0, draw.whole(5, 8))
+        side_by_side = network(lesson, [0.0, 1.0 / m], [(0, 1)] * soft.size, rest, 2, 1.0, soft * dt * dt)
         carried_along(lesson.xpbd_step, lesson, draw, x, dt, side_by_side, np.prod(soft / (1.0 / m + soft)))
     sweeps_of_a_chain(lesson.xpbd_step, lesson, draw, soft=True)
 

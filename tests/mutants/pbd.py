@@ -45,7 +45,6 @@ edit("8.1", "treats a link that is too long as satisfied", "length - rest", "min
 edit("8.1", "reverses the gradient where the link is too short", "r / length", "r / length * np.sign(rest - length)")
 edit("8.1", "refuses links along the second axis", "length == 0.0", "r[0] == 0.0")
 edit("8.1", "refuses links whose components add up to 0", "length == 0.0", "np.sum(r) == 0.0")
-
 edit("8.1", "refuses a link whose first end is at the origin", "length == 0.0", "length == 0.0 or not x_i.any()")
 edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 edit("8.1", "adds the rest length", "length - rest", "length + rest")
@@ -84,6 +83,15 @@ edit("8.2", "solves for each point on its own", "-C / weight * inv_mass[:, None]
 edit("8.2", "refuses small masses", "weight == 0.0", "weight < 1e-6")
 edit("8.2", "refuses only where all masses are infinite or all gradients 0", "weight == 0.0",
      "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
+edit("8.2", "refuses gradients that add up to 0", "weight == 0.0", "weight == 0.0 or np.sum(gradients) == 0.0")
+edit("8.2", "refuses gradients that add up to 0 with their inverse masses", "weight == 0.0",
+     "np.sum(inv_mass[:, None] * gradients) == 0.0")
+edit("8.2", "refuses a constraint of which the gradients of each point add up to 0", "weight == 0.0",
+     "not np.any(np.sum(gradients, axis=1))")
+edit("8.2", "refuses a constraint of which the points' gradients cancel", "weight == 0.0",
+     "weight == 0.0 or not np.any(inv_mass @ gradients)")
+edit("8.2", "refuses a constraint of which all gradients have no first component", "weight == 0.0",
+     "weight == 0.0 or not np.any(gradients[:, 0])")
 edit("8.2", "refuses very small masses and gradients", "weight == 0.0", "weight < 1e-20")
 edit("8.2", "takes the gradient of a single point for a unit vector", "return -C / weight",
      "return -C * gradients if inv_mass.size == 1 else -C / weight")
@@ -190,6 +198,15 @@ edit("8.4", "assumes that link s joins the points s and s + 1", "for s in range(
 edit("8.4", "uses the mass of one end only in the regularisation",
      "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
      "network.inv_mass[network.i[s]]")
+edit("8.4", "uses the larger of both inverse masses in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "np.maximum(network.inv_mass[network.i[s]], network.inv_mass[network.j[s]])")
+edit("8.4", "uses the smaller of both inverse masses in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "np.minimum(network.inv_mass[network.i[s]], network.inv_mass[network.j[s]])")
+edit("8.4", "uses the root of the sum of the squares of both inverse masses in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "np.hypot(network.inv_mass[network.i[s]], network.inv_mass[network.j[s]])")
 edit("8.4", "adds C in place of subtracting it", "-C[s] - trace", "C[s] - trace")
 edit("8.4", "takes the compliance on the diagonal with the wrong sign",
      "A[size + s, size + s] = -trace", "A[size + s, size + s] = trace")
@@ -223,6 +240,17 @@ wrong("8.5", "stops after two iterations")(projecting(enough=lambda done, change
 wrong("8.5", "compares the change with an absolute 1e-12 m")(
     projecting(enough=lambda done, change, longest: change <= 1e-12))
 edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
+edit("8.5", "tests the sum of all corrections", "np.max(np.abs(change))", "np.abs(np.sum(change))")
+edit("8.5", "tests the sum of the corrections of each coordinate", "np.max(np.abs(change))",
+     "np.max(np.abs(np.sum(change, axis=0)))")
+edit("8.5", "tests the sum of the corrections of each point", "np.max(np.abs(change))",
+     "np.max(np.abs(np.sum(change, axis=1)))")
+edit("8.5", "tests the first coordinate only", "np.max(np.abs(change))", "np.max(np.abs(change[:, 0]))")
+edit("8.5", "tests the last coordinate only", "np.max(np.abs(change))", "np.max(np.abs(change[:, -1]))")
+edit("8.5", "tests the first point only", "np.max(np.abs(change))", "np.max(np.abs(change[0]))")
+edit("8.5", "tests the last point only", "np.max(np.abs(change))", "np.max(np.abs(change[-1]))")
+edit("8.5", "corrects the first two coordinates only", "new = new + change",
+     "change[:, 2:] = 0.0\n        new = new + change")
 wrong("8.5", "does not raise Diverged")(projecting(gives_up=False))
 wrong("8.5", "keeps the predicted velocity")(projecting(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.5", "keeps the old velocity")(projecting(speed=lambda new, x, goal, v, dt: v))
@@ -287,6 +315,7 @@ wrong("8.6", "moves immovable points")(sweeping(held=False))
 edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
      "share = network.stiffness[s] * (length > network.rest[s])")
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
+edit("8.6", "refuses links whose components add up to 0", "length == 0.0", "np.sum(x[i] - x[j]) == 0.0")
 edit("8.6", "refuses links along the second axis", "length == 0.0", "x[i, 0] == x[j, 0]")
 edit("8.6", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.6", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
@@ -659,6 +688,7 @@ edit("8.13", "skips links that have their rest length", "length = distance_betwe
      "length = distance_between(x, i, j)\n"
      "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
 edit("8.13", "refuses links shorter than a nanometre", "length == 0.0", "length < 1e-9")
+edit("8.13", "refuses links whose components add up to 0", "length == 0.0", "np.sum(x[i] - x[j]) == 0.0")
 edit("8.13", "refuses links along the second axis", "length == 0.0", "x[i, 0] == x[j, 0]")
 edit("8.13", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.13", "divides α by the number of sweeps",
@@ -701,6 +731,7 @@ wrong("8.14", "halves the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 *
 edit("8.14", "uses the last Λ for all links", "compliant_sweep(new, Lam, dt, network)",
      "compliant_sweep(new, np.full(network.i.size, Lam[-1]), dt, network)")
 edit("8.14", "keeps one Λ per point, not per link", "np.zeros(network.i.size)", "np.zeros(x.shape[0])")
+edit("8.14", "keeps one Λ per coordinate, not per link", "np.zeros(network.i.size)", "np.zeros(x.size)")
 edit("8.14", "uses gravity in place of the acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.14", "takes the acceleration at time t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
 wrong("8.14", "makes at most five sweeps")(soft_step(sweeps=lambda n: min(n, 5)))
