@@ -472,8 +472,13 @@ edit("8.9", "limits the share of c to 0 … 1", "dot(b - c, e) / squared",
      "min(1.0, max(0.0, dot(b - c, e) / squared))")
 edit("8.9", "limits the share of d to 0 … 1", "dot(b - d, e) / squared",
      "min(1.0, max(0.0, dot(b - d, e) / squared))")
-edit("8.9", "brings the angle into [−π, π)",
-     "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
+edit("8.9", "refuses triangles of whose normal the components add up to 0", "squared_c == 0.0 or squared_d == 0.0",
+     "np.sum(N_c) == 0.0 or np.sum(N_d) == 0.0")
+edit("8.9", "tests the components of one normal by their sum", "squared_d == 0.0:", "np.sum(N_d) == 0.0:")
+edit("8.9", "refuses triangles whose normal has no first component", "squared_c == 0.0 or squared_d == 0.0",
+     "N_c[0] == 0.0 or N_d[0] == 0.0")
+edit("8.9", "takes a turn to half a turn for a whole one", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "np.ceil((turn - 3.0) / (2.0 * np.pi))")
 edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
 edit("8.9", "tests the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
@@ -488,6 +493,13 @@ edit("8.9", "refuses coincident corners only", "squared_c == 0.0 or squared_d ==
      "not all([(x[i] - x[j]).any() for i, j in ((0, 1), (0, 2), (1, 2), (0, 3), (1, 3))])")
 edit("8.9", "accepts an edge without length", "squared_c == 0.0 or squared_d == 0.0",
      "squared > 0.0 and (squared_c == 0.0 or squared_d == 0.0)")
+
+
+right("8.9", "brings the angle into [−π, π): half a turn has either sign")(
+    folding(wrapped=lambda C: (C + np.pi) % (2.0 * np.pi) - np.pi))
+right("8.9", "takes the angle of the sine and the cosine")(folding(wrapped=lambda C: np.arctan2(np.sin(C), np.cos(C))))
+right("8.9", "subtracts the nearest number of turns")(
+    folding(wrapped=lambda C: C - 2.0 * np.pi * np.round(C / (2.0 * np.pi))))
 
 
 @right("8.9", "normals from the edge, the angle from its sine and cosine")
@@ -541,6 +553,9 @@ edit("8.10", "treats the ball as a bowl",
 edit("8.10", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 edit("8.10", "treats round-off around the centre as the centre", "distance > 0.0", "distance > 1e-14")
 edit("8.10", "returns no normal where a coordinate is that of the centre", "distance > 0.0", "np.all(r)")
+edit("8.10", "returns no normal where the components of x − centre add up to 0", "distance > 0.0", "np.sum(r) != 0.0")
+edit("8.10", "takes a point for the centre if its coordinates less those of the centre add up to 0",
+     "distance - obstacle.radius", "(distance if np.sum(r) else 0.0) - obstacle.radius")
 wrong("8.10", "reverses the sign of the gap")(ball(sign=-1.0))
 wrong("8.10", "returns a normal that points inwards")(ball(n_sign=-1.0))
 wrong("8.10", "puts the centre of the ball at the origin")(ball(centred=False))
@@ -584,6 +599,9 @@ edit("8.11", "returns three coordinates, also in the plane",
 edit("8.11", "moves a point at the centre of a ball upwards", "x[k] -= phi * n",
      "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
 edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
+edit("8.11", "leaves points where the components of n add up to 0", "phi < 0.0 and",
+     "phi < 0.0 and np.sum(n) != 0.0 and")
+edit("8.11", "leaves points where n has no first component", "phi < 0.0 and", "phi < 0.0 and n[0] != 0.0 and")
 edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
 edit("8.11", "returns a point that is alone as a vector", "return x", "return x if len(x) > 1 else x[0]")
 edit("8.11", "returns its input where nothing is inside", "x = float_copy(x)",
@@ -777,6 +795,8 @@ edit("8.15", "subtracts the rotation", "1.0 / m + np", "1.0 / m - np")
 edit("8.15", "does not square the lever r × n", "turn * turn", "np.abs(turn)")
 edit("8.15", "omits the rotation of a body with two equal moments", "turn = unrotate",
      "if I_body[0] == I_body[1]:\n        return 1.0 / m\n    turn = unrotate")
+edit("8.15", "omits the rotation where the components of r × n add up to 0", "turn = unrotate",
+     "if np.sum(cross(r, n)) == 0.0:\n        return 1.0 / m\n    turn = unrotate")
 edit("8.15", "omits the rotation of a body in the orientation (1, 0, 0, 0)", "turn = unrotate",
      "if q[0] == 1.0:\n        return 1.0 / m\n    turn = unrotate")
 
@@ -815,6 +835,10 @@ edit("8.16", "moves the body and does not rotate it", "quaternion_update(q, turn
 edit("8.16", "exchanges rotate and unrotate",
      "rotate(q, unrotate(q, cross(r, p)) / I_body)", "unrotate(q, rotate(q, cross(r, p)) / I_body)")
 edit("8.16", "rotates by p in place of r × p", "cross(r, p)", "p")
+edit("8.16", "does not rotate where the components of r × p add up to 0", "return x + p / m,",
+     "if np.sum(cross(r, p)) == 0.0:\n        return x + p / m, q\n    return x + p / m,")
+edit("8.16", "does not rotate where r × p has no last component", "return x + p / m,",
+     "if cross(r, p)[2] == 0.0:\n        return x + p / m, q\n    return x + p / m,")
 edit("8.16", "does not rotate a body in the orientation (1, 0, 0, 0)", "return x + p / m,",
      "if q[0] == 1.0:\n        turn = 0.0 * turn\n    return x + p / m,")
 
@@ -859,6 +883,8 @@ edit("8.17", "multiplies by dt", "2.0 / (turn[0] * dt)", "2.0 * dt / turn[0]")
 edit("8.17", "takes half in place of twice", "2.0 / (turn[0]", "0.5 / (turn[0]")
 edit("8.17", "returns no rate for a body that starts in the orientation (1, 0, 0, 0)", "return 2.0",
      "if q_old[0] == 1.0:\n        return np.zeros(3)\n    return 2.0")
+edit("8.17", "returns no rate where the components of the axis add up to 0", "return 2.0",
+     "if np.sum(turn[1:]) == 0.0:\n        return np.zeros(3)\n    return 2.0")
 edit("8.17", "takes the difference of the quaternions",
      "turn = quaternion_product(q_new, q_back)", "turn = q_new - q_old; turn[0] = 1.0")
 
@@ -901,6 +927,8 @@ edit("8.18", "gives two corners of a face the same gradient",
      "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")
 edit("8.18", "uses the area of the face for its first corner",
      "across = cross(b, c) / 6.0", "across = cross(b - a, c - a) / 6.0")
+edit("8.18", "skips faces of which the components of b × c add up to 0", "V += dot(a, across)",
+     "if np.sum(across) == 0.0:\n            continue\n        V += dot(a, across)")
 edit("8.18", "skips faces whose tetrahedron has no volume, although their corners change it",
      "V += dot(a, across)", "V += dot(a, across)\n        if dot(a, across) == 0.0:\n            continue")
 
@@ -925,6 +953,9 @@ edit("8.19", "says that the speed falls exponentially",
      "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.exp(-0.5 * omega * omega * dt * t)")
 edit("8.19", "multiplies the speed in every step by the cosine of the first angle",
      "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.cos(omega * dt) ** (t / dt)")
+edit("8.19", "counts one step too many", "dt * t)", "dt * (t + dt))")
+edit("8.19", "counts one step too few", "dt * t)", "dt * max(0.0, t - dt))")
+edit("8.19", "counts half a step too many", "dt * t)", "dt * (t + 0.5 * dt))")
 edit("8.19", "says that the speed grows", "1.0 + 2.0", "1.0 - 2.0")
 
 
@@ -964,6 +995,19 @@ def ladder():
     x = np.array([(0.5 * (k // 2), -0.5 * (k % 2)) for k in range(8)])
     pairs = [(k, k + 2) for k in range(6)] + [(k, k + 1) for k in (0, 2, 4, 6)] + [(k, k + 3) for k in (0, 2, 4)]
     return with_points(x, [0], *np.transpose(pairs))
+
+
+@right("8.21", "in lists")
+def listed():
+    x, network, frames = my_thing()
+    *arrays, sweeps = network
+    return x.tolist(), worked.ConstraintNetwork(*(y.tolist() for y in arrays), sweeps), frames
+
+
+@right("8.21", "a ladder in space")
+def space():
+    x, network, frames = ladder()
+    return np.insert(x, 1, 0.0, axis=1), network._replace(gravity=np.array([0.0, 0.0, -9.81])), frames
 
 
 edit("8.21", "hangs nothing free: all points are nails", "np.full(n, 1.0)", "np.full(n, 0.0)")
