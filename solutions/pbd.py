@@ -395,8 +395,8 @@ def xpbd_step(acceleration, t, x, v, dt, network):
     """Advance a network by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
 
     Many short steps with one sweep each are better than one long step with as many sweeps.  In a step of dt/n the
-    points fall n² times less, so a sweep has less to undo, and the velocity carries the progress over to the next step.  (Only
-    a very large number of sweeps is better: above about 190 for a chain of 8 equal links, 940 for one of 16.)
+    points fall n² times less, so a sweep has less to undo, and the velocity carries the progress over to the next
+    step.  (Only a very large number of sweeps is better: above about 190 for a chain of 8 equal links, 940 for 16.)
     *Source:* Macklin et al. 2016; Macklin et al. 2019, “Small steps in physics simulation”.
     """
     ### BEGIN SOLUTION 8.14
