@@ -44,6 +44,7 @@ edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
 edit("8.1", "treats a link that is too long as satisfied", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "reverses the gradient where the link is too short", "r / length", "r / length * np.sign(rest - length)")
 edit("8.1", "refuses links along the second axis", "length == 0.0", "r[0] == 0.0")
+edit("8.1", "refuses links whose components add up to 0", "length == 0.0", "np.sum(r) == 0.0")
 edit("8.1", "refuses a link whose first end is at the origin", "length == 0.0", "length == 0.0 or not x_i.any()")
 edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 edit("8.1", "adds the rest length", "length - rest", "length + rest")
@@ -82,6 +83,15 @@ edit("8.2", "solves for each point on its own", "-C / weight * inv_mass[:, None]
 edit("8.2", "refuses small masses", "weight == 0.0", "weight < 1e-6")
 edit("8.2", "refuses only where all masses are infinite or all gradients 0", "weight == 0.0",
      "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
+edit("8.2", "refuses gradients that add up to 0", "weight == 0.0", "weight == 0.0 or np.sum(gradients) == 0.0")
+edit("8.2", "refuses gradients that add up to 0 with their inverse masses", "weight == 0.0",
+     "np.sum(inv_mass[:, None] * gradients) == 0.0")
+edit("8.2", "refuses a constraint of which the gradients of each point add up to 0", "weight == 0.0",
+     "not np.any(np.sum(gradients, axis=1))")
+edit("8.2", "refuses a constraint of which the points' gradients cancel", "weight == 0.0",
+     "weight == 0.0 or not np.any(inv_mass @ gradients)")
+edit("8.2", "refuses a constraint of which all gradients have no first component", "weight == 0.0",
+     "weight == 0.0 or not np.any(gradients[:, 0])")
 edit("8.2", "refuses very small masses and gradients", "weight == 0.0", "weight < 1e-20")
 edit("8.2", "takes the gradient of a single point for a unit vector", "return -C / weight",
      "return -C * gradients if inv_mass.size == 1 else -C / weight")
@@ -188,6 +198,15 @@ edit("8.4", "assumes that link s joins the points s and s + 1", "for s in range(
 edit("8.4", "uses the mass of one end only in the regularisation",
      "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
      "network.inv_mass[network.i[s]]")
+edit("8.4", "uses the larger of both inverse masses in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "np.maximum(network.inv_mass[network.i[s]], network.inv_mass[network.j[s]])")
+edit("8.4", "uses the smaller of both inverse masses in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "np.minimum(network.inv_mass[network.i[s]], network.inv_mass[network.j[s]])")
+edit("8.4", "uses the root of the sum of the squares of both inverse masses in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "np.hypot(network.inv_mass[network.i[s]], network.inv_mass[network.j[s]])")
 edit("8.4", "adds C in place of subtracting it", "-C[s] - trace", "C[s] - trace")
 edit("8.4", "takes the compliance on the diagonal with the wrong sign",
      "A[size + s, size + s] = -trace", "A[size + s, size + s] = trace")
@@ -221,6 +240,17 @@ wrong("8.5", "stops after two iterations")(projecting(enough=lambda done, change
 wrong("8.5", "compares the change with an absolute 1e-12 m")(
     projecting(enough=lambda done, change, longest: change <= 1e-12))
 edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
+edit("8.5", "tests the sum of all corrections", "np.max(np.abs(change))", "np.abs(np.sum(change))")
+edit("8.5", "tests the sum of the corrections of each coordinate", "np.max(np.abs(change))",
+     "np.max(np.abs(np.sum(change, axis=0)))")
+edit("8.5", "tests the sum of the corrections of each point", "np.max(np.abs(change))",
+     "np.max(np.abs(np.sum(change, axis=1)))")
+edit("8.5", "tests the first coordinate only", "np.max(np.abs(change))", "np.max(np.abs(change[:, 0]))")
+edit("8.5", "tests the last coordinate only", "np.max(np.abs(change))", "np.max(np.abs(change[:, -1]))")
+edit("8.5", "tests the first point only", "np.max(np.abs(change))", "np.max(np.abs(change[0]))")
+edit("8.5", "tests the last point only", "np.max(np.abs(change))", "np.max(np.abs(change[-1]))")
+edit("8.5", "corrects the first two coordinates only", "new = new + change",
+     "change[:, 2:] = 0.0\n        new = new + change")
 wrong("8.5", "does not raise Diverged")(projecting(gives_up=False))
 wrong("8.5", "keeps the predicted velocity")(projecting(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.5", "keeps the old velocity")(projecting(speed=lambda new, x, goal, v, dt: v))
@@ -285,6 +315,7 @@ wrong("8.6", "moves immovable points")(sweeping(held=False))
 edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
      "share = network.stiffness[s] * (length > network.rest[s])")
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
+edit("8.6", "refuses links whose components add up to 0", "length == 0.0", "np.sum(x[i] - x[j]) == 0.0")
 edit("8.6", "refuses links along the second axis", "length == 0.0", "x[i, 0] == x[j, 0]")
 edit("8.6", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.6", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
@@ -441,8 +472,13 @@ edit("8.9", "limits the share of c to 0 … 1", "dot(b - c, e) / squared",
      "min(1.0, max(0.0, dot(b - c, e) / squared))")
 edit("8.9", "limits the share of d to 0 … 1", "dot(b - d, e) / squared",
      "min(1.0, max(0.0, dot(b - d, e) / squared))")
-edit("8.9", "brings the angle into [−π, π)",
-     "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
+edit("8.9", "refuses triangles of whose normal the components add up to 0", "squared_c == 0.0 or squared_d == 0.0",
+     "np.sum(N_c) == 0.0 or np.sum(N_d) == 0.0")
+edit("8.9", "tests the components of one normal by their sum", "squared_d == 0.0:", "np.sum(N_d) == 0.0:")
+edit("8.9", "refuses triangles whose normal has no first component", "squared_c == 0.0 or squared_d == 0.0",
+     "N_c[0] == 0.0 or N_d[0] == 0.0")
+edit("8.9", "takes a turn to half a turn for a whole one", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "np.ceil((turn - 3.0) / (2.0 * np.pi))")
 edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
 edit("8.9", "tests the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
@@ -457,6 +493,13 @@ edit("8.9", "refuses coincident corners only", "squared_c == 0.0 or squared_d ==
      "not all([(x[i] - x[j]).any() for i, j in ((0, 1), (0, 2), (1, 2), (0, 3), (1, 3))])")
 edit("8.9", "accepts an edge without length", "squared_c == 0.0 or squared_d == 0.0",
      "squared > 0.0 and (squared_c == 0.0 or squared_d == 0.0)")
+
+
+right("8.9", "brings the angle into [−π, π): half a turn has either sign")(
+    folding(wrapped=lambda C: (C + np.pi) % (2.0 * np.pi) - np.pi))
+right("8.9", "takes the angle of the sine and the cosine")(folding(wrapped=lambda C: np.arctan2(np.sin(C), np.cos(C))))
+right("8.9", "subtracts the nearest number of turns")(
+    folding(wrapped=lambda C: C - 2.0 * np.pi * np.round(C / (2.0 * np.pi))))
 
 
 @right("8.9", "normals from the edge, the angle from its sine and cosine")
@@ -510,6 +553,9 @@ edit("8.10", "treats the ball as a bowl",
 edit("8.10", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 edit("8.10", "treats round-off around the centre as the centre", "distance > 0.0", "distance > 1e-14")
 edit("8.10", "returns no normal where a coordinate is that of the centre", "distance > 0.0", "np.all(r)")
+edit("8.10", "returns no normal where the components of x − centre add up to 0", "distance > 0.0", "np.sum(r) != 0.0")
+edit("8.10", "takes a point for the centre if its coordinates less those of the centre add up to 0",
+     "distance - obstacle.radius", "(distance if np.sum(r) else 0.0) - obstacle.radius")
 wrong("8.10", "reverses the sign of the gap")(ball(sign=-1.0))
 wrong("8.10", "returns a normal that points inwards")(ball(n_sign=-1.0))
 wrong("8.10", "puts the centre of the ball at the origin")(ball(centred=False))
@@ -553,6 +599,9 @@ edit("8.11", "returns three coordinates, also in the plane",
 edit("8.11", "moves a point at the centre of a ball upwards", "x[k] -= phi * n",
      "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
 edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
+edit("8.11", "leaves points where the components of n add up to 0", "phi < 0.0 and",
+     "phi < 0.0 and np.sum(n) != 0.0 and")
+edit("8.11", "leaves points where n has no first component", "phi < 0.0 and", "phi < 0.0 and n[0] != 0.0 and")
 edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
 edit("8.11", "returns a point that is alone as a vector", "return x", "return x if len(x) > 1 else x[0]")
 edit("8.11", "returns its input where nothing is inside", "x = float_copy(x)",
@@ -657,6 +706,7 @@ edit("8.13", "skips links that have their rest length", "length = distance_betwe
      "length = distance_between(x, i, j)\n"
      "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
 edit("8.13", "refuses links shorter than a nanometre", "length == 0.0", "length < 1e-9")
+edit("8.13", "refuses links whose components add up to 0", "length == 0.0", "np.sum(x[i] - x[j]) == 0.0")
 edit("8.13", "refuses links along the second axis", "length == 0.0", "x[i, 0] == x[j, 0]")
 edit("8.13", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.13", "divides α by the number of sweeps",
@@ -699,6 +749,7 @@ wrong("8.14", "halves the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 *
 edit("8.14", "uses the last Λ for all links", "compliant_sweep(new, Lam, dt, network)",
      "compliant_sweep(new, np.full(network.i.size, Lam[-1]), dt, network)")
 edit("8.14", "keeps one Λ per point, not per link", "np.zeros(network.i.size)", "np.zeros(x.shape[0])")
+edit("8.14", "keeps one Λ per coordinate, not per link", "np.zeros(network.i.size)", "np.zeros(x.size)")
 edit("8.14", "uses gravity in place of the acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.14", "takes the acceleration at time t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
 wrong("8.14", "makes at most five sweeps")(soft_step(sweeps=lambda n: min(n, 5)))
@@ -744,6 +795,8 @@ edit("8.15", "subtracts the rotation", "1.0 / m + np", "1.0 / m - np")
 edit("8.15", "does not square the lever r × n", "turn * turn", "np.abs(turn)")
 edit("8.15", "omits the rotation of a body with two equal moments", "turn = unrotate",
      "if I_body[0] == I_body[1]:\n        return 1.0 / m\n    turn = unrotate")
+edit("8.15", "omits the rotation where the components of r × n add up to 0", "turn = unrotate",
+     "if np.sum(cross(r, n)) == 0.0:\n        return 1.0 / m\n    turn = unrotate")
 edit("8.15", "omits the rotation of a body in the orientation (1, 0, 0, 0)", "turn = unrotate",
      "if q[0] == 1.0:\n        return 1.0 / m\n    turn = unrotate")
 
@@ -782,6 +835,10 @@ edit("8.16", "moves the body and does not rotate it", "quaternion_update(q, turn
 edit("8.16", "exchanges rotate and unrotate",
      "rotate(q, unrotate(q, cross(r, p)) / I_body)", "unrotate(q, rotate(q, cross(r, p)) / I_body)")
 edit("8.16", "rotates by p in place of r × p", "cross(r, p)", "p")
+edit("8.16", "does not rotate where the components of r × p add up to 0", "return x + p / m,",
+     "if np.sum(cross(r, p)) == 0.0:\n        return x + p / m, q\n    return x + p / m,")
+edit("8.16", "does not rotate where r × p has no last component", "return x + p / m,",
+     "if cross(r, p)[2] == 0.0:\n        return x + p / m, q\n    return x + p / m,")
 edit("8.16", "does not rotate a body in the orientation (1, 0, 0, 0)", "return x + p / m,",
      "if q[0] == 1.0:\n        turn = 0.0 * turn\n    return x + p / m,")
 
@@ -826,6 +883,8 @@ edit("8.17", "multiplies by dt", "2.0 / (turn[0] * dt)", "2.0 * dt / turn[0]")
 edit("8.17", "takes half in place of twice", "2.0 / (turn[0]", "0.5 / (turn[0]")
 edit("8.17", "returns no rate for a body that starts in the orientation (1, 0, 0, 0)", "return 2.0",
      "if q_old[0] == 1.0:\n        return np.zeros(3)\n    return 2.0")
+edit("8.17", "returns no rate where the components of the axis add up to 0", "return 2.0",
+     "if np.sum(turn[1:]) == 0.0:\n        return np.zeros(3)\n    return 2.0")
 edit("8.17", "takes the difference of the quaternions",
      "turn = quaternion_product(q_new, q_back)", "turn = q_new - q_old; turn[0] = 1.0")
 
@@ -868,6 +927,8 @@ edit("8.18", "gives two corners of a face the same gradient",
      "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")
 edit("8.18", "uses the area of the face for its first corner",
      "across = cross(b, c) / 6.0", "across = cross(b - a, c - a) / 6.0")
+edit("8.18", "skips faces of which the components of b × c add up to 0", "V += dot(a, across)",
+     "if np.sum(across) == 0.0:\n            continue\n        V += dot(a, across)")
 edit("8.18", "skips faces whose tetrahedron has no volume, although their corners change it",
      "V += dot(a, across)", "V += dot(a, across)\n        if dot(a, across) == 0.0:\n            continue")
 
@@ -892,6 +953,9 @@ edit("8.19", "says that the speed falls exponentially",
      "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.exp(-0.5 * omega * omega * dt * t)")
 edit("8.19", "multiplies the speed in every step by the cosine of the first angle",
      "v / np.sqrt(1.0 + 2.0 * omega * omega * dt * t)", "v * np.cos(omega * dt) ** (t / dt)")
+edit("8.19", "counts one step too many", "dt * t)", "dt * (t + dt))")
+edit("8.19", "counts one step too few", "dt * t)", "dt * max(0.0, t - dt))")
+edit("8.19", "counts half a step too many", "dt * t)", "dt * (t + 0.5 * dt))")
 edit("8.19", "says that the speed grows", "1.0 + 2.0", "1.0 - 2.0")
 
 
@@ -931,6 +995,19 @@ def ladder():
     x = np.array([(0.5 * (k // 2), -0.5 * (k % 2)) for k in range(8)])
     pairs = [(k, k + 2) for k in range(6)] + [(k, k + 1) for k in (0, 2, 4, 6)] + [(k, k + 3) for k in (0, 2, 4)]
     return with_points(x, [0], *np.transpose(pairs))
+
+
+@right("8.21", "in lists")
+def listed():
+    x, network, frames = my_thing()
+    *arrays, sweeps = network
+    return x.tolist(), worked.ConstraintNetwork(*(y.tolist() for y in arrays), sweeps), frames
+
+
+@right("8.21", "a ladder in space")
+def space():
+    x, network, frames = ladder()
+    return np.insert(x, 1, 0.0, axis=1), network._replace(gravity=np.array([0.0, 0.0, -9.81])), frames
 
 
 edit("8.21", "hangs nothing free: all points are nails", "np.full(n, 1.0)", "np.full(n, 0.0)")
