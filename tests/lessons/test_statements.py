@@ -130,16 +130,16 @@ def test_a_damper_slows_a_ripple_along_a_string_and_hardly_one_across_it_but_air
 
 def test_a_projected_particle_in_a_smooth_bowl_loses_height_and_less_with_shorter_steps():
     def reached(dt, seconds):
-        """The greatest angle [°] of the last two seconds."""
+        """The greatest angle [°] within half a second of that time; half a swing takes more than a second."""
         bowl = friction.ParticleInBowl(1.0, 0.0, 0.0, np.array([0.0, -9.81]), np.zeros(2), np.zeros(2), 1.0)
         x, v, angles = np.array([np.sin(np.pi / 3.0), -np.cos(np.pi / 3.0)]), np.zeros(2), []
-        for n in range(round(seconds / dt)):
+        for n in range(round((seconds + 0.5) / dt)):
             x, v = friction.advance_particle(friction.position_friction_step, friction.falling_acceleration,
                                              friction.particle_bowl_gap, n * dt, x, v, dt, 1, bowl)
             angles.append(abs(np.degrees(np.arctan2(x[0], -x[1]))))
-        return max(angles[-round(2.0 / dt):])
-    assert abs(reached(0.005, 3.0) - 58.0) < 0.5 and abs(reached(0.005, 30.0) - 27.0) < 0.5
-    assert reached(0.001, 3.0) > 59.5
+        return max(angles[-round(1.0 / dt):])
+    assert abs(reached(0.005, 3.0) - 54.0) < 0.5 and abs(reached(0.005, 30.0) - 26.0) < 0.5
+    assert reached(0.001, 3.0) > 58.5
 
 
 # ---------------------------------------------------------------------------------------------- 5 rotation
