@@ -692,6 +692,11 @@ def test_the_fold_constraint_is_the_signed_angle_minus_the_wanted_one(lesson, dr
     short = x.copy()
     short[1] = x[0]
     raises("a fold whose edge has no length", BadInput, lesson.fold_constraint, short, 0.0)
+    check_half_turns(lesson, draw)
+
+
+def check_half_turns(lesson, draw):
+    """Check C of a flat sheet whose wanted angle is half a turn, a little more and a little less, to both sides."""
     # The angle of this sheet is exactly 0.
     sheet = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, -1.0, 0.0]])
     # Half a turn to either side is the same fold, so both signs are right.
@@ -866,6 +871,15 @@ def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw
         close("points on, above and below a level floor [m]", lesson.keep_outside(lesson.floor_gap, x, w, level),
               np.where((x < 0.0) & (level.n > 0.0) & (w[:, None] > 0.0), 0.0, x), ROUND_OFF,
               given=f"x = {x.tolist()} m, w = {w}, {level}")
+    check_slopes(lesson, draw)
+    x = ball.centre + np.outer((0.0, 0.5 * ball.radius), n)
+    close("a point at the centre of a ball, where n = 0, and one beside it [m]",
+          lesson.keep_outside(lesson.ball_gap, x, np.ones(2), ball),
+          ball.centre + np.outer((0.0, ball.radius), n), ROUND_OFF * 10.0, given=f"x = {x.tolist()} m, {ball}")
+
+
+def check_slopes(lesson, draw):
+    """Check a point below a slope, and one above; n is along an axis, or its components add up to exactly 0."""
     for d in (2, 3):
         for y in never_zero(draw, d):
             up, depth = y / np.linalg.norm(y), draw(0.1, 1.0)
@@ -873,10 +887,6 @@ def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw
             close("a point below and one above a slope through the origin [m]",
                   lesson.keep_outside(lesson.floor_gap, np.stack((-depth * up, depth * up)), np.ones(2), slope),
                   np.stack((0.0 * up, depth * up)), ROUND_OFF, given=f"{depth} m below and above {slope}")
-    x = ball.centre + np.outer((0.0, 0.5 * ball.radius), n)
-    close("a point at the centre of a ball, where n = 0, and one beside it [m]",
-          lesson.keep_outside(lesson.ball_gap, x, np.ones(2), ball),
-          ball.centre + np.outer((0.0, ball.radius), n), ROUND_OFF * 10.0, given=f"x = {x.tolist()} m, {ball}")
 
 
 @exercise("8.11", points=0.5,
