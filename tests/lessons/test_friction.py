@@ -510,17 +510,7 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
           down, ROUND_OFF, given=f"{lifted}")
     close("direction of a block on its way up [-]", lesson.slip_direction(pull, 0.0, still, -v, gentle),
           -across, ROUND_OFF, given=f"{gentle}, v = {-v}")
-    omega = draw(1.0, 3.0)
-    p, to = on_the_line(draw, lesson, draw(0.3, 0.9), draw(1.1, 2.0), omega)
-    for turn, expected in ((0.0, to), (0.5 * np.pi, 0.0 * to), (np.pi, -to)):
-        got = lesson.slip_direction(tethered_acceleration, turn / omega, anchor(p), np.zeros(2), p)
-        close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
-              expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
-    # A spring to the origin: beside it the block is pulled back, and above it pressed down, by more than by the drive.
-    for place, turn, expected in ((-draw(1.0, 2.0) * to, 0.5 * np.pi, to), (draw(1.0, 2.0) * p.n, 0.0, 0.0 * to)):
-        got = lesson.slip_direction(resisted_acceleration, turn / omega, place, np.zeros(2), p)
-        close("slip direction where the acceleration depends on t, x and v [-]", got, expected, ROUND_OFF,
-              given=f"{p}, t = {turn / omega} s, x = {place} m")
+    check_slips_under_changing_forces(lesson, draw)
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     lifted = 5.0 * along + 10.0 * up
     for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up),
@@ -541,6 +531,21 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
         for v, expected in ((0.0 * n, to), (-2.0 * to, -to)):
             close("direction of a block that is pulled, or moves, along an axis or a diagonal [-]",
                   lesson.slip_direction(pull, 0.0, 0.0 * n, v, tilted), expected, ROUND_OFF, given=f"{tilted}, v = {v}")
+
+
+def check_slips_under_changing_forces(lesson, draw):
+    """Check slip directions from rest, under forces that depend on t and x."""
+    omega = draw(1.0, 3.0)
+    p, to = on_the_line(draw, lesson, draw(0.3, 0.9), draw(1.1, 2.0), omega)
+    for turn, expected in ((0.0, to), (0.5 * np.pi, 0.0 * to), (np.pi, -to)):
+        got = lesson.slip_direction(tethered_acceleration, turn / omega, anchor(p), np.zeros(2), p)
+        close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
+              expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
+    # A spring to the origin: beside it the block is pulled back, and above it pressed down, by more than by the drive.
+    for place, turn, expected in ((-draw(1.0, 2.0) * to, 0.5 * np.pi, to), (draw(1.0, 2.0) * p.n, 0.0, 0.0 * to)):
+        got = lesson.slip_direction(resisted_acceleration, turn / omega, place, np.zeros(2), p)
+        close("slip direction where the acceleration depends on t, x and v [-]", got, expected, ROUND_OFF,
+              given=f"{p}, t = {turn / omega} s, x = {place} m")
 
 
 @exercise("3.9", points=0.25,
