@@ -637,10 +637,15 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     got = lesson.breakaway_time(lesson.driven_acceleration, 0.0, rest, rest, 1.2 * first,
                                 level._replace(gravity=level.gravity + s, drive=-s))
     close("time from t = 0 to the slip [s]", got, first, 1e-13, given=f"pull {s}, {level}")
+    check_slip_under_a_varying_load(lesson, draw, p, omega, amplitude)
+
+
+def check_slip_under_a_varying_load(lesson, draw, p, omega, amplitude):
+    """Compare the time to the slip with theory where the drive lifts the block, too."""
     # a_n = g − lift cos ωt: the block slips where A |cos| = μ_s (g + lift |cos|), with A = amplitude μ_s g.
     lift = draw(0.2, 0.8) * (amplitude - 1.0) * G
     both = p._replace(drive=p.drive + lift * p.n, mu_k=0.5 * p.mu_s)
-    t = 0.5 * np.pi / omega
+    rest, t = np.zeros(2), 0.5 * np.pi / omega
     slips = np.arccos(-1.0 / (amplitude - lift / G)) / omega
     got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, 0.5 * (slips + np.pi / omega) - t, both)
     close("time to the slip under a varying load, with μ_k half of μ_s [s]", got, slips - t, 1e-13,
