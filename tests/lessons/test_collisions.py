@@ -668,12 +668,12 @@ def test_a_centre_barely_outside_an_edge_or_a_corner_is_not_inside(lesson, draw)
         for size, out in itertools.product(SIZES, (2.0**-11, 2.0**-30)):
             cube, way = lesson.Box(np.zeros(3), np.eye(3), size * np.ones(3)), size * out * beyond
             x = size * np.where(beyond == 0.0, 0.25, beyond) + way
-            n, gap = beyond / np.linalg.norm(beyond), np.linalg.norm(beyond) * out
-            c = lesson.ball_box(x, size, cube)
-            given = f"x = {x}, r = {size}, {out} of the size outside an edge or a corner of {cube}"
+            n, gap, r = beyond / np.linalg.norm(beyond), np.linalg.norm(beyond) * out, draw(0.5, 1.5) * size
+            c = lesson.ball_box(x, r, cube)
+            given = f"x = {x}, r = {r}, {out} of the size outside an edge or a corner of {cube}"
             close("n of the contact: from b to a", c.n, n, 1e-11, given)
             close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
-                  np.concatenate(([gap * size - size], x - size * n, x - way)) / size, 1e-11, given)
+                  np.concatenate(([gap * size - r], x - r * n, x - way)) / size, 1e-11, given)
             close("t of the contact [s]: it is there at once", c.t, 0.0, 0.0, given)
 
 
