@@ -54,7 +54,7 @@ class EngineRun(NamedTuple):
     read: Callable           # () → what a scene observes
     close: Callable          # () → None: free its resources
     watched: Callable | None = None      # () → [Step, …] of validate/reference/contact_laws.py that it kept
-    watched_step: Callable | None = None     # () → Step, or Moment of joint_laws.py: advance by dt, and report this
+    watched_step: Callable | None = None     # () → Step, or Reading of joint_laws.py: advance by dt, and report this
 
 
 class Departure(NamedTuple):

@@ -41,11 +41,15 @@ class Rough(NamedTuple):
 # ---------------------------------------------------------------------------------------------- where they touch
 
 def pose_within(before, after, share, dt):
-    """Return (x, q) of all bodies when this share of a step is over; in space they turn by all of ω dt."""
-    return before.x + share * (after.x - before.x), turned(before.q, after.q, after.omega, share, dt)
+    """Return (x, q) of all bodies when this share of a step is over.
+
+    In space they turn evenly by all of ω dt, as the composed loop turns them.  (pose_at of passing.py turns them by
+    2 atan(½ ω dt), as quaternion_update does.)  A body without symmetry changes its ω on the way, which is left out.
+    """
+    return before.x + share * (after.x - before.x), turned_evenly(before.q, after.q, after.omega, share, dt)
 
 
-def turned(q, q_new, omega, share, dt):
+def turned_evenly(q, q_new, omega, share, dt):
     """Return the orientations when this share of a step is over."""
     if q.ndim == 1:
         return q + share * (q_new - q)

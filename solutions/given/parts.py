@@ -238,7 +238,7 @@ def begun(load, t, free, v, omega, dt, p):
     x, q, _, _, contacts, J = free
     J, arms = J.copy(), arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     u_n, pressed = normal_velocities_2d(v, omega, contacts, arms), np.zeros(J.shape[0])
-    if may_bounce(contacts, p):
+    if may_bounce(contacts, p):              # what loads have added, once more, and what closing joints has added
         later, spun = new_velocities_2d(load, t, x, q, free.v, free.omega, dt, p)
         pressed = normal_velocities_2d(v + later - 2.0 * free.v, omega + spun - 2.0 * free.omega, contacts, arms)
     aim, v, omega = parting_aims(u_n, pressed, contacts, dt, p), v.copy(), omega.copy()
@@ -272,8 +272,8 @@ def begun_of_centres(load, t, free, v, omega, dt, p):
 def islands_of(contacts, p):
     """Return the number (m,) of the island of each contact: of bodies that contacts connect, also through others.
 
-    What does not move connects nothing.  Each body points to one of its island with a smaller number, the first to
-    itself.
+    What does not move connects nothing.  first[i] is a body of the island of i with a smaller number.  For the first
+    body of an island it is the body itself.
     """
     first, island = np.arange(p.inv_mass.size), np.empty(contacts.a.size, np.int64)
     for k in range(contacts.a.size):

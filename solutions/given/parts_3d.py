@@ -128,7 +128,7 @@ def begun_in_space(load, t, free, v, omega, dt, p):
     inv_inertia = spatial_inertia(q, p.inv_inertia)
     J, arms = J.copy(), arms_3d(x, p.inv_mass, inv_inertia, contacts)
     u_n, pressed = normal_velocities(v, omega, contacts, arms), np.zeros(J.shape[0])
-    if may_bounce(contacts, p):
+    if may_bounce(contacts, p):              # what loads have added, once more, and what closing joints has added
         later, spun = kick(load, t, x, q, free.v, free.omega, dt, p)
         pressed = normal_velocities(v + later - 2.0 * free.v, omega + spun - 2.0 * free.omega, contacts, arms)
     aim, v, omega = parting_aims(u_n, pressed, contacts, dt, p), v.copy(), omega.copy()

@@ -9,7 +9,7 @@ from validate.engines import watched
 from validate.measure.accuracy import laws_for
 from validate.products import PRODUCTS
 from validate.reference import joint_laws
-from validate.reference.joint_laws import Moment, judged, verdict_on
+from validate.reference.joint_laws import Reading, judged, verdict_on
 from validate.report import audit
 from validate.scenes._common import built
 from validate.scenes.simulator import bricard, four_bars, rolling_box, squeezer
@@ -56,20 +56,20 @@ def test_the_gap_and_the_energy_of_a_rod_that_steps_along_its_tangent():
                               lambda before, after: 0.125)
     x, q = np.array([[r, r * omega * dt]]), np.array([omega * dt])
     watching.step, watching.state = lambda: None, lambda: State(x, q, np.array([[0.0, r * omega]]), np.array([omega]))
-    moment = watching.watched()
+    reading = watching.watched()
     gap = np.hypot(r - r * np.cos(omega * dt), r * omega * dt - r * np.sin(omega * dt)) / r
-    assert moment.gap == pytest.approx(gap, rel=1e-12)
+    assert reading.gap == pytest.approx(gap, rel=1e-12)
     assert gap == pytest.approx(0.5 * (omega * dt) ** 2, rel=1e-3)
-    assert moment.energy == pytest.approx(m * g * r * omega * dt - 0.125)
-    assert moment.kinetic == pytest.approx(0.5 * m * (r * omega) ** 2 + 0.5 * 0.2 * omega**2)
-    assert moment.turn == omega * dt
+    assert reading.energy == pytest.approx(m * g * r * omega * dt - 0.125)
+    assert reading.kinetic == pytest.approx(0.5 * m * (r * omega) ** 2 + 0.5 * 0.2 * omega**2)
+    assert reading.turn == omega * dt
 
 
 # ---------------------------------------------------------------------------------------------- verdicts
 
-def moments(gap=0.5, energy=0.5, order=1):
-    """Return the Moments of a run with these shares of what the laws allow."""
-    found = Moment(gap * TURN**2, energy * (0.5 * TURN if order == 1 else TURN**2) * 7.0, 7.0, TURN)
+def readings(gap=0.5, energy=0.5, order=1):
+    """Return the Readings of a run with these shares of what the laws allow."""
+    found = Reading(gap * TURN**2, energy * (0.5 * TURN if order == 1 else TURN**2) * 7.0, 7.0, TURN)
     return [found._replace(gap=0.0, energy=0.0), found, found._replace(gap=0.0, energy=-0.5 * found.energy)]
 
 
@@ -79,7 +79,7 @@ def test_each_law_holds_up_to_its_limit(order):
     for shares, verdict in (((0.9, 0.9), Verdict.KEEPS_LAWS), ((1.1, 0.9), Verdict.DEPARTS),
                             ((0.9, 1.1), Verdict.DEPARTS), ((0.9, -1.1), Verdict.DEPARTS),
                             ((np.nan, 0.9), Verdict.DEPARTS), ((0.9, np.nan), Verdict.DEPARTS)):
-        laws = judged(moments(*shares, order), allowed)
+        laws = judged(readings(*shares, order), allowed)
         assert verdict_on(laws)[0] is verdict, shares
         stored = [{**law._asdict(), "found": None if np.isnan(law.found) else law.found} for law in laws]
         assert audit.verdict_by_laws(stored) is verdict
@@ -87,13 +87,13 @@ def test_each_law_holds_up_to_its_limit(order):
 
 def test_a_law_that_an_engine_is_known_to_break_has_its_reason_and_its_bound():
     soft = JointsAllowed(2, (("energy", "it is soft", 2.0),))
-    assert verdict_on(judged(moments(0.5, 1.9, 2), soft)) == (
+    assert verdict_on(judged(readings(0.5, 1.9, 2), soft)) == (
         Verdict.BREAKS_AS_KNOWN, f"{joint_laws.QUANTITIES['energy'].removesuffix(' [-]')}: 0.00019, because it is soft")
-    assert verdict_on(judged(moments(0.5, 2.1, 2), soft))[0] is Verdict.DEPARTS
-    assert verdict_on(judged(moments(1.1, 0.5, 2), soft))[0] is Verdict.DEPARTS
+    assert verdict_on(judged(readings(0.5, 2.1, 2), soft))[0] is Verdict.DEPARTS
+    assert verdict_on(judged(readings(1.1, 0.5, 2), soft))[0] is Verdict.DEPARTS
     open_ = watched.sweeps_over_joints("its sweeps end")
-    assert verdict_on(judged(moments(100.0, 100.0), open_))[0] is Verdict.BREAKS_AS_KNOWN
-    assert verdict_on(judged(moments(np.nan, 0.5), watched.sweeps_over_joints()))[0] is Verdict.DEPARTS
+    assert verdict_on(judged(readings(100.0, 100.0), open_))[0] is Verdict.BREAKS_AS_KNOWN
+    assert verdict_on(judged(readings(np.nan, 0.5), watched.sweeps_over_joints()))[0] is Verdict.DEPARTS
 
 
 # ---------------------------------------------------------------------------------------------- engines

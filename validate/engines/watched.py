@@ -10,7 +10,7 @@ from solutions.support.model import WORLD, model_energy, own_place, start_of, wo
 
 from ..check import Allowed, JointsAllowed
 from ..reference.contact_laws import ITERATED, Motion, Physics, Step, Touching
-from ..reference.joint_laws import LOST, Moment
+from ..reference.joint_laws import LOST, Reading
 from ..reference.orientation import quaternion_matrix
 from .bullet import CONTACT_ERP, WARM
 
@@ -314,12 +314,12 @@ class Joined:
         self.first, self.now = model_energy(model, start_of(model)), start_of(model)
 
     def watched(self):
-        """Make a step, and return its Moment."""
+        """Make a step, and return its Reading."""
         self.step()
         before, self.now = self.now, self.state()
         if self.work is not None:
             self.done += self.work(before, self.now)
         gap = max(np.linalg.norm(world_place(self.now, a, at_a) - world_place(self.now, b, at_b))
                   for a, at_a, b, at_b in self.ends)
-        return Moment(gap / self.lever, model_energy(self.model, self.now) - self.first - self.done,
+        return Reading(gap / self.lever, model_energy(self.model, self.now) - self.first - self.done,
                       model_energy(self.still, self.now), self.turn)

@@ -116,7 +116,7 @@ def secret(folder, seed):
     before = file.read_text().strip() if file.is_file() else ""
     if before not in ("", seed):
         write_secret(earlier, f"{earlier.read_text() if earlier.is_file() else ''}{before}\n")
-        say([f"Another seed than before: the one of earlier marks is kept in {earlier}."])
+        say([f"This is another seed than before. The seed of earlier marks is kept in {earlier}."])
     write_secret(file, f"{seed}\n")
     return seed
 

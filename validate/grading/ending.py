@@ -36,8 +36,8 @@ def unsolved(results):
     idle = [lesson for lesson, points in earned.items() if not points]
     if not idle or len(idle) == len(earned):
         return []
-    return [f"No submission earns a point in {', '.join(idle)}. These count as well: name the lessons that you set "
-            "with --lesson, if these are not among them"]
+    return [f"No submission earns a point in {', '.join(idle)}. They count all the same. If you did not set them, name "
+            "those that you did with --lesson"]
 
 
 def names(students):

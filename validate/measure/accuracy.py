@@ -121,7 +121,7 @@ def run_ours(scene, step, p, steps, watched):
 
 
 def laws_of(kept, allowed):
-    """Return the fields of each Law, for the Steps or Moments that a run has kept."""
+    """Return the fields of each Law, for the Steps or Readings that a run has kept."""
     return [law._asdict() for law in laws_for(allowed).judged(kept, allowed)]
 
 

@@ -171,8 +171,8 @@ def energy(step, spin):
     """Return the change of the kinetic energy that neither gravity nor applied impulses explain, over its terms [-].
 
     Impulses between two velocities do the work J · (u + u')/2, exactly.  Of a support, which does work on others, the
-    velocities do not count.  Gyration does no work, but a step of it does some: at most |I ω| of the mean ω times its
-    change of ω is left out.
+    velocities do not count.  Gyration does no work, but a step of it does some: up to |I ω| times
+    the change of ω by gyration is left out, with the mean ω of the step.
     """
     moves = step.moves[:-1]
     m = moves / np.where(moves > 0.0, step.inv_mass[:-1, None], 1.0)

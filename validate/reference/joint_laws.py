@@ -16,7 +16,7 @@ from . import laws
 from .laws import Law
 
 
-class Moment(NamedTuple):
+class Reading(NamedTuple):
     """Bodies on joints after a step of an engine."""
     gap: float               # largest distance of the two points of a joint, over the longest lever [-]
     energy: float            # gained since the start, less the work of loads [J]
@@ -39,8 +39,8 @@ def judged(moments, allowed: JointsAllowed):
     found = {"gap": np.max(gap), "energy": np.max(energy) / np.max(kinetic)}
     turn = moments[0].turn
     within = {"gap": turn**2, "energy": 0.5 * turn if allowed.order == 1 else turn**2}
-    rules = {name: (why, None if times is None else times * within[name]) for name, why, times in allowed.rules}
-    return [Law(QUANTITIES[name], float(value), within[name], *rules.get(name, ("", None))[::-1])
+    rules = {name: (None if times is None else times * within[name], why) for name, why, times in allowed.rules}
+    return [Law(QUANTITIES[name], float(value), within[name], *rules.get(name, (None, "")))
             for name, value in found.items()]
 
 

@@ -43,7 +43,7 @@ def verdict_on(laws, kind, kept):
 
 
 def said(law):
-    """Return a quantity and its value in words, with as many digits as tell it from what is allowed."""
+    """Return a quantity and its value in words, with enough digits to differ from what is allowed."""
     value = next((text for text in (f"{law.found:.{digits}g}" for digits in (2, 3, 4))
                   if text != f"{law.allowed:.2g}"), f"{law.found:g}")
     return f"{law.quantity.removesuffix(' [-]')}: {value}"

@@ -52,13 +52,13 @@ def order(curve):
     """Order of convergence as measured, and in brackets as expected."""
     if curve["expected"] == EXACT:
         return EXACT
-    return f"{format(curve['order'], '.2f') if is_telling(curve) else '–'} ({curve['expected']})"
+    return f"{format(curve['order'], '.2f') if shows_order(curve) else '–'} ({curve['expected']})"
 
 
-def is_telling(curve):
+def shows_order(curve):
     """Return whether a measured slope is an order of convergence.
 
-    It is none where nothing should converge, nor where it is far too steep: there the coarsest steps were lost.
+    It is not where no order is expected, and not where it is far steeper than expected.
     """
     order, expected = curve["order"], curve["expected"]
     return order is not None and not (isinstance(expected, int) and (expected == 0 or order > expected + TOO_STEEP))
@@ -300,7 +300,7 @@ def until(row):
 def best_order(curves):
     """Return the curve of ours that agrees and shows the highest order."""
     agreeing = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES]
-    known = [c for c in agreeing if is_telling(c) or c["expected"] == EXACT]
+    known = [c for c in agreeing if shows_order(c) or c["expected"] == EXACT]
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 

@@ -33,8 +33,8 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polyhedron, 
 TOUCH = 1e-9                 # gap at which two bodies count as touching at the start, over their size [-]
 STICKY = 1e6                 # stands for infinite friction in an engine [-]: its product with 0 is 0
 SLIGHT = 1e-9                # difference of velocities over the larger one, up to which they are the same [-]
-SPINS_ON = "a body that nothing can turn has an angular velocity, which it would lose"
-OPENS = "bodies begin with velocities that open a joint, and it moves them in coordinates that cannot"
+SPINS_ON = "a body that nothing can turn has an angular velocity, which this engine would drop"
+OPENS = "bodies begin with velocities that open a joint, and its coordinates cannot hold such velocities"
 PLANE = 1e-12                # allowed distance from a vertical plane, over the largest coordinate [-]
 
 
