@@ -47,5 +47,6 @@ def judged(moments, allowed: JointsAllowed):
 def verdict_on(found):
     """Return (Verdict, message) by these Laws."""
     gap, energy = found
-    kept = f"its joints stay closed to {gap.found:.2g} of their levers, and its energy stays to {energy.found:.2g}"
+    kept = (f"its joints stay closed to {gap.found:.2g} of their levers, where {gap.allowed:.2g} is allowed, and its "
+            f"energy to {energy.found:.2g}, where {energy.allowed:.2g} is allowed")
     return laws.verdict_on(found, "joints", kept)
