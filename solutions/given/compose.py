@@ -33,6 +33,7 @@ from ..support.model import (
     Drag,
     State,
     can_turn,
+    check_model,
     friction_of,
     load_now,
     touching_pairs,
@@ -148,7 +149,8 @@ SETTINGS = Settings()
 
 
 def compose(model, settings=SETTINGS):
-    """Return the Loop of a Model.  Raises BadInput for settings that cannot be."""
+    """Return the Loop of a Model.  Raises BadInput for what is no Model, and for settings that cannot be."""
+    check_model(model)
     settings = checked_settings(settings)
     p, state, row = rows_of(model, settings)
     bounds, narrow = shapes_of_loop(model)
@@ -309,9 +311,11 @@ def grows(squared, damping, halved):
 def run_parts(loop, t, state, dt, steps):
     """Return the PileState after so many steps of a Loop.
 
-    Raises BadInput for a step that is not positive or with which springs or a drag throw bodies ever farther, Diverged
-    where the end is not finite or a step is far too long.
+    Raises BadInput for what is no Loop or no state of it, and for a step that is not positive or with which springs or
+    a drag throw bodies ever farther, Diverged where the end is not finite or a step is far too long.
     """
+    if getattr(loop, "_fields", None) != Loop._fields:
+        raise BadInput("the loop", f"a {type(loop).__name__}", "give what compose returns for a Model")
     steps = whole_number("number of steps", steps, 0)
     if getattr(state, "_fields", None) != PileState._fields or len(state.x) != len(loop.state.x):
         raise BadInput("the state", f"a {type(state).__name__} that is not of this loop",

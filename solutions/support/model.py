@@ -180,6 +180,12 @@ def make_model(bodies, gravity, joints=(), springs=(), loads=()):
     return model
 
 
+def check_model(model):
+    """Raise BadInput unless this is a Model."""
+    if getattr(model, "_fields", None) != Model._fields:
+        raise BadInput("the model", f"a {type(model).__name__}", "give what make_model returns")
+
+
 def checked_body(k, body, d):
     """Return body number k, checked, with floats and without None where it has a value.  Raises BadInput."""
     def name(thing):
@@ -316,9 +322,15 @@ def loads_at(model, t, state):
 def load_now(load, t, state):
     """Return (F (n, d) [N], tau [N m]) of a load that is a function.
 
-    Raises WrongShape for an answer of another shape: NumPy would spread it over all bodies, or fail.
+    Raises BadInput for an answer that is no pair, and WrongShape for arrays of another shape: NumPy would spread them
+    over all bodies, or fail.
     """
-    F, tau = load(t, *state)
+    answer = load(t, *state)
+    try:
+        F, tau = answer
+    except (TypeError, ValueError):
+        raise BadInput(f"what a load returns at t = {t:.6g} s", f"a {type(answer).__name__}",
+                       "return the pair F, tau") from None
     for name, values, like in (("F [N]", F, state.x), ("tau [N m]", tau, state.omega)):
         if np.shape(values) != like.shape:
             raise WrongShape(f"{name} of a load at t = {t:.6g} s", np.shape(values), like.shape)

@@ -453,6 +453,22 @@ def test_a_state_that_is_not_of_the_loop_is_told():
             run_parts(loop, 0.0, state, 0.1, 1)
 
 
+def test_what_is_no_model_and_no_loop_is_told():
+    model = make_model([Body((0.0, 1.0), 1.0)], DOWN)
+    for thing in (None, 3, model.bodies, compose(model)):
+        with pytest.raises(BadInput, match="the model"):
+            compose(thing)
+    with pytest.raises(BadInput, match="the loop"):
+        run_parts(model, 0.0, compose(model).state, 0.1, 1)
+
+
+@pytest.mark.parametrize("later", [None, 1.0, (1.0,), np.zeros((3, 2))])
+def test_a_load_that_stops_returning_a_pair_is_told(later):
+    model = make_model([Body((0.0, 1.0), 1.0)], DOWN, loads=[lambda t, x, q, v, omega: later if t > 0.5 else (x, q)])
+    with pytest.raises(BadInput, match="return the pair F, tau"):
+        run(model, 1.0, 10)
+
+
 @pytest.mark.parametrize("settings", [{"sweeps": 10.0}, {"sweeps": np.int64(10)}, {"settled": 1}])
 def test_settings_may_be_numbers_of_another_kind(settings):
     assert np.isfinite(run(make_model([Body((0.0, 0.4), 1.0, Ball(0.5)), FLOOR], DOWN), 0.1, 10, **settings).x).all()

@@ -133,6 +133,11 @@ def test_a_file_that_is_not_there_and_one_of_bytes_get_one_sentence(tmp_path):
         read_model(tmp_path / "bytes.json")
 
 
+def test_what_is_no_model_is_not_saved(tmp_path):
+    with pytest.raises(BadInput, match="the model"):
+        save_model(3, tmp_path / "scene.json")
+
+
 def test_a_load_that_is_a_function_is_not_saved(tmp_path):
     model = make_model([Body((0.0, 0.0), 1.0)], (0.0, 0.0), loads=[Drag(1.0), lambda t, x, q, v, omega: (v, omega)])
     with pytest.raises(BadInput, match="load 1 is a function"):

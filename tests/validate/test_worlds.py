@@ -81,6 +81,15 @@ def test_a_step_that_cannot_be_is_refused(product, settings, dt):
 
 
 @every
+def test_what_is_no_model_is_told(product, settings):
+    if not product.installed():
+        pytest.skip(f"{product} is not installed: {product.remedy}")
+    for thing in (None, [Body((0.0, 0.0), 1.0)]):
+        with pytest.raises(BadInput, match="the model"):
+            product.world.build(thing, 0.1, **settings)
+
+
+@every
 @pytest.mark.parametrize("d", [2, 3])
 def test_a_thrown_body_errs_by_half_a_step_of_its_velocity_at_most(product, settings, d):
     T, steps, v = 1.0, 100, np.array((1.0, 2.0, 3.0)[3 - d:])

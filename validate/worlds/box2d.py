@@ -8,7 +8,6 @@ from functools import cache
 
 import numpy as np
 
-from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     Distance,
@@ -27,7 +26,7 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 
 from ..engines import quiet_import
 from . import Push, World, unsupported
-from .derived import SPINS_ON, acceleration_at_start, beyond, grip, in_plane, spins_on, with_plain_springs
+from .derived import SPINS_ON, acceleration_at_start, beyond, checked_step, grip, in_plane, spins_on, with_plain_springs
 
 UNITS = 0.01                 # its unit of length [m]: the slop is then 0.05 mm and not 5 mm
 SUBSTEPS = 4                 # per step, by default
@@ -74,7 +73,7 @@ def refuses(model):
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
-    dt = positive_number("step dt [s]", dt)
+    dt = checked_step(model, dt)
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, substeps, ahead)

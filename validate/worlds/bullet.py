@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, positive_number
+from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -33,6 +33,7 @@ from .derived import (
     beyond,
     bounces,
     carries,
+    checked_step,
     fastest,
     forces_of,
     grip,
@@ -98,7 +99,7 @@ def refuses(model):
 
 def build(model, dt, **settings):
     """Make a World."""
-    dt = positive_number("step dt [s]", dt)
+    dt = checked_step(model, dt)
     settings, model = Settings(**settings), with_plain_springs(model)
     if not settings.maximal and opens(model):
         raise BadInput("a model in reduced coordinates", OPENS, "build it in maximal ones")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solutions.checks import BadInput, positive_number
+from solutions.checks import BadInput
 from solutions.support.model import (
     WORLD,
     Distance,
@@ -25,6 +25,7 @@ from .derived import (
     acceleration_at_start,
     beyond,
     bounces,
+    checked_step,
     forces_of,
     grip,
     in_plane,
@@ -52,7 +53,7 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
     ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog
     own_drag: the space damps, v e^(−k dt/m) at the end of a step, in place of a force −k v of the old velocity
     """
-    dt = positive_number("step dt [s]", dt)
+    dt = checked_step(model, dt)
     settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop,
                 "own_drag": own_drag}
     if model.d == 3:

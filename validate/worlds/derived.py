@@ -8,6 +8,7 @@ from math import sqrt
 
 import numpy as np
 
+from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -20,6 +21,7 @@ from solutions.support.model import (
     Weld,
     can_move,
     can_turn,
+    check_model,
     friction_of,
     loads_at,
     restitution_of,
@@ -249,6 +251,12 @@ def pull_of(spring):
         share = k * (rest * near - 1.0) - c * near * near * (along * v[0] + up * v[1])
         return share * along, share * up
     return pull
+
+
+def checked_step(model, dt):
+    """Return the step [s] of a world.  Raises BadInput for a step that is not positive, and for what is no Model."""
+    check_model(model)
+    return positive_number("step dt [s]", dt)
 
 
 def with_plain_springs(model):

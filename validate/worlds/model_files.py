@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import get_type_hints
 
 from solutions.checks import BadInput
-from solutions.support.model import JOINTS, SHAPES, Body, Drag, Model, Spring, make_model
+from solutions.support.model import JOINTS, SHAPES, Body, Drag, Model, Spring, check_model, make_model
 
 KIND = "kind"
 LISTS = {"bodies": (Body,), "joints": JOINTS, "springs": (Spring,), "loads": (Drag,)}    # of a Model, and their records
@@ -25,6 +25,7 @@ NUMBERS = {"type": "array", "items": {"anyOf": [*NUMBER["anyOf"], {"type": "arra
 
 def save_model(model, path):
     """Write a Model to a file.  Raises BadInput for a load that is a function, which no file can hold."""
+    check_model(model)
     for n, load in enumerate(model.loads):
         if not isinstance(load, Drag):
             raise BadInput(f"load {n}", "a function", "leave it out: a file holds Drag only")

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -37,6 +36,7 @@ from .derived import (
     Embedding,
     bounces,
     carries,
+    checked_step,
     forces_of,
     only_holds,
     opens,
@@ -76,7 +76,7 @@ def refuses(model):
 
 def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     """Make a World.  integrator: as in MuJoCo's XML; time_constant: of contacts [s]."""
-    dt = positive_number("step dt [s]", dt)
+    dt = checked_step(model, dt)
     mujoco, model = module(), with_plain_springs(model)
     integrator = integrator or ("Euler" if touches(model) else "RK4")
     parts = with_damped_joints(Parts(model, start_of(model), Embedding(model.d), *tree(model)), integrator)

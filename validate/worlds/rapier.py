@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -31,7 +30,7 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Pol
 from ..engines import quiet_import
 from ..reference.orientation import quaternion
 from . import Push, World, unsupported
-from .derived import Embedding, acceleration_at_start, grip, with_plain_springs
+from .derived import Embedding, acceleration_at_start, checked_step, grip, with_plain_springs
 
 SUBSTEPS = 4                 # per step, by default
 SLOP = 1e-5                  # overlap that it leaves [m]; its default is 5 mm
@@ -63,7 +62,7 @@ def refuses(model):
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
-    dt = positive_number("step dt [s]", dt)
+    dt = checked_step(model, dt)
     rapier, model = module(), with_plain_springs(model)
     space = Embedding(model.d)
     world = rapier.PhysicsWorld(gravity=tuple(space.point(model.gravity).tolist()))
