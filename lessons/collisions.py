@@ -334,11 +334,11 @@ def steer(x, v, centre, radius, ahead):
     """Return the acceleration (2,) [m/s²], across v, that steers a body at x with v (2,) aside from a disc in its way.
 
     e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until the body passes the centre
-    y = r − (r · e) e                                             offset from the centre when it passes: −y
+    y = (r · n) n,   n = (−e₁, e₀), to the left of e              offset from the centre when it passes: −y
     a points along −y/|y|                 if 0 < τ < ahead [s] and |y| < radius;  else a = 0
 
     *Find* its size: constant for the time τ, it moves the body aside until the offset from the centre is the radius.
-    If the body heads for the exact centre (y = 0), it turns left: −y/|y| = (−e₁, e₀).
+    If the body heads for the exact centre (y = 0), it turns left: take n in place of −y/|y|.
     At rest (v = 0): 0.
     radius [m] is the sum of the disc's radius, the body's own and a clearance.  The clearance is needed.  A body that
     holds this acceleration for τ ends at the distance radius, abreast of the centre, but it was nearer just before:

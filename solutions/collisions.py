@@ -448,11 +448,11 @@ def steer(x, v, centre, radius, ahead):
     """Return the acceleration (2,) [m/s²], across v, that steers a body at x with v (2,) aside from a disc in its way.
 
     e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until the body passes the centre
-    y = r − (r · e) e                                             offset from the centre when it passes: −y
+    y = (r · n) n,   n = (−e₁, e₀), to the left of e              offset from the centre when it passes: −y
     a points along −y/|y|                 if 0 < τ < ahead [s] and |y| < radius;  else a = 0
 
     *Find* its size: constant for the time τ, it moves the body aside until the offset from the centre is the radius.
-    If the body heads for the exact centre (y = 0), it turns left: −y/|y| = (−e₁, e₀).
+    If the body heads for the exact centre (y = 0), it turns left: take n in place of −y/|y|.
     At rest (v = 0): 0.
     radius [m] is the sum of the disc's radius, the body's own and a clearance.  The clearance is needed.  A body that
     holds this acceleration for τ ends at the distance radius, abreast of the centre, but it was nearer just before:
@@ -467,12 +467,13 @@ def steer(x, v, centre, radius, ahead):
     if speed == 0.0:
         return 0.0 * v
     e = v / speed
+    left = np.array([-e[1], e[0]])
     along = r @ e
-    y = r - along * e
+    y = (r @ left) * left                                   # round-off of r − along e may point along e
     offset, tau = np.sqrt(y @ y), along / speed
     if tau <= 0.0 or tau >= ahead or offset >= radius:
         return 0.0 * v
-    aside = -y / offset if offset > 0.0 else np.array([-e[1], e[0]])
+    aside = -y / offset if offset > 0.0 else left
     return 2.0 * (radius - offset) / tau**2 * aside
     ### END SOLUTION
 
