@@ -193,6 +193,18 @@ def test_a_hint_on_pythons_error_is_never_folded(monkeypatch, tmp_path):
     assert "a name is misspelt" in text and "<details><summary>show it" not in html
 
 
+@pytest.mark.parametrize(("signature", "advice"), [
+    ("another_name(acceleration, t, x, v, dt, p)", "name the function as in the file"),
+    ("euler_step(acceleration, x, v, dt, p)", "give the function the arguments that it has in the file"),
+    ("euler_step(acceleration, t, x, v, dt, p, more)", "give the function the arguments that it has in the file")])
+def test_another_name_or_other_arguments_are_told(monkeypatch, tmp_path, signature, advice):
+    whole = "euler_step(acceleration, t, x, v, dt, p)"
+    worked = example.worked("integrators")
+    assert worked.count(f"def {whole}") == 1
+    text, _ = checked(monkeypatch, tmp_path, worked.replace(f"def {whole}", f"def {signature}"))
+    assert advice in text
+
+
 def test_a_students_own_error_gives_no_advice_to_the_student(monkeypatch, tmp_path):
     """The answer to 9.8 raises Diverged with the remedy that its docstring names: that is for whoever calls it."""
     worked, law = example.worked("contact"), "0.0), -b[k]"

@@ -31,6 +31,7 @@ from .expect import NotYet
 from .points import (
     AGAIN,
     BOX_LIMIT,
+    FILE,
     LESSONS,
     LIMIT,
     PUBLIC,
@@ -314,7 +315,7 @@ class Pure:
     def __getattr__(self, name):
         if isinstance(self.subject, types.ModuleType) and name not in vars(self.subject):
             file = Path(self.subject.__file__)
-            raise NotYet("the file", f"a function {name}", lacks(file, name), "", "no such function")
+            raise NotYet(FILE, f"a function {name}", lacks(file, name), "", "no such function")
         value = getattr(self.subject, name)
         if not callable(value) or isinstance(value, type):
             return value

@@ -24,6 +24,8 @@ PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, or 5 on a slow machine
 AGAIN = 10.0                 # and so long where a test of the exercise, or of one that it calls, has taken too long [s]
 READING = "reading the file"   # the quantity where a file could not be loaded
+FILE = "the file"            # the quantity where it has no function that a test calls
+OWN_NAME = "name the function as in the file that you received"
 DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 20.0             # and so long in the sandbox [s]
 SHAPES = (AttributeError, TypeError, ValueError, IndexError, KeyError)   # what a result of another kind ends in
@@ -155,8 +157,9 @@ def outcome(mark, name, excinfo, trace=None):
         return Outcome(exercise, name, points, "not attempted", got=words_of(error), hint=hint)
     find = needs.asks_to_find(exercise)
     if isinstance(error, NotYet):
-        words = map(str, (error.quantity, error.expected, error.got, error.tolerance, hint, error.error, error.given))
-        return Outcome(exercise, name, points, "not yet", *words, tells=find)
+        advice = _advice(exercise, error, "") or hint
+        words = map(str, (error.quantity, error.expected, error.got, error.tolerance, advice, error.error, error.given))
+        return Outcome(exercise, name, points, "not yet", *words, tells=find and advice == hint)
     if isinstance(error, TooLong):
         within = f"an answer within {getattr(error, 'limit', LIMIT):g} s"
         return Outcome(exercise, name, points, "not yet", DURATION, within, "none", "",
@@ -170,7 +173,7 @@ def outcome(mark, name, excinfo, trace=None):
     if shapes:                                                       # the caller could not use what was returned
         return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
                        "return as many values as the docstring says, in its order", kind)
-    expected, advice = "an answer, and no error" if place else "an answer", _advice(error, said)
+    expected, advice = "an answer, and no error" if place else "an answer", _advice(exercise, error, said)
     return Outcome(exercise, name, points, "not yet", "the call itself", expected, f"{kind}: {said}{place}", "",
                    advice or hint, f"{kind}{place}", tells=find and not advice)
 
@@ -207,8 +210,15 @@ def _place(error):
     return own[-1] if own else ""
 
 
-def _advice(error, said):
+def _advice(exercise, error, said):
     """Return a hint for what Python says, where that is more to the point than the hint for the physics; or nothing."""
+    function = needs.table().get(exercise, {"function": ""})["function"]
+    if isinstance(error, NotYet):
+        return OWN_NAME if error.quantity == FILE else ""
+    if isinstance(error, AttributeError) and said.startswith("module ") and said.endswith(f" {function!r}"):
+        return OWN_NAME
+    if isinstance(error, TypeError) and said.startswith(f"{function}() ") and " argument" in said:
+        return "give the function the arguments that it has in the file that you received"
     if "NoneType" in said:
         return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
