@@ -352,6 +352,16 @@ def test_observations_to_look_into_are_on_the_class_page_and_nowhere_else(tmp_pa
             assert absent not in text, (other, absent)
 
 
+def test_what_could_not_be_read_stands_at_the_top_of_the_class_page(tmp_path):
+    some = [result("ada"), result("eve", handed_in=(), problems=["it cannot be read: BadZipFile"])]
+    pages.write(tmp_path, some, {}, SETTINGS, {}, FREE)
+    page = Seen(tmp_path / "index.html").text
+    top = re.sub(r"\s+", " ", page[:page.index("handed in")])
+    assert "1 submission with nothing to grade" in top and re.search("eve ?: it cannot be read: BadZipFile", top)
+    pages.write(tmp_path, some[:1], {}, SETTINGS, {}, FREE)
+    assert "nothing to grade" not in Seen(tmp_path / "index.html").text
+
+
 def test_only_the_class_page_has_the_date_and_duration_of_the_run(tmp_path):
     slow = {**result("ada"), "seconds": 99.25}
     pages.write(tmp_path / "1", [result("ada")], {}, SETTINGS, {}, FREE, pages.Run(when="2027-01-15T08:00:00"))
