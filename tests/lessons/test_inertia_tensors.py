@@ -44,6 +44,13 @@ def sparse_clouds(draw):
         yield from ((m, x, v), (m, 0.0 * x, v), (m, x, 0.0 * v), (m, draw(-1.5, 1.5) * np.eye(3)[np.arange(n) % 3], v))
 
 
+def scales(n):
+    """n factors: all are 1, or one of them is 1e-30 or 1e30. A limit in grams or micrometres shows there."""
+    yield np.ones(n)
+    for k, size in itertools.product(range(n), SIZES[1:]):
+        yield np.where(np.arange(n) == k, size, 1.0)
+
+
 # rotations by none, a third and a half turn, and by a quarter turn about z
 AXIS_TURNS = np.stack([np.eye(3), np.roll(np.eye(3), 1, axis=0), np.diag([1.0, -1.0, -1.0]),
                        np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])])
@@ -92,6 +99,10 @@ def test_a_body_without_mass_has_no_centre_of_mass(lesson, draw):
     raises("negative masses", BadInput, lesson.centre_of_mass, -m, x)
     for wrong in (np.nan, np.inf):
         raises(f"a mass of {wrong} kg", BadInput, lesson.centre_of_mass, np.array([m[0], wrong]), x)
+    # One point alone is no case of its own.
+    for wrong, what in ((0.0, "a single mass of 0 kg"), (-m[0], "a single negative mass"), (np.nan, "a single NaN")):
+        raises(what, BadInput, lesson.centre_of_mass, np.array([wrong]), x[:1], naming=[wrong] if wrong < 0.0 else (),
+               thing="total mass [kg]")
 
 
 @exercise("4.2", points=0.5, hint="multiply each velocity by its mass: Σ mᵢ vᵢ, a vector")
@@ -107,10 +118,10 @@ def test_linear_momentum_is_the_mass_times_the_velocity_of_the_centre(lesson, dr
     recoil = np.stack([v[0], -m[0] / m[1] * v[0]])
     close("P after an explosion at rest [kg m/s]", lesson.linear_momentum(m[:2], recoil),
           np.zeros(3), ROUNDED, f"m = {m[:2]}")
-    for heavy, size in ((heavy, size) for heavy in (1.0, 0.5, 2.0) for size in (1.0, 1e-30, 1e30)):
-        masses, speeds = np.array([m[0], 0.0, -heavy * m[0]]), size * v[:3]
-        close("P of a point, a point of no mass and a hole, over the size of the velocities [kg]",
-              np.asarray(lesson.linear_momentum(masses, speeds)) / size, m[0] * (v[0] - heavy * v[2]), ROUNDED,
+    for heavy, (unit, size) in itertools.product((1.0, 0.5, 2.0), scales(2)):
+        masses, speeds = unit * np.array([m[0], 0.0, -heavy * m[0]]), size * v[:3]
+        close("P of a point, a point of no mass and a hole, over the size of masses and velocities [-]",
+              np.asarray(lesson.linear_momentum(masses, speeds)) / unit / size, m[0] * (v[0] - heavy * v[2]), ROUNDED,
               f"m = {masses}, v = {speeds.tolist()}")
 
 
@@ -123,12 +134,13 @@ def test_angular_momentum_of_a_turning_body_is_its_tensor_times_omega(lesson, dr
     found = lesson.angular_momentum(m, x, v, X)
     close("L about the centre of points that rotate with ω [kg m²/s]: I ω", found, tensor(m, x - X) @ omega, ROUNDED,
           given)
-    for heavy, size in ((heavy, size) for heavy in (1.0, 0.5, 2.0) for size in (1.0, 1e-30, 1e30)):
-        masses = np.array([m[0], 0.0, -heavy * m[0]])
-        L = lesson.angular_momentum(masses, size * x[:3], v[:3], size * X)
+    for heavy, (unit, size, pace) in itertools.product((1.0, 0.5, 2.0), scales(3)):
+        masses = unit * np.array([m[0], 0.0, -heavy * m[0]])
+        L = np.asarray(lesson.angular_momentum(masses, size * x[:3], pace * v[:3], size * X)) / unit / pace
         expected = m[0] * (np.cross(x[0] - X, v[0]) - heavy * np.cross(x[2] - X, v[2]))
-        close("L of a point, a point of no mass and a hole, over their size [kg m/s]", np.asarray(L) / size, expected,
-              ROUNDED, f"m = {masses}, x = {(size * x[:3]).tolist()}, v = {v[:3].tolist()}, about = {size * X}")
+        close("L of a point, a point of no mass and a hole, over the sizes of m, x and v [-]", L / size, expected,
+              ROUNDED,
+              f"m = {masses}, x = {(size * x[:3]).tolist()}, v = {(pace * v[:3]).tolist()}, about = {size * X}")
     straight = lesson.angular_momentum(m[:1], x[:1], X - x[:1], X)
     close("L of a point that moves straight towards `about` [kg m²/s]", straight, np.zeros(3), ROUNDED, given)
 
@@ -175,10 +187,10 @@ def test_tensor_of_points_gives_their_angular_momentum_and_energy(lesson, draw):
     close("I with a hole of equal mass at the first point [kg m²]: as without both", hole, tensor(m[1:], r[1:]),
           ROUNDED, f"m = {m}, r = {r.tolist()}")
     for masses in (-m, m - m.mean()):                                    # their sum is negative, or about zero
-        for size in (1.0, 1e-30, 1e30):
-            I = np.asarray(lesson.point_mass_inertia(masses, size * r)) / size**2
-            close("I of points and holes of which the holes are not lighter, over the size squared [kg]", I,
-                  tensor(masses, r), ROUNDED, f"m = {masses}, r = {(size * r).tolist()}")
+        for unit, size in scales(2):
+            I = np.asarray(lesson.point_mass_inertia(unit * masses, size * r)) / unit / size**2
+            close("I of points and holes of which the holes are not lighter, over mass and size squared [-]", I,
+                  tensor(masses, r), ROUNDED, f"m = {unit * masses}, r = {(size * r).tolist()}")
 
 
 @exercise("4.4", points=0.5, hint="a point on the x axis contributes to Iyy and Izz, not to Ixx")
@@ -209,6 +221,14 @@ def test_tensor_of_a_box_is_its_volume_integral(lesson, draw):
         I = np.asarray(lesson.box_inertia(mass * m, small * size)) / mass / small**2
         close("tensor of a very small or large box over its mass and size squared [-]", I, by_eight_points(m, size),
               ROUNDED, f"m = {mass * m:.4g}, size = {small * size}")
+    # The moment about an axis does not depend on the edge along it: that of a needle is that of its cross-section.
+    # An answer may subtract x² from x² + y² + z²: a round-off of 1e-16/share².
+    for axis, share in itertools.product(range(3), (1e-2, 5e-4)):
+        edges = np.where(np.arange(3) == axis, 1.0, share) * size
+        close("moment of a needle about its own axis, over the square of its thinness [kg m²]",
+              np.asarray(lesson.box_inertia(m, edges))[axis, axis] / share**2,
+              by_eight_points(m, np.where(np.arange(3) == axis, 0.0, size))[axis, axis], 1e-7,
+              f"m = {m:.4g}, size = {edges}")
     parts = draw.sparse(0.2, 2.0, (6, 3))
     for name, edges in (("plate", size * [1.0, 1.0, 0.0]), ("rod", size * [0.0, 1.0, 0.0]),
                         ("cube", size[0] * np.ones(3)), *(("box, a plate or a rod", edges) for edges in parts)):
@@ -256,10 +276,10 @@ def capsule_pieces(r, h):
 def test_tensor_of_a_ball_is_its_volume_integral(lesson, draw):
     m, r = draw(0.5, 5.0), draw(0.2, 2.0)
     for mass, what in ((m, "ball"), (-m, "ball-shaped hole")):
-        for size in (1.0, 1e-30, 1e30):
-            close(f"tensor of a {what} over its size squared [kg]",
-                  np.asarray(lesson.sphere_inertia(mass, size * r)) / size**2, by_slices(mass, ball_pieces(r)),
-                  ROUNDED, f"m = {mass:.4g}, R = {size * r:.4g}")
+        for unit, size in scales(2):
+            close(f"tensor of a {what} over its mass and size squared [-]",
+                  np.asarray(lesson.sphere_inertia(unit * mass, size * r)) / unit / size**2,
+                  by_slices(mass, ball_pieces(r)), ROUNDED, f"m = {unit * mass:.4g}, R = {size * r:.4g}")
 
 
 @exercise("4.7", points=1, hint="the axis is z: only Izz has ½ m R²; the other two are m (3R² + h²)/12")
@@ -267,11 +287,16 @@ def test_tensor_of_a_cylinder_is_its_volume_integral(lesson, draw):
     m, r, h = draw(0.5, 5.0), draw(0.2, 1.0), draw(1.2, 2.0)
     expected = by_slices(m, [(-0.5 * h, 0.5 * h, lambda z: r * r + 0.0 * z)])
     for sign, what in ((1.0, "cylinder"), (-1.0, "cylinder-shaped hole")):
-        for size in (1.0, 1e-30, 1e30):
-            given = f"m = {sign * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}"
-            close(f"tensor of a {what} over its size squared [kg]",
-                  np.asarray(lesson.cylinder_inertia(sign * m, size * r, size * h)) / size**2, sign * expected,
-                  ROUNDED, given)
+        for unit, size in scales(2):
+            given = f"m = {sign * unit * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}"
+            found = np.asarray(lesson.cylinder_inertia(sign * unit * m, size * r, size * h)) / unit / size**2
+            close(f"tensor of a {what} over its mass and size squared [-]", found, sign * expected, ROUNDED, given)
+    for share in (1e-6, 1e-3, 0.03, 0.9, 30.0, 1e3, 1e6):                # nearly a disc, ..., nearly a rod
+        half = 0.5 * share * r
+        expected = np.diag(by_slices(m, [(-half, half, lambda z: r * r + 0.0 * z)]))
+        close("Ixx, Iyy, Izz of a short or long cylinder over their truth [-]",
+              np.diag(np.asarray(lesson.cylinder_inertia(m, r, 2.0 * half))) / expected, np.ones(3), ROUNDED,
+              f"m = {m:.4g}, R = {r:.4g}, length = {2.0 * half:.4g}")
     disc = m * r * r * np.diag([0.25, 0.25, 0.5])
     rod = m * h * h / 12.0 * np.diag([1.0, 1.0, 0.0])
     close("tensor of a disc, a cylinder of length 0 [kg m²]", lesson.cylinder_inertia(m, r, 0.0), disc, ROUNDED,
@@ -286,10 +311,10 @@ def test_tensor_of_a_capsule_is_its_volume_integral(lesson, draw):
     m, r, h = draw(0.5, 5.0), draw(0.2, 1.0), draw(0.5, 2.0)
     expected = by_slices(m, capsule_pieces(r, h))
     for sign, what in ((1.0, "capsule"), (-1.0, "capsule-shaped hole")):
-        for size in (1.0, 1e-30, 1e30):
-            found = np.asarray(lesson.capsule_inertia(sign * m, size * r, size * h)) / size**2
-            close(f"tensor of a {what} over its size squared [kg]", found, sign * expected, ROUNDED,
-                  f"m = {sign * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}")
+        for unit, size in scales(2):
+            found = np.asarray(lesson.capsule_inertia(sign * unit * m, size * r, size * h)) / unit / size**2
+            close(f"tensor of a {what} over its mass and size squared [-]", found, sign * expected, ROUNDED,
+                  f"m = {sign * unit * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}")
 
 
 @exercise("4.8", points=0.5, hint="for length = 0 the two half balls contain all the mass and form a ball")
@@ -325,6 +350,9 @@ def test_the_tensor_turns_with_the_body(lesson, draw):
     close("input I_body after the call: return a new array", I_body, kept, 0.0, given)
     close("tensor of a hole that is rotated by R [kg m²]", lesson.world_inertia(-I_body, R), -tensor(m, r @ R.T),
           ROUNDED, given)
+    for size in SIZES[1:]:
+        close("tensor of a very small or large body, over its size [-]",
+              np.asarray(lesson.world_inertia(size * I_body, R)) / size, tensor(m, r @ R.T), ROUNDED, given)
     for R in (*AXIS_TURNS, rotation(draw), about(np.array([0.0, 0.0, 1.0]), draw(0.5, 2.5))):
         for points in (r, draw.sparse(-1.5, 1.5, r.shape), np.eye(3)[:2], np.concatenate([np.eye(3), -np.eye(3)])):
             masses = np.resize(m, len(points)) if len(points) < 6 else np.ones(6)          # the last one is like a ball
@@ -339,7 +367,7 @@ def test_the_inverse_in_world_axes_turns_l_back_into_omega(lesson, draw):
     # Moments above 1 kg m² make the inverse less than 1. The round-off of I⁻¹ I is 1e-16 times moments below 1e3.
     I_body, R = tensor(m, r) + np.eye(3), rotation(draw)
     I = tensor(m, r @ R.T) + np.eye(3)
-    for size in (1.0, 1e-5, 1e-30, 1e30):
+    for size in (1.0, 1e-5, 1e-30, 1e30, -1.0):                          # the last one is a hole
         inverse = np.asarray(lesson.world_inverse_inertia(size * I_body, R))
         close("I⁻¹ I in world axes [-]", inverse @ (size * I), np.eye(3), ROUNDED,
               f"I_body = {(size * I_body).tolist()}, R = {R.tolist()}")
@@ -379,10 +407,10 @@ def test_away_from_its_centre_a_body_resists_like_a_point_more(lesson, draw):
               lesson.parallel_axes(I, 0.0, d.copy()), I, ROUNDED, f"I = {I.tolist()}, m = 0, d = {d}")
     d = draw(-1.0, 1.0, 3)
     given = f"I = {I.tolist()}, m = {M:.4g}, d = {d}"
-    for size in (1.0, 1e-30, 1e30):
-        hole = np.asarray(lesson.parallel_axes(-size**2 * I, -M, size * d)) / size**2
-        close("tensor of a hole about a point at d from its centre, over its size squared [kg]", hole,
-              -tensor(m, r - d), ROUNDED, f"size {size} m, its {given}")
+    for unit, size in scales(2):
+        hole = np.asarray(lesson.parallel_axes(-unit * size**2 * I, -unit * M, size * d)) / unit / size**2
+        close("tensor of a hole about a point at d from its centre, over its mass and size squared [-]", hole,
+              -tensor(m, r - d), ROUNDED, f"mass {unit} kg, size {size} m, its {given}")
 
 
 @exercise("4.12", points=0.5,
@@ -441,6 +469,18 @@ def test_equal_bodies_on_axes_in_one_place_or_alone_have_the_tensor_of_their_cen
         close("centre of mass of all [m]", found.x, X, ROUNDED, given)
         close("tensor of all about their centre [kg m²]", found.I, tensor(m, x - X) + len(m) * own, 10.0 * ROUNDED,
               given)
+
+
+    own = np.stack([tensor(*cloud(draw, 3)) for _ in range(3)])
+    m, x = cloud(draw, 3)
+    for unit, size in scales(2):
+        found = lesson.combine(unit * m, size * x, unit * size**2 * own)
+        given = f"masses {unit * m}, centres {(size * x).tolist()}, tensors {(unit * size**2 * own).tolist()}"
+        close("mass of very small or large bodies, over that of the unit [-]", found.m / unit, m.sum(), ROUNDED, given)
+        close("centre of mass of very small or large bodies, over their size [-]", np.asarray(found.x) / size,
+              m @ x / m.sum(), ROUNDED, given)
+        close("tensor of very small or large bodies, over mass and size squared [-]",
+              np.asarray(found.I) / unit / size**2, tensor(m, x - m @ x / m.sum()) + own.sum(axis=0), ROUNDED, given)
 
 
 @exercise("4.12", points=0.25, hint="centre_of_mass raises BadInput: call it")
@@ -503,6 +543,12 @@ def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any
             close("R diag(moments) Rᵀ over the size [-]", axes @ np.diag(found) @ axes.T, I, ROUNDED, given)
             close("first axis × second axis [-]: the third", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2],
                   ROUNDED, given)
+
+
+    for share in (1e-10, 1e-11, 1e-12):                                  # needles, whose small moment is no round-off
+        needle = np.array([share * low, middle, high])
+        found, _ = lesson.principal_axes(np.diag(needle))
+        close("principal moments of a needle [kg m²]", found, needle, 1e-14, f"I = diag {needle.tolist()}")
 
 
 def turned(moments, R):
@@ -676,7 +722,8 @@ def test_integrals_over_a_tetrahedron_are_those_of_its_corners(lesson, draw):
     V, s = np.linalg.det(x[1:] - x[0]) / 6.0, x.sum(axis=0)
     # Dirichlet: ∫λᵢλⱼ dV = V (1 + δᵢⱼ)/20 in barycentric coordinates
     expected = V, V / 4.0 * s, V / 20.0 * (x.T @ x + np.outer(s, s))
-    compare_integrals(lesson, "a tetrahedron away from the origin", x, TETRAHEDRON, expected, f"corners {x.tolist()}")
+    compare_integrals(lesson, "a tetrahedron away from the origin", x, TETRAHEDRON.copy(), expected,
+                      f"corners {x.tolist()}")
 
 
 @exercise("4.15", points=0.25,
@@ -744,6 +791,9 @@ def test_integrals_over_lumps_dents_and_cavities_are_those_of_their_tetrahedra(l
                           ROUNDED, given)
 
 
+NO_CORNER, OPEN = "a triangle's corner", "a corner on an open edge: number"
+
+
 @exercise("4.16", points=0.25,
           hint="every edge i → j needs an edge j → i; a reversed or repeated triangle "
                "violates that; name a corner of the open edge")
@@ -761,21 +811,25 @@ def test_open_and_crooked_meshes_are_refused(lesson, draw):
               "a negative index": np.where(faces == 0, -1, faces)}
     lesson.check_closed(len(x), faces)                                   # a closed one passes
     for what, wrong in broken.items():
-        raises(what, BadInput, lesson.check_closed, len(x), np.ascontiguousarray(wrong))
+        raises(what, BadInput, lesson.check_closed, len(x), np.ascontiguousarray(wrong),
+               thing=NO_CORNER if "index" in what else OPEN)
     # Edges numbered i · 1 + j, with the number of triangles, would give the same list in both directions.
-    raises("a single triangle", BadInput, lesson.check_closed, 3, np.array([[0, 1, 2]]), naming=[0, 1, 2])
+    raises("a single triangle", BadInput, lesson.check_closed, 3, np.array([[0, 1, 2]]), naming=[0, 1, 2],
+           thing=OPEN)
     k = int(np.flatnonzero(np.all(faces > 0, axis=1))[0])
     raises("a missing triangle that does not contain corner 0", BadInput,
            lesson.check_closed, len(x), np.delete(faces, k, axis=0), naming=faces[k].tolist())
     raises("an index of no corner", BadInput,
-           lesson.check_closed, len(x), np.where(faces == len(x) - 1, 77, faces), naming=[77])
+           lesson.check_closed, len(x), np.where(faces == len(x) - 1, 77, faces), naming=[77],
+           thing=NO_CORNER)
 
 
 @exercise("4.16", points=0.25,
           hint="compare the edges with the reversed edges; the order of the triangles does not matter")
 def test_closed_meshes_pass(lesson, draw):
-    raises("an open mesh: a tetrahedron without one of its faces", BadInput, lesson.check_closed, 4, TETRAHEDRON[1:])
-    lesson.check_closed(4, TETRAHEDRON)
+    raises("an open mesh: a tetrahedron without one of its faces", BadInput, lesson.check_closed, 4,
+           TETRAHEDRON[1:].copy())
+    lesson.check_closed(4, TETRAHEDRON.copy())
     x, faces = box_mesh(draw(0.3, 1.5, 3), np.zeros(3))
     lesson.check_closed(len(x), faces)
     lesson.check_closed(len(x), np.ascontiguousarray(np.roll(faces, draw.whole(1, 5), axis=0)[:, [1, 2, 0]]))
@@ -833,7 +887,7 @@ def test_a_mesh_has_the_mass_centre_and_tensor_of_its_body(lesson, draw):
     m = density * a * b * c / 6.0
     given = f"density = {density:.4g}, edges {a:.4g}, {b:.4g}, {c:.4g}"
     corners = np.array([[0.0, 0.0, 0.0], [a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]])
-    _, found_x, found_I = lesson.mesh_body(density, corners, TETRAHEDRON)
+    _, found_x, found_I = lesson.mesh_body(density, corners, TETRAHEDRON.copy())
     # For a corner cut off a box ∫x² = V a²/10, ∫x y = V a b/20, and the centre is at a/4:
     # 1/10 − 1/16 = 3/80 and 1/20 − 1/16 = −1/80.
     expected = m / 80.0 * np.array([[3.0 * (b * b + c * c), a * b, a * c], [a * b, 3.0 * (a * a + c * c), b * c],
@@ -863,7 +917,8 @@ def test_meshes_without_an_inside_are_refused(lesson, draw):
     close("mass of a box at 1 kg/m³ [kg]", lesson.mesh_body(1.0, x, faces)[0], np.prod(size), ROUNDED, f"size = {size}")
     for density in (0.0, -1.0, np.nan, np.inf):
         raises(f"density {density} kg/m³", BadInput, lesson.mesh_body, density, x, faces)
-    raises("an inside-out mesh", BadInput, lesson.mesh_body, 1.0, x, np.ascontiguousarray(faces[:, ::-1]))
+    raises("an inside-out mesh", BadInput, lesson.mesh_body, 2.0, x, np.ascontiguousarray(faces[:, ::-1]),
+           naming=[-np.prod(size)], thing="the volume inside the mesh [m³]")
     raises("an open mesh", BadInput, lesson.mesh_body, 1.0, x, faces[1:])
     raises("a corner at NaN", BadInput, lesson.mesh_body, 1.0, np.where(x == x[3], np.nan, x), faces)
     for wrong in (np.nan, np.inf):
@@ -929,9 +984,12 @@ def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetr
 
 @exercise("4.18", points=1, hint="its kinetic energy is ½mv² + ½Iω² with ω = v/R, and all of it comes from the height")
 def test_a_body_rolls_down_in_the_time_that_its_forces_give(lesson, draw):
-    shares, slopes = [*draw(0.1, 1.0, 3), 0.0, 1.0, 0.4, 7.0], [*draw(0.1, 0.6, 3), 0.3, 0.5 * np.pi, 1e-9, 0.3]
-    for share, slope in zip(shares, slopes, strict=True):
-        m, R, way, g = draw(0.5, 2.0, 4) * 10.0 ** draw(-6.0, 6.0, 4)
+    shares = [*draw(0.1, 1.0, 5), 0.0, 1.0, 0.4, 7.0]
+    slopes = [*draw(0.1, 0.6, 3), 1e-2, 3e-4, 0.3, 0.5 * np.pi, 1e-9, 0.3]
+    # The smallest bodies have moments of 1e-12 kg m² and less, the largest ones of 1e12 kg m² and more.
+    signs = np.array([(1.0, 1.0, 1.0, 1.0), (-1.0, -1.0, 1.0, -1.0), (1.0, -1.0, -1.0, 1.0)])
+    for n, (share, slope) in enumerate(zip(shares, slopes, strict=True)):
+        m, R, way, g = draw(0.5, 2.0, 4) * 10.0 ** (draw(4.0, 6.0, 4) * signs[n % 3])
         I = share * m * R * R
         # m a + f = m g sin θ,  I a/R = f R: acceleration and friction
         a, _ = np.linalg.solve([[m, 1.0], [I / R, -R]], [m * g * np.sin(slope), 0.0])

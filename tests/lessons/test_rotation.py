@@ -1,5 +1,6 @@
 """Lesson 5: bodies turn as Rodrigues and Euler say, keep L and energy as promised, and flip when theory says."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -48,6 +49,9 @@ def spin_of(draw):
     return draw(0.5, 1.5, 3) * np.where(draw(-1.0, 1.0, 3) < 0.0, -1.0, 1.0)
 
 
+SIZES = (1.0, 1e-30, 1e30)   # of vectors: a limit such as 1e-9 shows at one of them
+SLOW = (0.03, 1e-4, 1e-7, 1e-9)      # angles of a small turn [rad]; each effect is above EXACT
+
 STILL = np.array([1.0, 0.0, 0.0, 0.0])                               # no rotation
 
 
@@ -62,6 +66,11 @@ def round_bodies(draw):
     """Moments [kg m²] of three bodies with two equal ones, and of a ball."""
     across, along = draw(2.0, 3.0), draw(1.0, 1.8)
     return *np.where(np.eye(3) > 0.0, along, across), np.full(3, across)
+
+
+def nearly_round(draw):
+    """Moments [kg m²] that differ by one part in 10,000, in a drawn order."""
+    return draw(2.0, 3.0) * np.roll([1.0, 1.0001, 1.0002], draw.whole(0, 2))
 
 
 def few(draw, size):
@@ -94,6 +103,9 @@ def test_a_skew_matrix_multiplies_like_a_cross_product(lesson, draw):
         matrix = lesson.skew(a)
         close("a* b − a × b", np.asarray(matrix) @ b - np.cross(a, b), np.zeros(3), EXACT, given=f"a = {a}, b = {b}")
         close("a* e for the three axes e, as columns", matrix, np.cross(a, np.eye(3)).T, EXACT, given=f"a = {a}")
+        for size in SIZES[1:]:
+            close("a* e for the three axes e, over the size of a", np.asarray(lesson.skew(size * a)) / size,
+                  np.cross(a, np.eye(3)).T, EXACT, given=f"a = {size * a}")
 
 
 @exercise("5.2", points=0.5, hint="the point moves with v, plus ω × r because the body rotates, in this order")
@@ -105,6 +117,14 @@ def test_a_point_moves_as_the_body_carries_it(lesson, draw):
         # h²/6 |ω|³ |r| < 1e-8/6 · 42 · 1.8 = 1.3e-7
         close("velocity of the point [m/s]", lesson.point_velocity(v, omega, r), (after - before) / (2.0 * h), 2e-7,
               given=f"v = {v}, ω = {omega}, r = {r}")
+    v, omega, r = general
+    for size in SIZES:
+        for moving, turning, arm in ((size * v, 0.0 * omega, r), (0.0 * v, size * omega, r), (0.0 * v, omega, size * r),
+                                     (size * v, size * omega, r)):
+            close("velocity of the point over the size of v, ω or r [m/s]",
+                  np.asarray(lesson.point_velocity(moving, turning, arm)) / size,
+                  moving / size + np.cross(turning / size, arm), EXACT,
+                  given=f"v = {moving}, ω = {turning}, r = {arm}")
 
 
 @exercise("5.3", points=1,
@@ -123,6 +143,12 @@ def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
     close("torque of a couple [N m], about any point", tau, np.cross(points[0] - points[1], forces[0]), EXACT)
     F, tau = lesson.total_load(x, points[:1] * 0.0 + x, forces[:1])
     close("torque of a force at the centre of mass [N m]", tau, np.zeros(3), EXACT)
+    for size in SIZES[1:]:
+        for far, strong in ((size, 1.0), (1.0, size)):
+            F, tau = lesson.total_load(far * x, far * points, strong * forces)
+            close("total force over the size of the forces [N]", np.asarray(F) / strong, forces.sum(axis=0), EXACT)
+            close("torque over the size of points and forces [N m]", np.asarray(tau) / far / strong,
+                  np.cross(points - x, forces).sum(axis=0), EXACT)
     for n in (1, 1, 2, 7):
         x, points, forces = draw.sparse(-1.0, 1.0, 3), draw.sparse(-2.0, 2.0, (n, 3)), draw.sparse(-5.0, 5.0, (n, 3))
         forces[:n // 2] = 0.0
@@ -138,6 +164,12 @@ def test_angular_momentum_gives_back_the_angular_velocity(lesson, draw):
     L = inertia(q, I_body) @ omega
     got = lesson.angular_velocity(turn(q), L, I_body)
     close("ω of a body with L = I ω [rad/s]", got, omega, EXACT, given=f"ω = {omega}, I_body = {I_body}")
+    for size in SIZES[1:]:
+        given = f"L = {size * L}, I_body = {I_body}"
+        small = np.asarray(lesson.angular_velocity(turn(q), size * L, I_body)) / size
+        close("ω of a body with a very small or large L, over its size [rad/s]", small, omega, EXACT, given=given)
+        close("ω of a body with very small or large moments and L [rad/s]",
+              lesson.angular_velocity(turn(q), size * L, size * I_body), omega, EXACT, given=given)
     close("ω about a principal axis: along it [rad/s]",
           lesson.angular_velocity(np.eye(3), np.array([0.0, 2.0 * I_body[1], 0.0]), I_body), [0.0, 2.0, 0.0], EXACT)
     for I_body in round_bodies(draw):
@@ -168,6 +200,15 @@ def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
                   given=f"ω = {omega}")
             close("Ṗ [N]", P_rate, F, 0.0)
             close("L̇ [N m]", L_rate, tau, 0.0)
+    x, P, omega, F, tau = general
+    for size in SIZES[1:]:
+        S = lesson.RigidBodyState(x, turn(q), P, inertia(q, I_body) @ omega)
+        body = lesson.RigidBody(size * m, size * I_body)
+        got = lesson.state_derivative(S, F, tau, body)
+        given = f"m = {size * m}, I_body = {size * I_body}, P = {P}, ω I = {S.L}"
+        close("ẋ times the size of the mass [m/s]", size * np.asarray(got[0]), P / m, EXACT, given=given)
+        close("Ṙ times the size of the moments [1/s]", size * np.asarray(got[1]), np.cross(omega, turn(q).T).T, EXACT,
+              given=given)
 
 
 # ---------------------------------------------------------------------------------------------- three rotation updates
@@ -185,6 +226,17 @@ def test_the_matrix_update_keeps_a_matrix_orthonormal(lesson, draw):
             close("orientation, compared with a QR factorisation of R + dt ω* R", got, Q * np.sign(np.diag(upper)),
                   EXACT, given=f"ω = {omega}, dt = {dt}")
             close("R Rᵀ of the result", got @ got.T, np.eye(3), EXACT)
+    # Columns that have drifted: neither of length 1 nor perpendicular, also for a body at rest.
+    drifted = general + draw(-0.1, 0.1, (3, 3))
+    for R in (general, drifted):
+        for omega in (np.zeros(3), *(angle / dt * unit_of(spin_of(draw)) for angle in (*SLOW, -SLOW[0]))):
+            for step in (dt, -dt):
+                Q, upper = np.linalg.qr(R + step * np.cross(omega, R.T).T)
+                Q = Q * np.sign(np.diag(upper))
+                Q[:, 2] = np.cross(Q[:, 0], Q[:, 1])
+                close("orientation after a small turn, compared with a QR factorisation",
+                      lesson.matrix_update(R, omega, step), Q, EXACT,
+                      given=f"R = {R.tolist()}, ω = {omega}, dt = {step}")
     close("input R after the call: unchanged", general, kept, 0.0)
     close("orientation at ω = 0", lesson.matrix_update(general, np.zeros(3), dt), general, EXACT)
 
@@ -240,6 +292,8 @@ def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
     pairs[1, 1] = pairs[1, 0]
     # Two have a factor without a vector part, and two a factor 0.
     pairs[8, 0, 1:], pairs[9, 1, 1:], pairs[10, 0], pairs[11, 1] = 0.0, 0.0, 0.0, 0.0
+    # Small and large ones too: a factor below 1e-9 is not 0.
+    pairs = np.concatenate((pairs, [[size * pairs[2, 0], pairs[2, 1] / size] for size in SIZES[1:]]))
     for a, b in pairs:
         expected = pauli(a) @ pauli(b)
         got = np.asarray(lesson.quaternion_product(a, b))
@@ -249,11 +303,18 @@ def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
         close("|a b| − |a| |b|", np.linalg.norm(got) - np.linalg.norm(a) * np.linalg.norm(b), 0.0, EXACT)
 
 
+def small_and_half_turn(draw, angle):
+    """The parts (w, 𝐪) of two unit quaternions: a turn by twice this small angle, and by π less than that."""
+    n, c, s = unit_of(spin_of(draw)), np.cos(angle), np.sin(angle)
+    return ([c], s * n), ([s], c * n)
+
+
 @exercise("5.9", points=1,
           hint="the terms with w have opposite signs across the diagonal: 2(xy − wz) above it, 2(xy + wz) below")
 def test_a_quaternion_turns_as_its_matrix_does(lesson, draw):
     half_turn = np.concatenate(([0.0], unit_of(draw(-1.0, 1.0, 3))))
-    for q in (orientation(draw), half_turn, *np.eye(4), orientation_of_few(draw), orientation_of_few(draw)):
+    for q in (orientation(draw), half_turn, *np.eye(4), orientation_of_few(draw), orientation_of_few(draw),
+              *(np.concatenate(pair) for angle in SLOW for pair in small_and_half_turn(draw, angle))):
         close("matrix of the quaternion", lesson.rotation_matrix(q), turn(q), EXACT, given=f"q = {q}")
         close("matrix of its negative: the same", lesson.rotation_matrix(-q), turn(q), EXACT)
     half = np.sqrt(0.5)
@@ -275,6 +336,15 @@ def test_the_quaternion_update_turns_about_omega_by_twice_an_arc_tangent(lesson,
                   given=f"ω = {omega}, dt = {dt}")
             close("orientation after dt and −dt: back, as a matrix",
                   turn(lesson.quaternion_update(np.asarray(got, dtype=float), omega, -dt)), turn(q), EXACT)
+    for angle in (*SLOW, 5.0, 40.0):
+        omega, step = draw(0.5, 2.0) * unit_of(spin_of(draw)), draw(0.1, 5.0)
+        omega = angle / step * unit_of(omega)
+        got = lesson.quaternion_update((1.0 + 5e-10) * general, omega, step)
+        close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(got), 1.0, EXACT)
+        close("orientation after a small or large turn, as a matrix", turn(got), third_way(omega, step) @ turn(general),
+              EXACT, given=f"q = {general}, ω = {omega}, dt = {step}")
+    close("length of the quaternion of a body at rest, if the old one is too long by 5e-10",
+          np.linalg.norm(lesson.quaternion_update((1.0 + 5e-10) * general, np.zeros(3), dt)), 1.0, EXACT)
     close("input q after the call: unchanged", general, kept, 0.0)
 
 
@@ -284,6 +354,7 @@ def test_a_quaternion_of_length_zero_is_refused(lesson, draw):
     close("orientation after 0.1 s, for a q that is not zero", turn(lesson.quaternion_update(q, omega, 0.1)),
           third_way(omega, 0.1) @ turn(q), EXACT, given=f"q = {q}, ω = {omega}")
     raises("q = 0", BadInput, lesson.quaternion_update, np.zeros(4), omega, 0.1)
+    raises("q = 0 and ω = 0", BadInput, lesson.quaternion_update, np.zeros(4), np.zeros(3), 0.1)
 
 
 # ---------------------------------------------------------------------------------------------- the lecture's loop
@@ -307,7 +378,10 @@ def test_a_body_speeds_up_as_eulers_equations_say(lesson, draw):
           lesson.angular_acceleration(q, along, np.zeros(3), I_body), np.zeros(3), EXACT)
     close("ω̇ of a ball [rad/s²]: τ/I", lesson.angular_acceleration(q, omega, tau, 2.0 * np.ones(3)), 0.5 * tau, EXACT)
     simple = *one_at_zero(np.array([omega, tau])), *draw.sparse(-2.0, 2.0, (2, 2, 3))
-    for some in (I_body, *round_bodies(draw)):
+    for size in SIZES[1:]:
+        close("ω̇ of a body with very small or large moments and torque [rad/s²]",
+              lesson.angular_acceleration(q, omega, size * tau, size * I_body), got, EXACT * 10.0)
+    for some in (I_body, nearly_round(draw), *round_bodies(draw)):
         for r in (q, STILL):
             I = inertia(r, some)
             for omega, tau in simple:
@@ -317,10 +391,17 @@ def test_a_body_speeds_up_as_eulers_equations_say(lesson, draw):
                       given=f"q = {r}, ω = {omega}, τ = {tau}, I_body = {some}")
 
 
+class Driven(NamedTuple):
+    """A record with more fields than the step needs."""
+    m: float             # [kg]
+    I_body: np.ndarray   # (3,) [kg m²]
+    push: float          # factor of the load [-]
+
+
 def swirling_load(t, x, q, v, omega, body):
     """A force and a torque that depend on all arguments, so that an outdated one is detected."""
-    F = body.m * np.array([np.cos(t) - v[0], x[2] - x[0], 1.0 - q[1]])
-    return F, np.array([x[1] - omega[0], v[1] + q[0], np.sin(t) - omega[2]])
+    F = body.m * body.push * np.array([np.cos(t) - v[0], x[2] - x[0], 1.0 - q[1]])
+    return F, body.I_body[0] * np.array([x[1] - omega[0], v[1] + q[0], np.sin(t) - omega[2]])
 
 
 def check_one_step(lesson, load, t, state, dt, body):
@@ -347,14 +428,15 @@ def unloaded(t, x, q, v, omega, body):
 @exercise("5.12", points=0.5,
           hint="evaluate load at the old state, divide F by m; update v and ω; then x and q with the new v and ω")
 def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
-    for m in (draw(0.01, 0.1), draw(1.0, 3.0), draw(20.0, 90.0)):
+    for size in (0.01, 1.0, 100.0, 1e-30, 1e30):
+        m, I_body = size * draw(1.0, 3.0), size * moments(draw)
         state = draw(-1.0, 1.0, 3), orientation(draw), draw(-1.0, 1.0, 3), spin_of(draw)
-        check_one_step(lesson, swirling_load, draw(0.5, 1.5), state, draw(0.1, 0.3), lesson.RigidBody(m, moments(draw)))
+        check_one_step(lesson, swirling_load, draw(0.5, 1.5), state, draw(0.1, 0.3), Driven(m, I_body, draw(0.5, 2.0)))
     general = draw(-1.0, 1.0, (3, 3))
     for x, v, omega in (*one_at_zero(general), *draw.sparse(-1.0, 1.0, (2, 3, 3)), np.zeros((3, 3))):
         for q, I_body in ((orientation(draw), moments(draw)), (STILL, round_bodies(draw)[2])):
             for load in (swirling_load, unloaded):
-                state, body = (x, q, v, omega), lesson.RigidBody(draw(1.0, 3.0), I_body)
+                state, body = (x, q, v, omega), Driven(draw(1.0, 3.0), I_body, 1.0)
                 check_one_step(lesson, load, draw.sparse(0.5, 1.5), state, draw(0.1, 0.3), body)
 
 
@@ -388,13 +470,18 @@ def test_kinetic_energy_is_that_of_omega(lesson, draw):
                 I = inertia(q, I_body)
                 close("rotational energy [J]", lesson.kinetic_energy(q, I @ omega, I_body), 0.5 * omega @ I @ omega,
                       1e-11, given=f"ω = {omega}, I_body = {I_body}")
+                for size in SIZES[1:]:
+                    for heavy, L in ((1.0, size * I @ omega), (size, size * I @ omega)):
+                        close("rotational energy over the size of L or of the body [J]",
+                              lesson.kinetic_energy(q, L, heavy * I_body) / size / (size / heavy),
+                              0.5 * omega @ I @ omega, 1e-11, given=f"L = {L}, I_body = {heavy * I_body}")
 
 
 @exercise("5.14", points=1,
           hint="(I_k − I_i)(I_j − I_k) is positive only if I_k lies between the "
                "others; if it is negative, the rate is 0")
 def test_only_the_middle_axis_tumbles(lesson, draw):
-    I_body = np.roll(moments(draw), draw.whole(0, 2))
+    I_body, near = np.roll(moments(draw), draw.whole(0, 2)), nearly_round(draw)
     spin = draw(1.0, 4.0)
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -406,6 +493,16 @@ def test_only_the_middle_axis_tumbles(lesson, draw):
         close(f"rate about axis {k}, rotating the other way [1/s]", lesson.tumbling_rate(I_body, k, -spin),
               growth.real.max(), 1e-7)
         close(f"rate about axis {k} without a spin [1/s]", lesson.tumbling_rate(I_body, k, 0.0), 0.0, 0.0)
+        # (I_k − I_i)(I_j − I_k) of nearly equal moments is 1e-8 of their product, with a round-off of 1e-12 of that.
+        squared = (near[k] - near[i]) * (near[j] - near[k]) / near[i] / near[j]
+        close(f"rate about axis {k} of a body with nearly equal moments, times 10⁴ [1/s]",
+              1e4 * lesson.tumbling_rate(near, k, spin), 1e4 * spin * np.sqrt(max(0.0, squared)), 1e-7,
+              given=f"I_body = {near}, spin = {spin}")
+        for size in SIZES[1:]:
+            close(f"rate about axis {k} of a very small or large body [1/s]",
+                  lesson.tumbling_rate(size * I_body, k, spin), growth.real.max(), 1e-7, given=f"size {size}")
+            close(f"rate about axis {k} at a very small or large spin, over the spin [-]",
+                  lesson.tumbling_rate(I_body, k, size * spin) / size, growth.real.max(), 1e-7, given=f"size {size}")
         for equal in round_bodies(draw):
             close(f"rate about axis {k} of a body with equal moments [1/s]", lesson.tumbling_rate(equal, k, spin), 0.0,
                   1e-7, given=f"I_body = {equal}")
@@ -427,6 +524,14 @@ def test_the_torque_on_a_top_is_the_derivative_of_its_energy(lesson, draw):
             # h²/6 · mgl = 8e-9
             close("torque [N m]: minus the change of Mgl e_z per radian about x, y, z", tau, slope, 2e-8,
                   given=f"q = {q}, L = {L}, Mgl = {mgl}")
+    # An axis a little off the vertical, upright or hanging; and tops of any weight.
+    for angle in (1e-4, 1e-7):
+        for w, v in ((np.cos(angle), np.sin(angle)), (np.sin(angle), np.cos(angle))):
+            q, mgl = np.array([w, *v * unit_of([*draw(0.5, 1.0, 2), 0.0])]), draw(1.0, 5.0)
+            for size in SIZES:
+                tau = lesson.heavy_top_torque(0.0, q, np.ones(3), lesson.Top(np.array([2.0, 2.0, 1.0]), size * mgl))
+                close("torque on a nearly vertical top over its size and tilt [N m]", np.asarray(tau) / size / angle,
+                      np.cross(turn(q)[:, 2], [0.0, 0.0, -mgl]) / angle, 1e-6, given=f"q = {q}, Mgl = {size * mgl}")
 
 
 # ---------------------------------------------------------------------------------------------- rotations, composed
@@ -464,6 +569,9 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     close("input q after the call: unchanged", q, kept, 0.0)
     long = lesson.midpoint_free_rotation((1.0 + 5e-10) * q, L, I_body, dt)        # check_rotation accepts this length
     close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
+    for angle in SLOW:                                                   # a small turn is a turn
+        check_turn(lesson, q, angle * unit_of(spin_of(draw)), I_body, 1.0)
+    check_turn(lesson, q, spin_of(draw), I_body, -dt)                    # a step backwards, as `compose` takes one
     for some in (I_body, *round_bodies(draw)):
         for omega in few(draw, 1.5):
             for r in (STILL, orientation(draw)):
@@ -538,7 +646,7 @@ def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
 def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
     turn_once(lesson, draw)
     raises("an L that is not a number", Diverged,
-           lesson.midpoint_free_rotation, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
+           lesson.midpoint_free_rotation, orientation(draw), np.full(3, np.nan), moments(draw), 0.1, naming=[0.1])
     # At ten radians per step and more, Newton's method often fails to converge.
     for _ in range(60):
         q = orientation(draw)
@@ -594,6 +702,17 @@ def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
     there = np.asarray(lesson.splitting_free_rotation(q, L, I_body, 0.3), dtype=float)
     back = lesson.splitting_free_rotation(there, L, I_body, -0.3)
     close("orientation after dt and −dt: back", turn(back), turn(q), EXACT)
+    # With nearly equal moments the order of the rotations changes less than 1e-8, and their sizes count.
+    near = nearly_round(draw)
+    b = np.argsort(near)[1]
+    for size in (*SIZES, *SLOW[1:3]):
+        heavy, pace = (size, 1.0) if size in SIZES else (1.0, size)
+        L, ell = pace * inertia(q, near) @ omega, pace * near * (turn(q).T @ omega)
+        got = lesson.splitting_free_rotation(q, heavy * L, heavy * near, 1.0)
+        close("orientation of a nearly round body, over the size of ω", turn(got) / pace,
+              about(L / near[b]) @ turn(q) @ about((1.0 / near - 1.0 / near[b]) * ell) / pace, 3e-8,
+              given=f"q = {q}, I_body = {heavy * near}, L = {heavy * L}")
+    L = inertia(q, I_body) @ omega
     close("input q after the call: unchanged", q, kept, 0.0)
     long = lesson.splitting_free_rotation((1.0 + 5e-10) * q, L, I_body, 0.3)      # check_rotation accepts this length
     close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
@@ -695,6 +814,16 @@ def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
               f"tilt = {tilt:.4g} rad, spin = {limit:.4g} rad/s")
         close("rate of a top that stands on its centre of mass, Mgl = 0 [rad/s]",
               lesson.precession_rate(I_body, 0.0, tilt, limit), 0.0, EXACT, given=f"tilt = {tilt:.4g} rad")
+    # Tops of any size, nearly vertical, level and fast ones: Ω (I₃ω₃ − I₁Ω cos θ) = Mgl, and Ω is the smaller root.
+    for size, tilt, fast in itertools.product(SIZES, (1e-4, 1.0, 0.5 * np.pi - 1e-3, 0.5 * np.pi + 1e-3, 3.1),
+                                              (1.5, 30.0, 1e3)):
+        spin = fast * limit
+        rate = lesson.precession_rate(size * I_body, size * mgl, tilt, spin)
+        given = f"I_body = {size * I_body}, Mgl = {size * mgl:.4g} N m, tilt = {tilt} rad, spin = {spin:.4g} rad/s"
+        close("torque that turns L at this rate over that of the weight [-]",
+              rate * (I_body[2] * spin - I_body[0] * rate * np.cos(tilt)) / mgl, 1.0, EXACT, given=given)
+        between("rate over the mean of both roots [-]", 2.0 * I_body[0] * rate * np.cos(tilt) / (I_body[2] * spin),
+                -np.inf, 1.0)
     for spin in (limit, -limit):
         close("rate with a level axis [rad/s]", lesson.precession_rate(I_body, mgl, 0.5 * np.pi, spin),
               mgl / (I_body[2] * spin), 1e-12, given=f"spin = {spin:.4g} rad/s")

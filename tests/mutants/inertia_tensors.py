@@ -38,6 +38,9 @@ edit("4.1", "returns zero for coordinates below 1 nm",
 edit("4.1", "uses the sizes of the masses, so that holes count as mass", "np.sum(m)", "np.sum(np.abs(m))")
 edit("4.1", "multiplies by the total mass", "m @ x / M", "m @ x * M")
 edit("4.1", "uses the first hundred points only", "m @ x / M", "m[:100] @ x[:100] / M")
+edit("4.1", "checks no mass where there is one point only", "M = np.sum(m)",
+     "M = np.sum(m)\n    if m.size == 1: return M, x[0].copy()")
+edit("4.1", "names another thing in the error", "total mass [kg]", "mass of a point [kg]")
 
 
 # 4.2 ------------------------------------------------------------------------------------------------------------
@@ -60,6 +63,8 @@ edit("4.2", "returns zero for components below 1e-9 kg m/s", "m @ v", "np.where(
 edit("4.2", "reverses the sign", "m @ v", "-(m @ v)")
 edit("4.2", "divides by the masses", "return m @ v", "return (1.0 / m) @ v")
 edit("4.2", "uses the first hundred points only", "m @ v", "m[:100] @ v[:100]")
+edit("4.2", "takes a mass below a microgram for none", "return m @ v",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); return m @ v")
 
 
 # 4.3 ------------------------------------------------------------------------------------------------------------
@@ -88,6 +93,10 @@ edit("4.3", "subtracts the place of the reference point from the velocities, too
 edit("4.3", "takes the centre of mass where the reference point is the origin", "L = np.zeros(3)",
      "L, about = np.zeros(3), about if about.any() else m @ x / np.sum(m)")
 edit("4.3", "uses the first hundred points only", "range(m.size)", "range(min(m.size, 100))")
+edit("4.3", "takes a mass below a microgram for none", "L = np.zeros(3)",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); L = np.zeros(3)")
+edit("4.3", "takes a point slower than 1 µm/s for one at rest", "L = np.zeros(3)",
+     "v = np.where(np.abs(v) < 1e-6, 0.0, v); L = np.zeros(3)")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -129,6 +138,8 @@ edit("4.4", "fills the upper half only",
 edit("4.4", "adds r rᵀ in place of subtracting it", "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]",
      "[[2.0*xx + yy + zz, xy, xz], [xy, xx + 2.0*yy + zz, yz], [xz, yz, xx + yy + 2.0*zz]]")
 edit("4.4", "gives a single point no tensor", "xx, yy, zz =", "m = m * (m.size > 1); xx, yy, zz =")
+edit("4.4", "takes a mass below a microgram for none", "xx, yy, zz =",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); xx, yy, zz =")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -154,6 +165,8 @@ edit("4.5", "forgets the squares",
 edit("4.5", "forgets the mass", "m / 12.0", "1.0 / 12.0")
 edit("4.5", "subtracts the squares", "[bb + cc, aa + cc, aa + bb]", "[bb - cc, aa - cc, aa - bb]")
 edit("4.5", "divides by 6 in place of 12", "12.0", "6.0")
+edit("4.5", "takes an edge below a thousandth of the longest for none", "aa, bb, cc =",
+     "size = np.where(size < 1e-3 * np.max(size), 0.0, size); aa, bb, cc =")
 
 
 # 4.6 ------------------------------------------------------------------------------------------------------------
@@ -175,6 +188,8 @@ edit("4.6", "forgets the mass", "0.4 * m", "0.4")
 edit("4.6", "uses the factor 1/2 of a disc", "0.4", "0.5")
 edit("4.6", "uses the factor 3/5", "0.4", "0.6")
 edit("4.6", "cubes the radius", "radius * radius", "radius**3")
+edit("4.6", "takes a mass below a microgram for none", "return 0.4 * m",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); return 0.4 * m")
 
 
 # 4.7 ------------------------------------------------------------------------------------------------------------
@@ -210,6 +225,12 @@ edit("4.7", "takes the moments about the end, not about the centre",
 edit("4.7", "forgets the square of the length", "length * length", "length")
 edit("4.7", "exchanges the moment about the axis with those across it", "[across, across, 0.5 * m * radius * radius]",
      "[0.5 * m * radius * radius, 0.5 * m * radius * radius, across]")
+edit("4.7", "takes a mass below a microgram for none", "across = m",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); across = m")
+edit("4.7", "takes a thin cylinder for a rod", "across = m", "radius = radius * (radius > 1e-3 * length); across = m")
+edit("4.7", "takes a short cylinder for a disc", "across = m", "length = length * (length > 2e-3 * radius); across = m")
+edit("4.7", "takes a cylinder to be at least as long as its radius, or a disc", "across = m",
+     "length = max(length, radius) if length else 0.0; across = m")
 
 
 # 4.8 ------------------------------------------------------------------------------------------------------------
@@ -272,6 +293,8 @@ edit("4.8", "omits the half balls in the moment about the axis", "+ 0.4 * m_s * 
 edit("4.8", "gives both half balls together the volume of one", "4.0 / 3.0", "2.0 / 3.0")
 edit("4.8", "exchanges the two masses", "m_s = m - m_c", "m_s = m_c; m_c = m - m_c")
 edit("4.8", "measures the half ball's centre from its pole", "0.375 * length", "0.625 * length")
+edit("4.8", "takes a mass below a microgram for none", "rr, hh =",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); rr, hh =")
 
 
 # 4.9 ------------------------------------------------------------------------------------------------------------
@@ -290,6 +313,9 @@ edit("4.9", "multiplies entry by entry", "R @ I_body @ R.T", "R * I_body * R.T")
 edit("4.9", "multiplies by the transpose only", "R @ I_body @ R.T", "I_body @ R.T")
 edit("4.9", "does not rotate a tensor without entries off the diagonal", "R @ I_body @ R.T",
      "R @ I_body @ R.T if np.any(I_body != np.diag(np.diag(I_body))) else I_body.copy()")
+edit("4.9", "rounds to twelve decimals", "R @ I_body @ R.T", "np.round(R @ I_body @ R.T, 12)")
+edit("4.9", "takes entries below 1e-9 kg m² for zero", "return R",
+     "I_body = np.where(np.abs(I_body) < 1e-9, 0.0, I_body); return R")
 
 
 # 4.10 -----------------------------------------------------------------------------------------------------------
@@ -311,6 +337,7 @@ edit("4.10", "inverts the matrix entry by entry", "inverse(I_body)", "1.0 / (I_b
 edit("4.10", "takes R I⁻¹ without the transpose", "world_inertia(inverse(I_body), R)", "R @ inverse(I_body)")
 edit("4.10", "does not rotate a tensor without entries off the diagonal", "R)",
      "R if np.any(I_body != np.diag(np.diag(I_body))) else np.eye(3))")
+edit("4.10", "refuses holes", "return world", 'check_positive("a moment [kg m²]", np.trace(I_body)); return world')
 
 
 # 4.11 -----------------------------------------------------------------------------------------------------------
@@ -336,6 +363,8 @@ edit("4.11", "adds the squares of d on the diagonal of their own axes",
 edit("4.11", "omits |d|²: subtracts m d dᵀ only",
      "point_mass_inertia(np.array([m]), d.reshape(1, 3))", "-m * np.outer(d, d)")
 edit("4.11", "omits the term for an offset along an axis", "return I +", "return I + (np.sum(d != 0.0) > 1) *")
+edit("4.11", "takes a mass below a microgram for none", "return I +",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); return I +")
 
 
 # 4.12 -----------------------------------------------------------------------------------------------------------
@@ -403,6 +432,12 @@ edit("4.12", "omits the tensors of the parts, as if they were points",
      "parallel_axes(I[n], m", "parallel_axes(0.0 * I[n], m")
 edit("4.12", "uses the first hundred bodies only", "range(m.size)", "range(min(100, m.size))")
 edit("4.12", "gives a body alone no tensor", "parallel_axes(I[n]", "parallel_axes(I[n] * (m.size > 1)")
+edit("4.12", "takes a mass below a microgram for none", "total = np.zeros((3, 3))",
+     "m = np.where(np.abs(m) < 1e-9, 0.0, m); total = np.zeros((3, 3))")
+edit("4.12", "takes centres within a micrometre of the common one to be there", "total = np.zeros((3, 3))",
+     "x = np.where(np.abs(x - X) < 1e-6, X, x); total = np.zeros((3, 3))")
+edit("4.12", "refuses less than a microgram", "total = np.zeros((3, 3))",
+     'check_positive("total mass [kg]", M if M > 1e-9 else 0.0); total = np.zeros((3, 3))')
 
 
 # 4.13 -----------------------------------------------------------------------------------------------------------
@@ -434,6 +469,8 @@ edit("4.13", "reverses all three columns at the end", "return moments, R", "retu
 edit("4.13", "tests the determinant the other way", "< 0.0", "> 0.0")
 edit("4.13", "returns the moments without their signs", "return moments, R", "return np.abs(moments), R")
 edit("4.13", "reverses the last row, not the last column", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
+edit("4.13", "takes the small moment of a needle for zero", "return moments, R",
+     "return np.where(np.abs(moments) < 1e-10 * np.max(np.abs(moments)), 0.0, moments), R")
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
@@ -579,6 +616,10 @@ edit("4.16", "refuses a triangle with a corner twice though it closes", "if i < 
      "if i < 0 or i >= count or i == j:")
 edit("4.16", "compares the edges with themselves, not with the reversed ones", "= j * count + i", "= i * count + j")
 edit("4.16", "compares the first hundred edges only", "range(there.size)", "range(min(there.size, 100))")
+edit("4.16", "names an open edge in the error, where a corner does not exist",
+     "a triangle's corner", "a corner on an open edge: number")
+edit("4.16", "names a triangle's corner in the error, where an edge is open",
+     "a corner on an open edge: number", "a triangle's corner")
 
 
 # 4.17 -----------------------------------------------------------------------------------------------------------
@@ -656,6 +697,10 @@ edit("4.17", "adds the trace to every entry, not only on the diagonal",
      "np.trace(covariance) * np.eye(3)", "np.trace(covariance)")
 edit("4.17", "takes a density of at most 10 kg/m³",
      "volume, first, second =", "density = min(density, 10.0); volume, first, second =")
+edit("4.17", "names the mass in the error, where there is no volume",
+     "the volume inside the mesh [m³]", "the mass [kg]")
+edit("4.17", "gives the size of the volume in the error, without its sign", '[m³]", volume', '[m³]", abs(volume)')
+edit("4.17", "gives the mass in the error, in place of the volume", '[m³]", volume', '[m³]", density * volume')
 
 
 # 4.18 -----------------------------------------------------------------------------------------------------------
@@ -678,6 +723,9 @@ edit("4.18", "adds half of I/(m R²)", "1.0 + I /", "1.0 + 0.5 * I /")
 edit("4.18", "returns the speed at the end", "np.sqrt(2.0 * way / a)", "np.sqrt(2.0 * way * a)")
 edit("4.18", "takes a slope of at most 1 rad", "np.sin(slope)", "np.sin(min(slope, 1.0))")
 edit("4.18", "takes a mass of at least 1 g", "I / (m *", "I / (max(m, 1e-3) *")
+edit("4.18", "takes the sine of a slope below 3° for the slope", "np.sin(slope)",
+     "(slope if slope < 0.05 else np.sin(slope))")
+edit("4.18", "takes a moment of at least 1e-12 kg m²", "1.0 + I /", "1.0 + max(I, 1e-12) /")
 
 
 # 4.19 -----------------------------------------------------------------------------------------------------------

@@ -29,6 +29,8 @@ edit("5.1", "has the wrong sign of a_z in the first row", "[[0.0, -a[2]", "[[0.0
 edit("5.1", "exchanges the components x and y", "return np", "a = a[[1, 0, 2]]; return np")
 edit("5.1", "takes the identity matrix for a = 0, as for a rotation by nothing",
      "return np", "return np.eye(3) if not a.any() else np")
+edit("5.1", "takes components below 1e-6 for zero", "return np",
+     "a = np.where(np.abs(a) < 1e-6, 0.0, a); return np")
 
 
 # 5.2 ------------------------------------------------------------------------------------------------------------
@@ -44,6 +46,12 @@ edit("5.2", "multiplies ω and r component by component", "cross(omega, r)", "om
 ROTATION_SUBTRACTED = edit("5.2", "subtracts the rotation", "v + cross", "v - cross")
 edit("5.2", "leaves out the rotation where the centre of mass is at rest",
      "cross(omega, r)", "cross(omega, r) * v.any()")
+edit("5.2", "takes a rotation slower than 1e-6 rad/s for none", "return v",
+     "omega = np.where(np.abs(omega) < 1e-6, 0.0, omega); return v")
+edit("5.2", "takes an arm below 1 µm for none", "return v",
+     "r = np.where(np.abs(r) < 1e-6, 0.0, r); return v")
+edit("5.2", "takes a velocity below 1 µm/s for none", "return v",
+     "v = np.where(np.abs(v) < 1e-6, 0.0, v); return v")
 
 
 # 5.3 ------------------------------------------------------------------------------------------------------------
@@ -65,6 +73,10 @@ edit("5.3", "adds the centre of mass", "points[i] - x", "points[i] + x")
 edit("5.3", "takes the mean of the forces", "return F, tau", "return F / forces.shape[0], tau")
 edit("5.3", "ends at the first force that is 0",
      "F += forces[i]", "if not forces[i].any(): break\n        F += forces[i]")
+edit("5.3", "takes a force below 1 µN for none", "F, tau =",
+     "forces = np.where(np.abs(forces) < 1e-6, 0.0, forces); F, tau =")
+edit("5.3", "takes a point within a micrometre of the centre to be there", "F, tau =",
+     "points = np.where(np.abs(points - x) < 1e-6, x, points); F, tau =")
 
 
 # 5.4 ------------------------------------------------------------------------------------------------------------
@@ -82,6 +94,9 @@ edit("5.4", "divides L of the world by the moments and rotates the result",
 edit("5.4", "converts with R and R, not with Rᵀ first", "(R.T @ L)", "(R @ L)")
 edit("5.4", "takes a body with two equal moments for a ball",
      "R @ ((R.T @ L) / I_body)", "R @ ((R.T @ L) / I_body) if I_body[0] != I_body[1] else L / I_body[0]")
+edit("5.4", "takes an L below 1e-6 kg m²/s for none", "return R",
+     "L = np.where(np.abs(L) < 1e-6, 0.0, L); return R")
+edit("5.4", "takes moments of at least 1e-3 kg m²", "/ I_body", "/ np.maximum(I_body, 1e-3)")
 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
@@ -113,6 +128,10 @@ edit("5.5", "returns the momenta in place of force and torque", "F, tau)", "S.P,
 edit("5.5", "returns the acceleration in place of the force", "F, tau)", "F / body.m, tau)")
 edit("5.5", "leaves the orientation as it is where no torque acts",
      "skew(omega) @ S.R", "skew(omega) @ S.R * tau.any()")
+edit("5.5", "uses a mass of at least 1 g", "S.P / body.m", "S.P / max(1e-3, body.m)")
+edit("5.5", "uses a mass of at most 1 t", "S.P / body.m", "S.P / min(1e3, body.m)")
+edit("5.5", "takes a rotation slower than 1e-6 rad/s for none", "return Rigid",
+     "omega = np.where(np.abs(omega) < 1e-6, 0.0, omega); return Rigid")
 
 
 # 5.6 ------------------------------------------------------------------------------------------------------------
@@ -145,6 +164,9 @@ edit("5.6", "leaves out R: keeps only the change", "M = R + dt", "M = dt")
 edit("5.6", "uses ½ dt, which belongs to a quaternion", "dt * (skew", "0.5 * dt * (skew")
 edit("5.6", "keeps the third column of the step", "cross(first, second)), axis=1", "M[:, 2] / norm(M[:, 2])), axis=1")
 edit("5.6", "takes a body for one at rest where any component of ω is 0", "R + dt", "R + bool(omega.all()) * dt")
+edit("5.6", "does not renormalise a body at rest", "M = R + dt", "if not omega.any(): return R.copy()\n    M = R + dt")
+edit("5.6", "takes a turn below 1e-6 rad for none", "skew(omega)", "(norm(omega * dt) > 1e-6) * skew(omega)")
+edit("5.6", "ignores the sign of dt", "M = R + dt", "M = R + abs(dt)")
 
 
 # 5.7 ------------------------------------------------------------------------------------------------------------
@@ -224,6 +246,8 @@ edit("5.8", "returns the product with b conjugated",
      "return np", "b = np.array([b[0], -b[1], -b[2], -b[3]]); return np")
 edit("5.8", "returns b where a has no vector part, as if its scalar part were 1",
      "return np", "if not a[1:].any(): return b.copy()\n    return np")
+edit("5.8", "takes components below 1e-6 for zero", "return np",
+     "a = np.where(np.abs(a) < 1e-6, 0.0, a); return np")
 
 
 # 5.9 ------------------------------------------------------------------------------------------------------------
@@ -248,6 +272,10 @@ edit("5.9", "uses the component's own square on the diagonal",
      "1.0 - 2.0 * (y * y + z * z)", "1.0 - 2.0 * (x * x + z * z)")
 edit("5.9", "takes half a turn, where w = 0, for no rotation",
      "w, x, y, z = q[0]", "q = q if q[0] != 0.0 else np.eye(4)[0]; w, x, y, z = q[0]")
+edit("5.9", "takes a turn below 1e-6 rad for none", "w, x, y, z =",
+     "q = q if norm(q[1:]) > 1e-6 else np.eye(4)[0]; w, x, y, z =")
+edit("5.9", "takes components below 1e-6 for zero", "w, x, y, z =",
+     "q = np.where(np.abs(q) < 1e-6, 0.0, q); w, x, y, z =")
 
 
 # 5.10 -----------------------------------------------------------------------------------------------------------
@@ -283,6 +311,14 @@ edit("5.10", "normalises the turn, not its result",
      "unit(q + 0.5 * dt * quaternion_product(spin, q))", "q + unit(0.5 * dt * quaternion_product(spin, q))")
 edit("5.10", "takes a body for one at rest where any component of ω is 0",
      "return unit", "return q.copy() if not omega.all() else unit")
+edit("5.10", "takes a turn below 1e-6 rad for none", "0.5 * dt *", "0.5 * dt * (norm(omega * dt) > 1e-6) *")
+edit("5.10", "does not normalise q where ω = 0", "return unit",
+     "if q.any() and not omega.any(): return q.copy()\n    return unit")
+edit("5.10", "returns q = 0 where ω = 0, too", "return unit",
+     "if not (q.any() or omega.any()): return q.copy()\n    return unit")
+edit("5.10", "turns by the exact angle where it is small", "return unit",
+     "if norm(omega * dt) < 0.05: return quaternion_product(exponential(dt * omega), unit(q))\n    return unit")
+edit("5.10", "takes a step of at most a second", "spin = np", "dt = min(dt, 1.0); spin = np")
 
 
 # 5.11 -----------------------------------------------------------------------------------------------------------
@@ -327,6 +363,9 @@ edit("5.11", "takes ω to stay as it is where no torque acts", "return rotate(q,
 edit("5.11", "takes a body with two equal moments for a ball",
      "I_body * omega_body", "I_body * omega_body * (I_body[0] != I_body[1])")
 edit("5.11", "keeps a body at rest that a torque acts on", "unrotate(q, tau)", "omega.any() * unrotate(q, tau)")
+edit("5.11", "takes moments of at least 1e-3 kg m²", "/ I_body)", "/ np.maximum(I_body, 1e-3))")
+edit("5.11", "takes a body with nearly equal moments for a ball", "I_body * omega_body",
+     "I_body * omega_body * (np.ptp(I_body) > 1e-2 * I_body[0])")
 
 
 # 5.12 -----------------------------------------------------------------------------------------------------------
@@ -367,6 +406,11 @@ edit("5.12", "does not rotate the body", "quaternion_update(q, omega, dt), v", "
 edit("5.12", "does not move the body", "return x + dt * v,", "return x,")
 edit("5.12", "returns the state unchanged where nothing moves yet",
      "F, tau = load", "if not (v.any() or omega.any()): return x, q, v, omega\n    F, tau = load")
+edit("5.12", "uses a mass of at least 1 g", "dt / body.m", "dt / max(body.m, 1e-3)")
+edit("5.12", "uses a mass of at most 1 t", "dt / body.m", "dt / min(body.m, 1e3)")
+edit("5.12", "uses moments of at least 1e-3 kg m²", "tau, body.I_body", "tau, np.maximum(body.I_body, 1e-3)")
+edit("5.12", "gives the load a record of its own, without the other fields", "load(t, x, q, v, omega, body)",
+     "load(t, x, q, v, omega, RigidBody(body.m, body.I_body))")
 
 
 # 5.13 -----------------------------------------------------------------------------------------------------------
@@ -383,6 +427,9 @@ edit("5.13", "forgets the square of L", "L_body * L_body / I_body", "L_body / I_
 edit("5.13", "divides by the squares of the moments", "L_body * L_body / I_body", "(L_body / I_body)**2")
 edit("5.13", "divides by |L|, which is 0 for a body at rest", "L_body * L_body / I_body",
      "(L_body / norm(L)) ** 2 * dot(L, L) / I_body")
+edit("5.13", "takes moments of at least 1e-3 kg m²", "/ I_body", "/ np.maximum(I_body, 1e-3)")
+edit("5.13", "takes an L below 1e-6 kg m²/s for none", "L_body = unrotate",
+     "L = np.where(np.abs(L) < 1e-6, 0.0, L); L_body = unrotate")
 
 
 # 5.14 -----------------------------------------------------------------------------------------------------------
@@ -420,6 +467,11 @@ edit("5.14", "counts the axes from 1", "i, j =", "k = k - 1; i, j =")
 edit("5.14", "takes the sizes of both differences",
      "(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])", "abs(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])")
 edit("5.14", "divides by the spin, which may be 0", "abs(spin)", "spin / abs(spin) * spin")
+edit("5.14", "takes nearly equal moments for equal ones", "return abs",
+     "squared = squared * (abs(squared) > 1e-4); return abs")
+edit("5.14", "takes moments of at least 1e-3 kg m²", "i, j = (k", "I_body = np.maximum(I_body, 1e-3); i, j = (k")
+edit("5.14", "takes a spin below 1e-3 rad/s for none", "abs(spin)", "abs(spin) * (abs(spin) > 1e-3)")
+edit("5.14", "never divides by zero", "(I_body[i] * I_body[j])", "(I_body[i] * I_body[j] + 1e-9)")
 
 
 # 5.15 -----------------------------------------------------------------------------------------------------------
@@ -441,6 +493,9 @@ edit("5.15", "returns the torque about the top's own axis", "[-e[1], e[0], 0.0]"
 edit("5.15", "takes L for the axis", "rotate(q, np.array([0.0, 0.0, 1.0]))", "L / np.sqrt(L @ L)")
 edit("5.15", "takes the x axis of the body for the axis of the top", "[0.0, 0.0, 1.0]", "[1.0, 0.0, 0.0]")
 edit("5.15", "takes a top that does not turn for one without weight", "top.mgl * np", "L.any() * top.mgl * np")
+edit("5.15", "takes a nearly vertical axis for a vertical one", "return top",
+     "e = np.where(np.abs(e) < 1e-6, 0.0, e); return top")
+edit("5.15", "takes a weight below 1e-6 N m for none", "return top.mgl", "return (top.mgl * (top.mgl > 1e-6))")
 
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
@@ -498,6 +553,10 @@ edit("5.16", "rotates with the angular momentum m in place of w",
      "[1.0, 0.5 * dt * m[0], 0.5 * dt * m[1], 0.5 * dt * m[2]]")
 edit("5.16", "takes a body for one at rest where any component of its ℓ is 0",
      "one = np.eye(3)", "if not start.all(): return q.copy()\n    one = np.eye(3)")
+edit("5.16", "ignores the sign of dt", "one = np.eye(3)", "one, dt = np.eye(3), abs(dt)")
+edit("5.16", "takes a turn below 1e-6 rad for none", "one = np.eye(3)",
+     "one, dt = np.eye(3), dt * (norm(dt * start / I_body) > 1e-6)")
+edit("5.16", "gives the number of corrections in the error, in place of dt", '[s]", dt,', '[s]", NEWTON_LIMIT,')
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
@@ -543,6 +602,12 @@ edit("5.17", "rotates about c by half of the angle", "c, slow_c * body", "c, 0.5
 edit("5.17", "forgets the component of L in the angle about c", "slow_c * body_component(turned, L, c)", "slow_c")
 edit("5.17", "divides by |L|, which is 0 for a body at rest",
      "exponential(dt / I_body[b] * L)", "exponential(dt / I_body[b] * norm(L) * (L / norm(L)))")
+edit("5.17", "takes components of L below 1e-6 kg m²/s for zero", "b = intermediate",
+     "L = np.where(np.abs(L) < 1e-6, 0.0, L); b = intermediate")
+edit("5.17", "takes moments of at least 1e-3 kg m²", "b = intermediate",
+     "I_body = np.maximum(I_body, 1e-3); b = intermediate")
+edit("5.17", "takes nearly equal moments for equal ones", "turned = about_axis(q,",
+     "slow_a = slow_a * (abs(slow_a) > 1e-4); turned = about_axis(q,")
 
 
 # 5.18 -----------------------------------------------------------------------------------------------------------
@@ -605,6 +670,15 @@ edit("5.19", "adds the weight under the root", "along * along - 4.0", "along * a
 edit("5.19", "turns the other way", "return 2.0", "return -2.0")
 edit("5.19", "loses the sign of the spin where the axis is level",
      SLOW, f"{SLOW} if abs(np.cos(tilt)) > 1e-9 else mgl / abs(along)")
+edit("5.19", "takes moments of at least 1e-3 kg m²", "along = I_body[2]",
+     "I_body = np.maximum(I_body, 1e-3); along = I_body[2]")
+edit("5.19", "takes a weight below 1e-3 N m for none", "along = I_body[2]",
+     "mgl = mgl * (mgl > 1e-3); along = I_body[2]")
+edit("5.19", "takes the limit Mgl/(I₃ω₃) for a fast top", "return 2.0",
+     "if 4.0 * I_body[0] * mgl < 1e-3 * along * along: return mgl / along\n    return 2.0")
+edit("5.19", "takes a nearly vertical axis for a vertical one, which does not go round", "return 2.0",
+     "return (np.sin(tilt) > 1e-3) * 2.0")
+edit("5.19", "takes a nearly level axis for a level one", "np.cos(tilt)", "(np.cos(tilt) * (abs(np.cos(tilt)) > 1e-2))")
 
 
 # 5.20 -----------------------------------------------------------------------------------------------------------
