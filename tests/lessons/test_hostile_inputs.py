@@ -57,8 +57,8 @@ TRUSTED = {
     "steps, round-off and errors above 0, as their docstrings ask": (
         "central_difference", "complex_step", "best_step", "remainder_orders", "predicted_horizon"),
     "a first throw of two numbers, and a course that a person has built": ("aim",),
-    "lengths, masses and speeds above 0, as the questions give them": (
-        "rolling_time", "circling_speed", "precession_rate", "my_mesh", "my_thrown_body"),
+    "lengths, masses, speeds and frictions above 0, as the questions give them": (
+        "sliding_distance", "rolling_time", "circling_speed", "precession_rate", "my_mesh", "my_thrown_body"),
 }
 FREE = {name for names in TRUSTED.values() for name in names}
 # LAPACK's singular values of an infinite matrix may never end, and no signal stops them.  Finite arms have none.
