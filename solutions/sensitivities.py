@@ -60,7 +60,7 @@ def best_step(value, third, round_off):
     *Find* it.  The bound is the sum of the truncation error h² |f‴|/6 and the round-off  round_off |f|/h.
 
     value is f and third is f‴, numbers of either sign; round_off > 0 is the relative error of f [-].  Where f‴ = 0, a
-    longer step is always better: return infinity.
+    longer step always has the smaller bound: return infinity.
     *Source:* Press et al. 2007, “Numerical Recipes”, 5.7.
     """
     ### BEGIN SOLUTION 12.2
