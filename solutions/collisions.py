@@ -469,7 +469,7 @@ def steer(x, v, centre, radius, ahead):
     e = v / speed
     left = np.array([-e[1], e[0]])
     along = r @ e
-    y = (r @ left) * left                                   # round-off of r − along e may point along e
+    y = (r @ left) * left                                   # r − along e has round-off that may point along e
     offset, tau = np.sqrt(y @ y), along / speed
     if tau <= 0.0 or tau >= ahead or offset >= radius:
         return 0.0 * v

@@ -149,7 +149,7 @@ SETTINGS = Settings()
 
 
 def compose(model, settings=SETTINGS):
-    """Return the Loop of a Model.  Raises BadInput for what is no Model, and for settings that cannot be."""
+    """Return the Loop of a Model.  Raises BadInput for anything but a Model, and for settings that cannot be."""
     check_model(model)
     settings = checked_settings(settings)
     p, state, row = rows_of(model, settings)
@@ -311,8 +311,8 @@ def grows(squared, damping, halved):
 def run_parts(loop, t, state, dt, steps):
     """Return the PileState after so many steps of a Loop.
 
-    Raises BadInput for what is no Loop or no state of it, and for a step that is not positive or with which springs or
-    a drag throw bodies ever farther, Diverged where the end is not finite or a step is far too long.
+    Raises BadInput for anything but a Loop and a state of it, for a step that is not positive, and for one with which
+    springs or a drag throw bodies ever farther.  Raises Diverged where the end is not finite or a step is far too long.
     """
     if getattr(loop, "_fields", None) != Loop._fields:
         raise BadInput("the loop", f"a {type(loop).__name__}", "give what compose returns for a Model")

@@ -322,7 +322,7 @@ def loads_at(model, t, state):
 def load_now(load, t, state):
     """Return (F (n, d) [N], tau [N m]) of a load that is a function.
 
-    Raises BadInput for an answer that is no pair, and WrongShape for arrays of another shape: NumPy would spread them
+    Raises BadInput unless the load returns a pair, and WrongShape for arrays of another shape: NumPy would spread them
     over all bodies, or fail.
     """
     answer = load(t, *state)

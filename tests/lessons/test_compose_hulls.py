@@ -200,7 +200,7 @@ def test_a_body_of_any_shape_comes_to_rest_on_a_prism_that_carries_both_weights(
 
 @pytest.mark.long
 def test_piles_of_hulls_and_of_boxes_overlap_no_more_than_a_fall_goes_in_a_step():
-    """Three drops of four bodies.  The step is that after a fall of all the time."""
+    """Three drops of four bodies.  The limit is the last step of a free fall that takes as long as the run."""
     deepest, dt, steps = [], 1.0 / 240.0, 240
     for shapes in ((Polyhedron(tuple(OCTAHEDRON)), Polyhedron(tuple(TETRAHEDRON))),
                    (Box((0.2, 0.2, 0.2)), Box((0.3, 0.15, 0.1)))):

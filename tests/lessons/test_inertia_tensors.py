@@ -469,8 +469,6 @@ def test_equal_bodies_on_axes_in_one_place_or_alone_have_the_tensor_of_their_cen
         close("centre of mass of all [m]", found.x, X, ROUNDED, given)
         close("tensor of all about their centre [kg m²]", found.I, tensor(m, x - X) + len(m) * own, 10.0 * ROUNDED,
               given)
-
-
     own = np.stack([tensor(*cloud(draw, 3)) for _ in range(3)])
     m, x = cloud(draw, 3)
     for unit, size in scales(2):
@@ -543,8 +541,6 @@ def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any
             close("R diag(moments) Rᵀ over the size [-]", axes @ np.diag(found) @ axes.T, I, ROUNDED, given)
             close("first axis × second axis [-]: the third", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2],
                   ROUNDED, given)
-
-
     for share in (1e-10, 1e-11, 1e-12):                                  # needles, whose small moment is no round-off
         needle = np.array([share * low, middle, high])
         found, _ = lesson.principal_axes(np.diag(needle))

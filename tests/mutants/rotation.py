@@ -653,6 +653,15 @@ def precession_rate(I_body, mgl, tilt, spin):
     return rate
 
 
+@right("5.19", "by the usual formula for the roots, except where the axis is level")
+def by_the_usual_formula(I_body, mgl, tilt, spin):
+    along, across = I_body[2] * spin, 2.0 * I_body[0] * np.cos(tilt)
+    if abs(across) < 1e-12 * I_body[0]:
+        return mgl / along
+    root = np.sqrt(along * along - 2.0 * across * mgl)
+    return (along - np.copysign(root, along)) / across
+
+
 SLOW = "2.0 * mgl / (along + np.copysign(root, along))"
 edit("5.19", "takes the limit of a fast top, Mgl/(I₃ω₃)", SLOW, "mgl / along")
 edit("5.19", "returns the other rate, at which the top goes round without its weight, too",

@@ -254,7 +254,7 @@ def pull_of(spring):
 
 
 def checked_step(model, dt):
-    """Return the step [s] of a world.  Raises BadInput for a step that is not positive, and for what is no Model."""
+    """Return the step [s] of a world.  Raises BadInput unless it is positive, and for anything but a Model."""
     check_model(model)
     return positive_number("step dt [s]", dt)
 
