@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checks import Diverged, finite_number, positive_number
-from ..rotation import quaternion_product
+from ..rotation import body_angular_momentum, quaternion_product, splitting_free_rotation
 from ..support.quaternions import exponential
 from ..support.records import check_record
 from ..support.scenes import TOO_DEEP
@@ -23,6 +23,7 @@ from .passing import both_sides, find_suspects, may_pass
 
 MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
 SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
+TOUCHING = 1e-9              # of the smallest half size: the gap of bodies that touch; closed ones have round-off [-]
 SHORTEST = 1e-9              # part of a step that is left out [-]
 CLOSING = 1e-8               # part of a step that closes what SHORTEST has left open [-]: forces make parts end short
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
@@ -40,34 +41,38 @@ class Rough(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- where they touch
 
-def pose_within(before, after, share, dt):
-    """Return (x, q) of all bodies when this share of a step is over.
+def pose_within(before, after, share, dt, inv_inertia):
+    """Return (x, q) of all bodies when this share of a step is over: where a step that is so much shorter would end."""
+    x = before.x + share * (after.x - before.x)
+    if inv_inertia.ndim == 1:
+        return x, before.q + share * (after.q - before.q)
+    return x, turned_freely(before.q, after.q, after.omega, share * dt, inv_inertia)
 
-    In space they turn evenly by all of ω dt, as the composed loop turns them.  (pose_at of passing.py turns them by
-    2 atan(½ ω dt), as quaternion_update does.)  A body without symmetry changes its ω on the way, which is left out.
+
+def turned_freely(q, q_new, omega, dt, inv_inertia):
+    """Return the orientations after dt, as the composed loop turns bodies: with the angular momenta of the end.
+
+    (pose_at of passing.py turns them by 2 atan(½ ω dt), as quaternion_update does.)
     """
-    return before.x + share * (after.x - before.x), turned_evenly(before.q, after.q, after.omega, share, dt)
-
-
-def turned_evenly(q, q_new, omega, share, dt):
-    """Return the orientations when this share of a step is over."""
-    if q.ndim == 1:
-        return q + share * (q_new - q)
     now = np.empty(q.shape)
     for i in range(q.shape[0]):
-        now[i] = quaternion_product(exponential(share * dt * omega[i]), q[i])
+        if inv_inertia[i, 0] > 0.0:
+            L = body_angular_momentum(q_new[i], omega[i], 1.0 / inv_inertia[i])
+            now[i] = splitting_free_rotation(q[i], L, 1.0 / inv_inertia[i], dt)
+        else:
+            now[i] = quaternion_product(exponential(dt * omega[i]), q[i])
     return now
 
 
-def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes):
+def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, p):
     """Return the overlap (m,) [m] of each suspect when this share of the step is over; 0 of those that are apart.
 
     The backs of planes, which suspects have as well, do not count.
     """
-    back = shapes.half.shape[0] + sides.shape[0] // 2
-    pairs, (x, q), overlap = suspects.pairs, pose_within(before, after, share, dt), np.zeros(suspects.way.size)
-    _, _, turn = bounds(x, q, shapes)
-    found = narrow(x, turn, shapes, sides, pairs, 0.0)
+    back, pairs, overlap = p.half.half.shape[0] + sides.shape[0] // 2, suspects.pairs, np.zeros(suspects.way.size)
+    x, q = pose_within(before, after, share, dt, p.inv_inertia)
+    _, _, turn = bounds(x, q, p.half)
+    found = narrow(x, turn, p.half, sides, pairs, 0.0)
     for k in range(found.a.size):
         i = found.a[k]
         for s in range(pairs.first[i], pairs.first[i + 1]):
@@ -79,7 +84,8 @@ def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shape
 def first_touch(bounds, narrow, before, after, dt, p):
     """Return the share of a step at which two bodies first touch that go too deep into each other in it; 1 if none do.
 
-    Too deep is more than half of the smallest half size beyond the overlap at the beginning.
+    Too deep is more than half of the smallest half size beyond the overlap at the beginning.  Bodies that touch at the
+    beginning are parted anew where they have sunk in by half of that.
     """
     shapes = p.half
     boxes, boxes_new = bounds(before.x, before.q, shapes), bounds(after.x, after.q, shapes)
@@ -87,25 +93,35 @@ def first_touch(bounds, narrow, before, after, dt, p):
     if suspects.way.size == 0:
         return 1.0
     sides, free, allowed = both_sides(p.planes), 0.0, TOO_DEEP * suspects.size       # also where a turn dips in
-    begin = overlaps_at(bounds, narrow, before, after, 0.0, dt, suspects, sides, shapes)
+    begin = overlaps_at(bounds, narrow, before, after, 0.0, dt, suspects, sides, p)
     for k in range(suspects.poses + 1):
         share = suspects.begin + (k + 0.5) / suspects.poses * (suspects.end - suspects.begin)
         share = min(share, 1.0) if k < suspects.poses else 1.0
-        more = overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, shapes) - begin
+        more = overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, p) - begin
         s = np.argmax(more - allowed)
         if more[s] > allowed[s]:
-            least = begin[s] + (SUNK * allowed[s] if begin[s] > 0.0 else 0.0)
-            return touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, least, free, share)
+            touch = begin[s] > 0.0 or touches(after.contacts, suspects.pairs, s, TOUCHING * suspects.size[s])
+            least = begin[s] + (SUNK * allowed[s] if touch else 0.0)
+            return touching_share(bounds, narrow, before, after, dt, suspects, sides, p, s, least, free, share)
         if np.max(more) <= 0.0:
             free = share
     return 1.0
 
 
-def touching_share(bounds, narrow, before, after, dt, suspects, sides, shapes, s, least, free, deep):
+def touches(contacts, pairs, s, most):
+    """Return whether pair s has a contact with a gap of at most `most` [m]."""
+    for k in range(contacts.a.size):
+        i = contacts.a[k]
+        if pairs.first[i] <= s < pairs.first[i + 1] and pairs.partner[s] == contacts.b[k] and contacts.gap[k] <= most:
+            return True
+    return False
+
+
+def touching_share(bounds, narrow, before, after, dt, suspects, sides, p, s, least, free, deep):
     """Return the share of the step at which suspect s begins to overlap by more than `least` [m], by halving."""
     for _ in range(HALVINGS):
         middle = 0.5 * (free + deep)
-        if overlaps_at(bounds, narrow, before, after, middle, dt, suspects, sides, shapes)[s] > least:
+        if overlaps_at(bounds, narrow, before, after, middle, dt, suspects, sides, p)[s] > least:
             deep = middle
         else:
             free = middle
@@ -131,24 +147,19 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
     Raises Diverged where bodies still pass each other when the step has MOST_PARTS parts.
     """
     left, part, divisions, closed = dt, dt, 0, False
-    while True:
+    while left >= SHORTEST * dt:
         after = whole_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + dt - left,
                            state, part, p)
-        if part < left:                                                  # it ends where they touch
-            state, left, divisions = after, left - part, divisions + 1
-            if left < SHORTEST * dt:
-                return state
+        share = touch(bounds, narrow, state, after, part, p) if may_pass(state, after, part, p.half.half) else 1.0
+        if share == 1.0:
+            state, left = after, left - part
             part = left
-        elif may_pass(state, after, left, p.half.half):
-            share = touch(bounds, narrow, state, after, left, p)
-            if share == 1.0 or (closed and share * left < SHORTEST * dt):
-                return after
-            if divisions >= MOST_PARTS - 1:
+        else:                                                            # anew, until they touch
+            if divisions == MOST_PARTS or (closed and share * part < SHORTEST * dt):
                 raise Diverged("the share of a step that its most parts reach [-]", 1.0 - left / dt, TOO_LONG)
-            closed = share * left < SHORTEST * dt                # by the next part: what is open does not bounce
-            part = min(CLOSING * dt, left) if closed else share * left
-        else:
-            return after
+            divisions, closed = divisions + 1, share * part < SHORTEST * dt
+            part = min(CLOSING * dt, left) if closed else share * part   # closed: what is open does not bounce
+    return state
 
 
 def advance_parts(step, first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t, state, dt, steps,

@@ -133,6 +133,24 @@ def resting_speed(dt, p):
     return dt * np.sqrt(squared)
 
 
+def resting_speeds(contacts, dt, p):
+    """Return these speeds (m,) [m/s].  Of bodies in free fall, which nothing holds, it is 0: gravity presses none."""
+    speeds = np.full(contacts.a.size, resting_speed(dt, p))
+    if speeds.size == 0 or speeds[0] == 0.0 or p.drag > 0.0 or not may_bounce(contacts, p):
+        return speeds
+    held, island = p.inv_mass == 0.0, islands_of(contacts, p)
+    for ends in (p.joints.a, p.joints.b, p.rods.a, p.rods.b, p.ends.ravel()):
+        for i in ends:
+            held[i] = True
+    for k in range(speeds.size):
+        if held[contacts.a[k]] or held[contacts.b[k]]:
+            held[island[k]] = True
+    for k in range(speeds.size):
+        if not held[island[k]]:
+            speeds[k] = 0.0
+    return speeds
+
+
 def may_bounce(contacts, p):
     """Return whether a contact has e > 0."""
     for k in range(contacts.a.size):
@@ -146,6 +164,7 @@ def parting_aims(u_n, pressed, contacts, dt, p):
 
     An open contact may close: −gap/dt.  A closed one leaves with −e times the speed at which it came before forces and
     joints acted, u_n − pressed, if that is faster than what gravity, or all of them, add in a step; a slower one rests.
+    Gravity counts with its full size for each direction: bodies that lean on each other are pressed sideways, too.
     With e > 0 an open contact has to close before it bounces.  It is not stopped in this step, unless forces alone
     could close it: another impact of the same step may throw its bodies at each other.
     pressed: (m,) what all forces and joints have added to u_n in this step [m/s]
@@ -153,10 +172,10 @@ def parting_aims(u_n, pressed, contacts, dt, p):
     Symplectic Euler keeps E − ½ g dt v of a ball that flies up with v, and so does an impact with e = 1 that turns the
     speed round which the ball had before gravity acted.  With u_n the ball would win g dt u_n in each impact.
     """
-    aim, rests = np.empty(contacts.a.size), resting_speed(dt, p)
+    aim, rests = np.empty(contacts.a.size), resting_speeds(contacts, dt, p)
     for k in range(aim.size):
         e, gap, came = p.e_of[contacts.a[k]] * p.e_of[contacts.b[k]], contacts.gap[k], u_n[k] - pressed[k]
-        added = max(rests, -pressed[k])
+        added = max(rests[k], -pressed[k])
         if gap > 0.0:
             aim[k] = -np.inf if e > 0.0 and (came < -added or gap > added * dt) else -gap / dt
         else:

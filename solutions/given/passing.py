@@ -9,13 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import Diverged
 from ..support.arms import turn_quaternions
 from ..support.broad_phase import Pairs, box_reaches, boxes_overlap
 from ..support.scenes import TOO_DEEP
 from .bodies import TooFast
 
 POSES_PER_HALF = 2.0         # poses on a way of the smallest half size [-]: they miss a quarter of it at most
-MOST_POSES = 10_000          # within a step [-]: in the plane a body may turn any number of times
+MOST_POSES = 10_000          # within a step [-]: a body may turn any number of times, and shows the same again
+FAR = "take a smaller step: a body moves by some thousand times its size towards another one"
 
 
 class Suspects(NamedTuple):
@@ -183,11 +185,12 @@ def find_suspects(before, after, boxes, boxes_new, dt, p):
     """Return the Suspects of a step from the boxes around all bodies at its beginning and at its end.
 
     A turn about a contact lets it dip in by the sagitta, because the centre moves straight: so much more is allowed.
+    Raises Diverged where a body moves so far, not counting its turn, that MOST_POSES would not see whether it passes.
     """
     low, high, arc, bulge = swept_boxes(before, after, boxes, boxes_new, dt, p.half)
     n, backs, joints = p.half.shape[0], p.planes.shape[0], getattr(p, "joints", None)      # a Bodies has no joints
     first, partner, facts = np.zeros(n + 1, np.int64), [0 for _ in range(0)], [0.0 for _ in range(0)]
-    earliest, latest, most = 1.0, 0.0, 0.0
+    earliest, latest, most, straight = 1.0, 0.0, 0.0, 0.0
     for i in range(n):
         for j in range(i + 1, n + backs):
             size, way, slack = smallest_half(p.half, i, j), arc[i], bulge[i]
@@ -200,11 +203,16 @@ def find_suspects(before, after, boxes, boxes_new, dt, p):
                 partner.append(j)
                 facts += [way, size, TOO_DEEP * size + (slack if in_contact(after.contacts, i, j) else 0.0)]
                 earliest, latest, most = min(earliest, begin), max(latest, end), max(most, way / size)
-                if j >= n:
+                if j < n:
+                    straight = max(straight, (way - arc[i] - arc[j]) / size)
+                else:
                     partner.append(j + backs)
                     facts += [way, size, np.inf]
         first[i + 1] = len(partner)
-    poses, facts = int(min(np.ceil(POSES_PER_HALF * (latest - earliest) * most), MOST_POSES)), np.array(facts)
+    per_way, facts = POSES_PER_HALF * (latest - earliest), np.array(facts)
+    if per_way * straight > MOST_POSES:
+        raise Diverged("the number of poses at which to look within a step [-]", per_way * straight, FAR)
+    poses = int(min(np.ceil(per_way * most), MOST_POSES))
     return Suspects(Pairs(first, np.array(partner, dtype=np.int64)), facts[0::3], facts[1::3], facts[2::3], earliest,
                     latest, poses)
 

@@ -33,7 +33,7 @@ from .rods import Rods
 ALIKE = 40.0                 # difference of bodies up to which the changes of impulses show when sweeps are over [-]
 CALM = 40.0                  # by which the velocities at contacts may change more than the impulses, in shares [-]
 MORE = 100.0                 # by which there may be more sweeps at most [-]
-SLOP = 5e-3                  # overlap that stays, over the smallest size of a shape [-]
+SLOP = 5e-3                  # overlap that stays, over the smallest half size of a shape [-]
 
 
 class Settings(NamedTuple):
@@ -98,7 +98,7 @@ def rows_of(model, settings):
     """Return (Composed, PileState, row (bodies,) of each body of the model)."""
     order, n, h = ordered_bodies(model)
     row, bodies, d = rows_in_order(model), [model.bodies[k] for k in order], model.d
-    sizes = [size_of(body.shape) for body in bodies[:n]]
+    sizes, thin = [size_of(body.shape) for body in bodies[:n]], [min(half_of(body.shape, d)) for body in bodies[:n]]
     margin = 0.1 * min(sizes, default=1.0) if settings.margin is None else settings.margin
     rubs = {friction_of(model, i, j) for i, j in touching_pairs(model)}
     inv_mass, uneven = np.array([1.0 / body.m for body in bodies] + [0.0]), difference(bodies[:n], d) / ALIKE
@@ -109,7 +109,7 @@ def rows_of(model, settings):
         np.array([body.mu for body in bodies] + [0.0]), np.array([body.e for body in bodies] + [0.0]),
         pairs_of(model, row, n), int(settings.sweeps * min(max(uneven, 1.0), MORE)), float(settings.settled),
         CALM * settings.settled if uneven > 1.0 else np.inf, positive_number("margin [m]", margin),
-        SLOP * min(sizes, default=1.0), joints_of(model, row, inv_mass), rods_of(model, row),
+        SLOP * min(thin, default=1.0), joints_of(model, row, inv_mass), rods_of(model, row),
         *springs_of(model, row, len(bodies)),
         float(sum(load.k for load in model.loads if isinstance(load, Drag))))
     return p, PileState(*states_of_rows(model, order), no_contacts(n, d), np.zeros((0, d))), row
@@ -198,7 +198,7 @@ def points_of(model, joint):
     place, d = np.array(joint.place), model.d
     sizes = [size_of(model.bodies[k].shape) for k in (joint.a, joint.b)
              if k != WORLD and model.bodies[k].shape is not None]
-    arm = min([*sizes, 1.0])
+    arm = min(sizes, default=1.0)
     if isinstance(joint, Weld):
         return [place, *(place + arm * np.eye(d)[:d - 1])]
     if isinstance(joint, Hinge) and d == 3:

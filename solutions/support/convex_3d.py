@@ -4,9 +4,9 @@ Each shape is a *rounded box*: all points within a radius of a box, its core.  T
 capsule a segment, and that of a box is the box itself, with the radius 0.
 
 Two boxes meet as in lesson 9.  All other pairs have a segment, which a point is as well: where the cores are apart, a
-contact lies between their nearest points, and two more between the ends of that part of the segment that lies over the
-same face or edge.  So a capsule that lies on something has two contacts.  Where a segment is inside a box, the normal
-is that of the shortest way out.
+contact lies between their nearest points, and more between the ends of those parts of the segment that lie over the
+same face or edge, or over the face that is nearest.  So a capsule that lies on something has two contacts.  Where a
+segment is inside a box, the normal is that of the shortest way out.
 *Left out:* corners of two boxes that are apart touch no sooner than they overlap, as in lesson 9.
 """
 
@@ -185,15 +185,29 @@ def segment_on_box(x, turn, shapes, i, j, sign, reach, c, m):
     out = outside(plus(y, s, e), half)
     if dot(out, out) <= (SAME * max(half[0], half[1], half[2])) ** 2:
         return way_out(x, turn, shapes, i, j, y, e, sign, reach, c, m)
-    low, high = -h, h
-    for k in range(3):
-        if out[k] == 0.0:                                            # the part over the same face or edge
-            low, high = part_between(y[k], e[k], -half[k], half[k], low, high)
     m = above_box(x, turn, shapes, i, j, plus(y, s, e), sign, reach, c, m)
-    for end in (low, high):
-        if low <= high and abs(end - s) > SAME * h:
-            m = above_box(x, turn, shapes, i, j, plus(y, end, e), sign, reach, c, m)
+    same, face = part_over(y, e, h, half, out, True), part_over(y, e, h, half, out, False)
+    places = (s, same[0], same[1], face[0], face[1])
+    for k in range(1, 5):
+        there = same[0] <= same[1] if k < 3 else face[0] <= face[1]
+        for other in range(k):
+            there = there and abs(places[k] - places[other]) > SAME * h
+        if there:
+            m = above_box(x, turn, shapes, i, j, plus(y, places[k], e), sign, reach, c, m)
     return m
+
+
+def part_over(y, e, h, half, out, same):
+    """Return (low, high): the part of a segment that lies over a face or edge of a box; low > high: none.
+
+    out: from the nearest point of the box to the segment;    same: over what this point lies on; else over the face
+    that is nearest to it.  A tilted segment that bears on an edge has another end over the face.
+    """
+    low, high, far = -h, h, max(abs(out[0]), abs(out[1]), abs(out[2]))
+    for k in range(3):
+        if out[k] == 0.0 or (not same and abs(out[k]) < far):
+            low, high = part_between(y[k], e[k], -half[k], half[k], low, high)
+    return low, high
 
 
 def outside(y, half):

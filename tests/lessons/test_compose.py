@@ -190,6 +190,18 @@ def test_a_ball_that_bounces_comes_to_rest_after_the_time_of_its_geometric_serie
     assert np.ptp(late) < 1e-6 and abs(late[0]) < 1e-3                         # it may rest within the slop
 
 
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240])
+def test_balls_that_fall_meet_as_without_gravity_however_slowly(d, dt):
+    """The principle of equivalence.  They meet with 5 cm/s, and gravity adds 4 or 16 cm/s in a step, to both alike."""
+    rest, balls = (0.0,) * (d - 1), []
+    for x, v, e in ((-0.2, 0.03, 1.0), (0.2, -0.02, 0.5)):
+        balls.append(Body((x, *rest), 1.0, Ball(0.1), e=e, v=(v, *rest)))
+    for g in (0.0, 9.81):
+        s = run(make_model(balls, (*rest, -g)), 10.0, round(10.0 / dt))
+        assert s.v[:, 0] == pytest.approx([0.5 * (0.01 - 0.025), 0.5 * (0.01 + 0.025)], abs=1e-12)
+
+
 @pytest.mark.parametrize("gap", [5e-3, 1e-3])
 @pytest.mark.parametrize("dt", [0.01, 0.002])
 def test_balls_in_a_row_with_gaps_hand_the_velocity_on(gap, dt):

@@ -150,6 +150,20 @@ def test_a_capsule_that_lies_on_a_box_has_two_contacts(turned, expected):
         assert contacts.n[:, 2] == pytest.approx(1.0 if order[0] else -1.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("tilt", [1e-12, 1e-6, 1e-3, 0.02])
+def test_a_capsule_that_bears_on_one_edge_of_a_box_has_a_contact_above_the_other(tilt):
+    """It lies across the box, which is 1 m wide, with its ends outside.  Without the second contact it would rock."""
+    cores = level("box"), level("capsule", 2.0)
+    for turned in (tilt, -tilt):
+        x = np.array([(0.0, 0.0, 0.0), (0.0, 0.0, 0.4 + 0.5 * np.tan(tilt))])
+        q = np.array([(1.0, 0.0, 0.0, 0.0), (np.cos(0.5 * turned), 0.0, np.sin(0.5 * turned), 0.0)])
+        for order in ((0, 1), (1, 0)):
+            contacts, _ = found(x[list(order)], q[list(order)], [cores[k] for k in order], reach=0.05)
+            first, last = np.argsort(contacts.p[:, 0])[[0, -1]]
+            assert contacts.p[[first, last], 0] == pytest.approx([-0.5, 0.5], abs=2.0 * tilt)
+            assert sorted(contacts.gap[[first, last]]) == pytest.approx([0.0, np.tan(tilt)], abs=tilt**2 + 1e-12)
+
+
 def test_parallel_capsules_touch_at_both_ends_of_what_they_share():
     x, q = np.array([(0.0, 0.0, 0.0), (0.3, 0.0, 0.25)]), np.array([(1.0, 0.0, 0.0, 0.0)] * 2)
     contacts, _ = found(x, q, (level("capsule"), level("capsule")))

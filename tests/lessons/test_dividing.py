@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solutions.given.compose import compose, run_parts, state_of
-from solutions.given.dividing import divided_step, whole_step
+from solutions.given.dividing import divided_step, pose_within, whole_step
 from solutions.support.model import WORLD, Ball, Body, Box, Capsule, HalfSpace, Hinge, Polygon, make_model
 
 DT = 1.0 / 60.0                                # [s]
@@ -106,6 +106,28 @@ def test_a_rod_that_spins_fast_on_a_hinge_does_not_turn_through_a_post():
     assert 1.2 < s.q[0] < 0.5 * np.pi
     assert s.x[0] == pytest.approx((0.0, 0.0), abs=1e-9)               # and the hinge holds
     assert abs(s.omega[0]) < 1e-3 * 120.0                              # sweeps end at a thousandth
+
+
+@pytest.mark.parametrize("spin", [(1.9, 17.0, -48.0), (-40.3, -108.6, -127.4), (7.1, 95.0, 120.0), (0.0, 300.0, 0.0)])
+def test_a_fast_capsule_that_tumbles_does_not_pass_a_thin_plate_in_space(spin):
+    """It turns by one to three radians in a step, and its spin changes: its axis of symmetry goes round."""
+    for high, v in ((0.96, -192.0), (1.03, -192.0), (1.14, -135.0), (1.2, -110.0)):
+        plate = Body((0.0, 0.0, 0.0), shape=Box((2.0, 2.0, 0.01)), mu=0.3)
+        capsule = Body((0.0, 0.0, high), 1.0, Capsule(0.3, 0.02), mu=0.3, v=(0.0, 0.0, v), omega=spin)
+        for s in states(make_model([plate, capsule], (0.0, 0.0, 0.0)), 2):
+            assert s.x[1, 2] > 0.0
+
+
+def test_the_pose_within_a_step_is_where_a_step_of_that_length_ends():
+    rng, I = np.random.default_rng(3), (0.2, 0.5, 0.6)
+    body = Body((0.0, 0.0, 0.0), 1.0, Ball(0.1), inertia=I, v=tuple(rng.normal(size=3)), omega=(40.0, -70.0, 20.0))
+    loop = compose(make_model([body], (0.0, 0.0, 0.0)))
+    after = run_parts(loop, 0.0, loop.state, DT, 1)
+    for share in (0.0, 0.1, 0.5, 0.93, 1.0):
+        x, q = pose_within(loop.state, after, share, DT, loop.p.inv_inertia)
+        there = run_parts(loop, 0.0, loop.state, share * DT, 1) if share > 0.0 else loop.state
+        assert x[0] == pytest.approx(there.x[0], abs=1e-13)
+        assert q[0] == pytest.approx(there.q[0], abs=1e-12)
 
 
 def test_a_fast_body_that_falls_on_a_floor_does_not_sink_in():

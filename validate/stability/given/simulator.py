@@ -687,22 +687,32 @@ def rubbing(lesson, rng):
     """Return (state with contacts, record of the parts, arms, contacts) of four bodies with six contacts."""
     state, p = random_bodies(lesson, rng, 2, 4)
     contacts = random_contacts(lesson, rng, 4, 6)
-    state = state._replace(contacts=contacts, J=rng.normal(size=(6, 2)))
-    record = SimpleNamespace(inv_mass=p.inv_mass, inv_inertia=p.inv_inertia, e_of=rng.choice((0.0, 0.5, 0.9), 4),
+    state, none = state._replace(contacts=contacts, J=rng.normal(size=(6, 2))), np.zeros(0, np.int64)
+    record = SimpleNamespace(inv_mass=p.inv_mass, inv_inertia=p.inv_inertia, drag=0.0,
+                             joints=SimpleNamespace(a=none, b=none), rods=SimpleNamespace(a=none, b=none),
+                             ends=np.zeros((0, 2), np.int64), e_of=rng.choice((0.0, 0.5, 0.9), 4),
                              mu_of=rng.choice((0.0, 0.4, 1.5), 4), gravity=rng.normal(size=2), slop=0.02, sweeps=200,
                              settled=1e-12, calm=np.inf, half=SimpleNamespace(half=np.ones((4, 2))))
     return state, record, lesson.arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), contacts
 
 
-@random_law("Each pair has its restitution e_a e_b of the speed before forces acted; what they explain rests; an open "
-            "contact may close.", "pairs: largest error of the speeds of parting [m/s]", EXACT)
+@random_law("Each pair has its restitution e_a e_b of the speed before forces acted; what they explain rests; gravity "
+            "presses none that fall freely; an open contact may close.",
+            "pairs: largest error of the speeds of parting [m/s]", EXACT)
 def aims_of_pairs(lesson, rng):
     state, p, arms, contacts = rubbing(lesson, rng)
+    fixed, p.inv_mass = rng.random(4) < 0.2, p.inv_mass.copy()           # a joint holds another one
+    p.inv_mass[fixed], p.joints.a = 0.0, rng.integers(0, 4, rng.integers(0, 2))
+    held = fixed | np.isin(np.arange(4), p.joints.a)
+    for _ in range(4):                                                   # and what touches a body that is held is, too
+        for a, b in zip(contacts.a, contacts.b, strict=True):
+            held[[i for i in (a, b) if not fixed[i]]] |= held[a] | held[b]
     dt, truth, speeds = rng.uniform(0.01, 0.5), [], lesson.normal_velocities_2d(state.v, state.omega, contacts, arms)
     pressed = rng.uniform(-0.6, 0.2, len(speeds)) * np.abs(speeds)
     for k, (a, b, n) in enumerate(zip(*contacts[1:4], strict=True)):
         e, u_n, gap = p.e_of[a] * p.e_of[b], speed_at(state, contacts, k)[0] @ n, contacts.gap[k]
-        came, added = u_n - pressed[k], max(dt * np.linalg.norm(p.gravity), -pressed[k])
+        falls = not np.any(held[[i for i in (a, b) if not fixed[i]] or [a]])
+        came, added = u_n - pressed[k], max(0.0 if falls else dt * np.linalg.norm(p.gravity), -pressed[k])
         bounces = e > 0.0 and (-came > added or gap > added * dt)
         truth.append((-np.inf if gap > 0.0 else -e * came) if bounces else (-gap / dt if gap > 0.0 else 0.0))
     return lesson.parting_aims(speeds, pressed, contacts, dt, p), np.array(truth)
