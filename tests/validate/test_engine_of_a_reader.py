@@ -123,12 +123,20 @@ def test_an_unknown_scene_and_an_unknown_engine_get_one_sentence(capsys, tmp_pat
     (WORLD + "def build(model, dt): return World(3)", "state() is int"),
     (WORLD + "def build(model, dt): return World([[0.0]] * 4)", "the shapes of state()"),
     (WORLD + STILL + "def refuses(model): return 1 / 0", "refuses(model): ZeroDivisionError"),
+    (WORLD + STILL + "import numpy\ndef refuses(model): return numpy.zeros(2)", "refuses(model): ValueError"),
+    (WORLD + STILL + "World.close = lambda self: 1 / 0", "close(): ZeroDivisionError"),
     (WORLD + STILL.replace("start_of(model))", "tuple(a * float('nan') for a in start_of(model)))"), "not finite"),
 ])
 def test_an_engine_that_fails_is_named_with_its_first_line(capsys, tmp_path, text, words):
     code, said, _, page = run(capsys, tmp_path, text, "--engine", "pymunk", *of("throw"))
     assert code == 1 and verdicts(said) == {"throw": "fails"}
     assert words in page.replace("&#x27;", "'")
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_the_first_run(capsys, tmp_path):
+    (tmp_path / "report").write_text("a file")
+    code, said, error, _ = run(capsys, tmp_path, WORLD + STILL, *of("throw"))
+    assert code == 2 and not said and len(error.strip().splitlines()) == 1
 
 
 def test_an_engine_that_hangs_is_ended(capsys, tmp_path, monkeypatch):

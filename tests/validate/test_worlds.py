@@ -281,12 +281,13 @@ def test_two_hinged_rods_that_turn_as_one_go_on_in_a_circle(product, settings):
 
 
 @every
-def test_two_rods_swing_as_one_that_is_welded_together(product, settings):
-    """The second rod lies along its second axis, so that the angles differ."""
+@pytest.mark.parametrize("place", [(0.5, 0.0), (3.0, -2.0)])
+def test_two_rods_swing_as_one_that_is_welded_together(product, settings, place):
+    """The second rod lies along its second axis, so that the angles differ.  It does not matter where the weld is."""
     T, steps, turn = 0.5, 500, 0.5 * np.pi
     rods = [Body((0.25, 0.0), 1.0, Box((0.25, 0.05))), Body((0.75, 0.0), 1.0, Box((0.05, 0.25)), q=turn)]
     long = Body((0.5, 0.0), 2.0, Box((0.5, 0.05)))
-    two = make_model(rods, (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, (0.5, 0.0))])
+    two = make_model(rods, (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0)), Weld(1, 0, place)])
     one = make_model([long], (0.0, -G), [Hinge(0, WORLD, (0.0, 0.0))])
     first, second = (run(product, model, T, steps, **settings)[0] for model in (two, one))
     rate = np.sqrt(1.5 * G)
@@ -445,6 +446,75 @@ def test_rapier_reports_no_force_that_its_binding_does_not_tell():
     for model in (rough, hung):
         _, pushes = run(RAPIER, model, 0.01, 10)
         assert pushes == []
+
+
+@every
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_rod_swings_on_the_floor_as_on_the_world(product, settings, d):
+    """The floor is a body with a pose of its own, which engines put elsewhere."""
+    lift, ahead = np.eye(d)[-1], np.eye(d)[0]
+    floor = Body(tuple(2.0 * ahead - 3.0 * lift), shape=HalfSpace(tuple(0.6 * ahead + 0.8 * lift), 4.0))
+    rod = Body(tuple(0.5 * ahead), 1.0, inertia=0.1)
+    axis = {} if d == 2 else {"axis": (0.0, -1.0, 0.0)}
+    swung = [run(product, make_model([rod, floor], tuple(-G * lift), [Hinge(0, on, (0.0,) * d, **axis)]), 0.5, 250,
+                 **settings)[0] for on in (WORLD, 1)]
+    assert np.max(np.abs(swung[0].x[0] - swung[1].x[0])) <= 1e-4 and swung[0].x[0, -1] < -0.4
+
+
+@every
+def test_a_force_towards_a_floor_acts_as_one_towards_a_fixed_body(product, settings):
+    pull = lambda r: (3.0 * r[0], 3.0 * r[1])
+    ends = []
+    for shape in (None, HalfSpace((0.0, 1.0), 9.0)):
+        model = make_model([Body((0.0, 0.0), 1.0), Body((2.0, -1.0), shape=shape)], (0.0, 0.0),
+                           loads=[Force(0, pull, "r", 1)])
+        ends.append(run(product, model, 1.0, 100, **settings)[0].x[0])
+    assert np.allclose(*ends, atol=1e-6) and ends[0][0] > 1.5
+
+
+@every
+def test_a_world_begins_with_the_angle_of_the_model(product, settings):
+    """Box2D's own functions from an angle and to one err by up to 1.5e-3."""
+    for q in (0.3, 1.1, 2.5, -2.9):
+        body = make_model([Body((0.0, 0.0), 1.0, inertia=1.0, q=q)], (0.0, 0.0))
+        found, _ = run(product, body, 1e-3, 1, **settings)
+        assert (np.cos(found.q[0]), np.sin(found.q[0])) == pytest.approx((np.cos(q), np.sin(q)), abs=1e-6)
+
+
+def test_rapier_turns_a_fast_body_by_its_own_law_without_a_limit():
+    """By 2 atan(½ ω dt) in each of four substeps; by default it turns a body by π/4 per step at most."""
+    found, _ = run(RAPIER, make_model([Body((0.0, 0.0), 1.0, inertia=1.0, omega=100.0)], (0.0, 0.0)), 0.01, 1)
+    assert found.q[0] == pytest.approx(4.0 * 2.0 * np.arctan(0.5 * 100.0 * 0.0025), abs=1e-5)
+
+
+@every
+@pytest.mark.parametrize("model", [
+    make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0))], (0.0, 0.0, 0.0),
+               [Hinge(0, WORLD, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]),
+    make_model([Body((0.0, 0.0), 1.0, inertia=1e13)], (0.0, 0.0)),
+    make_model([FLOOR._replace(mu=20.0), Body((0.0, 0.2), 1.0, Ball(0.2), mu=1.0)], (0.0, -G))],
+    ids=["spin across a hinge", "moment", "friction"])
+def test_what_an_engine_would_drop_is_refused_before_it_builds(product, settings, model):
+    """An engine that does not refuse it can hold such a motion, moment or friction."""
+    if not product.installed():
+        pytest.skip(f"{product} is not installed: {product.remedy}")
+    why = product.world.refuses(model)
+    if why:
+        with pytest.raises(BadInput, match="refuses"):
+            product.world.build(model, 0.01, **settings)
+    assert bool(why) == {"spin": product in (PYMUNK, BOX2D, MUJOCO), "moment": product in (MUJOCO, PYBULLET),
+                         "friction": product is PYBULLET}[
+        "spin" if model.joints else "moment" if len(model.bodies) == 1 else "friction"]
+
+
+@pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)
+def test_a_joint_keeps_its_number_beside_a_compliant_rod(product):
+    """The rod becomes a spring of the engine, which is no joint there."""
+    bodies = [Body((0.0, -1.0), 1.0), Body((0.0, -2.0), 1.0, inertia=0.1)]
+    rod, hinge = Distance(0, WORLD, (0.0, 0.0), (0.0, 0.0), 1e-4), Hinge(1, WORLD, (0.0, -1.5))
+    for joints in ((rod, hinge), (hinge, rod)):
+        _, found = run(product, make_model(bodies, (0.0, -G), joints), 0.01, 10)
+        assert [push.joint for push in found] == [joints.index(hinge)]
 
 
 @pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)
@@ -742,6 +812,9 @@ def test_the_first_velocities_that_open_a_joint_are_found_in_the_plane_and_in_sp
     rod = Body((0.5, 0.0, 0.0), 1.0, inertia=(0.1, 0.1, 0.1), v=(0.0, 0.5, 0.0), omega=(0.0, 0.0, 1.0))
     held = lambda body: make_model([body], (0.0, 0.0, 0.0), [BallJoint(0, WORLD, (0.0, 0.0, 0.0))])
     assert not derived.opens(held(rod)) and derived.opens(held(rod._replace(omega=(0.0, 0.0, 1.01))))
+    turned = lambda *omega: make_model([rod._replace(v=(0.0, 0.0, 0.0), omega=omega)], (0.0, 0.0, 0.0),
+                                       [Hinge(0, WORLD, rod.x, (0.6, 0.0, 0.8))])
+    assert not derived.opens(turned(0.6, 0.0, 0.8)) and derived.opens(turned(0.6, 1e-3, 0.8))
 
 
 # ---------------------------------------------------------------------------------------------- what a world reports

@@ -26,7 +26,18 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 
 from ..engines import quiet_import
 from . import Push, World, unsupported
-from .derived import SPINS_ON, acceleration_at_start, beyond, checked_step, grip, in_plane, spins_on, with_plain_springs
+from .derived import (
+    SPINS_ON,
+    acceleration_at_start,
+    as_numbered,
+    beyond,
+    checked_step,
+    grip,
+    in_plane,
+    spins_on,
+    weld_place,
+    with_plain_springs,
+)
 
 UNITS = 0.01                 # its unit of length [m]: the slop is then 0.05 mm and not 5 mm
 SUBSTEPS = 4                 # per step, by default
@@ -73,12 +84,12 @@ def refuses(model):
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
-    dt = checked_step(model, dt)
+    dt = checked_step(model, dt, refuses)
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, substeps, ahead)
         return world._replace(state=lambda: lift(world.state()))
-    model = with_plain_springs(model)
+    whole, model = model, with_plain_springs(model)
     world = new_world(module(), model.gravity)
     bodies = add_bodies(world, model, ahead * dt / substeps)
     joints = add_joints(world, model, bodies)
@@ -93,13 +104,13 @@ def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
             push(model, bodies, loads_at(model, clock[0] * dt / substeps, state()))
             clock[0] += 1
             world.step(dt / substeps, 1)
-    return World(step, state, lambda: pushes(world, model, joints))
+    return World(step, state, as_numbered(lambda: pushes(world, model, joints), whole))
 
 
 def state_of(world, bodies):
     """Return the State.  The world is held because its bodies end with it."""
     return State(np.array([tuple(body.position) for body in bodies], float),
-                 np.array([body.angle for body in bodies], float),
+                 np.array([np.arctan2(body.rotation.s, body.rotation.c) for body in bodies], float),
                  np.array([tuple(body.linear_velocity) for body in bodies], float),
                  np.array([body.angular_velocity for body in bodies], float))
 
@@ -121,13 +132,20 @@ def add_bodies(world, model, age):
         carries = np.any(start.v[k]) or start.omega[k]
         make = (world.create_dynamic_body if can_move(one) else
                 world.create_kinematic_body if carries else world.create_static_body)
-        body = make(position=tuple(start.x[k].tolist()), rotation=b2.make_rot(float(start.q[k])),
+        body = make(position=tuple(start.x[k].tolist()), rotation=turned(b2, float(start.q[k])),
                     linear_velocity=tuple(v[k].tolist()), angular_velocity=float(omega[k]))
         surface = b2.surface_material(friction=grip(one) ** 2, restitution=e[k])
         add_shape(b2, body, one, b2.shape_def(material=surface, density=1.0))
         if can_move(one):
             weigh(b2, body, one)
         made.append(body)
+    return made
+
+
+def turned(b2, angle):
+    """Return the engine's rotation by an angle [rad].  Its own make_rot and its own angle err by up to 1.5e-3."""
+    made = b2.make_rot(angle)
+    made.c, made.s = np.cos(angle), np.sin(angle)
     return made
 
 
@@ -177,7 +195,8 @@ def add_joints(world, model, bodies):
                 world_place(start, joint.a, joint.place_a) - world_place(start, joint.b, joint.place_b))
             more, make = {"length": float(length), "collide_connected": True}, world.create_distance_joint
         else:
-            places = [own_place(model, k, joint.place).tolist() for k in (joint.b, joint.a)]
+            place = weld_place(model, joint) if isinstance(joint, Weld) else joint.place
+            places = [own_place(model, k, place).tolist() for k in (joint.b, joint.a)]
             more, make = {}, world.create_revolute_joint
             if isinstance(joint, Weld):
                 turn = [0.0 if k == WORLD else start.q[k] for k in (joint.b, joint.a)]

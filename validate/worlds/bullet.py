@@ -17,9 +17,11 @@ from solutions.support.model import (
     State,
     Weld,
     can_move,
+    friction_of,
     joined_pairs,
     loads_at,
     start_of,
+    touching_pairs,
 )
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron
 
@@ -43,12 +45,15 @@ from .derived import (
     pressed_in,
     round_only,
     smallest,
+    too_stout,
     touches,
     tree,
+    weld_place,
     with_plain_springs,
 )
 
 OVERLAP = 1e-6               # [m]: a contact exists in the first step
+ROUGHEST = 10.0              # its largest friction of a pair [-]
 WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
 BREAKING = 0.02              # the engine's default [-]
 SLAB = 50.0                  # half size of the box that stands for a half-space [m]
@@ -94,12 +99,18 @@ def refuses(model):
         return "in maximal coordinates it ignores the velocity of a body without mass"
     return (unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
                         Weld)
-            or ("" if round_only(model) else beyond(model, SLAB)))
+            or ("" if round_only(model) else beyond(model, SLAB)) or too_stout(model, WIDE) or too_rough(model))
+
+
+def too_rough(model):
+    """Return why it refuses a model with a friction that it would cut off, or "".  An infinite friction is ROUGHEST."""
+    cut = any(ROUGHEST < friction_of(model, *pair) < np.inf for pair in touching_pairs(model))
+    return f"it cuts the friction of a pair off at {ROUGHEST:g}" if cut else ""
 
 
 def build(model, dt, **settings):
     """Make a World."""
-    dt = checked_step(model, dt)
+    dt = checked_step(model, dt, refuses)
     settings, model = Settings(**settings), with_plain_springs(model)
     if not settings.maximal and opens(model):
         raise BadInput("a model in reduced coordinates", OPENS, "build it in maximal ones")
@@ -168,17 +179,23 @@ def shape_of(parts, body, place=(0.0, 0.0, 0.0)):
     return -1
 
 
-def pose(parts, k, x):
-    """Return (place, quaternion with w last) of body k in the engine; a half-space is put where its plane is."""
+def frame_of(parts, k, x):
+    """Return (place (3,), R (3, 3)) of body k in the engine; a half-space is put where its plane is."""
     shape = parts.model.bodies[k].shape
     if not isinstance(shape, HalfSpace):
-        return parts.space.point(x).tolist(), last(quaternion(parts.space.frame(parts.start.q[k])))
+        return parts.space.point(x), parts.space.frame(parts.start.q[k])
     n = parts.space.point(shape.normal)
     axis = np.cross([0.0, 0.0, 1.0], n)
     size = np.linalg.norm(axis)
     R = about(axis / size, np.arctan2(size, n[2])) if size > 0.0 else np.diag((1.0, np.sign(n[2]), np.sign(n[2])))
     depth = 0.0 if round_only(parts.model) else 1.0
-    return (-(shape.offset + depth) * n).tolist(), last(quaternion(R))
+    return -(shape.offset + depth) * n, R
+
+
+def pose(parts, k, x):
+    """Return the same as (place, quaternion with w last) for the engine."""
+    place, R = frame_of(parts, k, x)
+    return place.tolist(), last(quaternion(R))
 
 
 def last(q):
@@ -245,7 +262,7 @@ def join(parts):
     links = set() if parts.settings.maximal else {n for _, n in tree(model, LINKS)[0].values()}
     for joint in [joint for n, joint in enumerate(model.joints) if n not in links]:
         ends = [handle_of(parts, k, joint.place) for k in (joint.a, joint.b)]
-        for place in points_of(joint, model.d):
+        for place in points_of(model, joint):
             constrain(parts, joint, ends, place)
     for a, b in map(tuple, joined_pairs(model)):
         if WORLD not in (a, b) and model.bodies[a].shape is not None and model.bodies[b].shape is not None:
@@ -253,14 +270,15 @@ def join(parts):
                                       parts.handles[b][1], 0)
 
 
-def points_of(joint, d):
+def points_of(model, joint):
     """Return the points of the world that a joint holds together: one, two on an axis, or as many as fix a body.
 
     In maximal coordinates the engine's own JOINT_FIXED ignores the orientation of its frames: it turns a body until its
     axes are those of the other one.
     """
-    place = np.array(joint.place)
+    place, d = np.array(joint.place), model.d
     if isinstance(joint, Weld):
+        place = weld_place(model, joint)
         return [place, *(place + ARM * np.eye(d)[:d if d == 3 else 1])]
     if isinstance(joint, Hinge) and d == 3:
         return [place - ARM * np.array(joint.axis), place + ARM * np.array(joint.axis)]
@@ -279,9 +297,8 @@ def constrain(parts, joint, ends, place):
     """Hold a place of the world together; the child is the world, or else a."""
     space, own = parts.space, []
     for k in (joint.a, joint.b):
-        R = np.eye(3) if k == WORLD else space.frame(parts.start.q[k])
-        base = joint.place if k == WORLD else parts.start.x[k]
-        own.append((R.T @ (space.point(place) - space.point(base))).tolist())
+        base, R = (space.point(joint.place), np.eye(3)) if k == WORLD else frame_of(parts, k, parts.start.x[k])
+        own.append((R.T @ (space.point(place) - base)).tolist())
     one, other = (0, 1) if joint.b == WORLD else (1, 0)
     parts.pb.createConstraint(*ends[one], *ends[other], parts.pb.JOINT_POINT2POINT, [0, 0, 0], own[one], own[other])
 
@@ -426,8 +443,10 @@ def acting(parts, k, F, of, b):
         along, up = F((here[0], here[2]), (v[0], v[2]))
         apply(body, link, (along, 0.0, up), here, frame)
 
+    fixed = None if b is None or can_move(parts.model.bodies[b]) else parts.space.point(parts.start.x[b])
+
     def of_other(t):
-        here, there = place(body)[0], place(parts.handles[b][0])[0]
+        here, there = place(body)[0], place(parts.handles[b][0])[0] if fixed is None else fixed
         along, up = F((there[0] - here[0], there[2] - here[2]))
         apply(body, link, (along, 0.0, up), here, frame)
     return {"t": of_time, "x": of_place, "v": of_velocity, "xv": of_both, "r": of_other}[of]

@@ -31,6 +31,7 @@ from .derived import (
     in_plane,
     pressed_in,
     touches,
+    weld_place,
     with_plain_springs,
 )
 
@@ -53,7 +54,7 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
     ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog
     own_drag: the space damps, v e^(−k dt/m) at the end of a step, in place of a force −k v of the old velocity
     """
-    dt = checked_step(model, dt)
+    dt = checked_step(model, dt, refuses)
     settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop,
                 "own_drag": own_drag}
     if model.d == 3:
@@ -148,7 +149,8 @@ def add_joints(space, model, bodies, bias):
                                                 - world_place(start, joint.b, joint.place_b)))
             made = [rod]
         else:
-            anchors = [tuple(own_place(model, k, joint.place).tolist()) for k in (joint.b, joint.a)]
+            place = weld_place(model, joint) if isinstance(joint, Weld) else joint.place
+            anchors = [tuple(own_place(model, k, place).tolist()) for k in (joint.b, joint.a)]
             made = [pymunk.PivotJoint(b, a, *anchors)]
             if isinstance(joint, Weld) and any(k != WORLD and can_turn(model.bodies[k]) for k in (joint.a, joint.b)):
                 made.append(pymunk.GearJoint(b, a, a.angle - b.angle, 1.0))

@@ -130,12 +130,22 @@ def run_to_end(build, described, p, steps, **settings):
             world = build(model, described.scene.duration / steps, **settings)
             for _ in range(steps):
                 world.step()
-            return finite(np.array(described.observe(checked_state(world.state(), model), p), float))
+            found = finite(np.array(described.observe(checked_state(world.state(), model), p), float))
     except (Exception, SystemExit) as error:                 # a reader's program may do anything
-        return Outcome(None, sentence(error))
+        found = Outcome(None, sentence(error))
     finally:
+        why = failure_to_close(world)
+    return Outcome(None, f"close(): {why}") if why else found
+
+
+def failure_to_close(world):
+    """Close a world that can be closed.  Return the error in one line, or ""."""
+    try:
         if hasattr(world, "close"):
             world.close()
+    except (Exception, SystemExit) as error:
+        return sentence(error)
+    return ""
 
 
 def checked_state(state, model):
@@ -161,11 +171,11 @@ def measured(reader, name, others, most):
              "others": {product.name: error_of(product, described, p, truth, steps[-1]) for product in others}}
     no_runs = {"steps": (), "errors": (), "order": None}
     try:
-        why = reader.refuses(described.model(p))
+        why = str(reader.refuses(described.model(p)) or "")
     except (Exception, SystemExit) as error:
         return Row(**about, **no_runs, verdict=Judgement.FAILS, words=f"refuses(model): {sentence(error)}")
     if why:
-        return Row(**about, **no_runs, verdict=Judgement.REFUSES, words=str(why))
+        return Row(**about, **no_runs, verdict=Judgement.REFUSES, words=why)
     try:
         with alarm(WITHIN):
             found = [run_to_end(reader.build, described, p, n) for n in steps]
@@ -222,13 +232,12 @@ def conform(path, names, others, quick, out, console):
     for name in names:
         if name not in DESCRIBED:
             raise BadInput(f"scene {name!r}", "not a Model yet", f"choose from: {', '.join(DESCRIBED)}")
-    rows = []
+    rows, page = [], writable(Path(out)) / f"engine-{reader.name}.html"
     with beside(Path(path)):
         for name in names or DESCRIBED:
             rows.append(measured(reader, name, others, MOST[quick]))
             console.print(f"{name}: {rows[-1].verdict}", highlight=False, soft_wrap=True)
     console.print(table(reader, rows))
-    page = writable(Path(out)) / f"engine-{reader.name}.html"
     page.write_text(page_of(reader, rows, others), encoding="utf-8")
     console.print(f"{summary(rows)}  Page: {page}", highlight=False, soft_wrap=True)
     return int(any(row.verdict in (Judgement.FAILS, Judgement.DEPARTS) for row in rows))

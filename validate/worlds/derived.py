@@ -8,7 +8,7 @@ from math import sqrt
 
 import numpy as np
 
-from solutions.checks import positive_number
+from solutions.checks import BadInput, positive_number
 from solutions.support.model import (
     WORLD,
     BallJoint,
@@ -78,10 +78,31 @@ def opens(model):
         u, spin = [start.v[k] + turn for k, turn in zip(ends, turned)], [start.omega[k] for k in ends]
         fastest = max(np.linalg.norm(start.v[k]) + np.linalg.norm(turn) for k, turn in zip(ends, turned))
         others = (u[1], spin[1]) if len(ends) == 2 else (0.0, 0.0)
-        welded = isinstance(joint, Weld) and np.linalg.norm(spin[0] - others[1]) > SLIGHT * np.max(np.abs(spin))
-        if welded or np.linalg.norm(u[0] - others[0]) > SLIGHT * fastest:
+        if (np.linalg.norm(held_spin(joint, spin[0] - others[1])) > SLIGHT * np.max(np.abs(spin))
+                or np.linalg.norm(u[0] - others[0]) > SLIGHT * fastest):
             return True
     return False
+
+
+def held_spin(joint, omega):
+    """Return what of a relative angular velocity [rad/s] a joint lets no body have; a hinge leaves that about its axis.
+    """
+    if isinstance(joint, Weld):
+        return omega
+    return omega - np.dot(omega, joint.axis) * np.array(joint.axis) if isinstance(joint, Hinge) and joint.axis else 0.0
+
+
+def weld_place(model, joint):
+    """Return the place (d,) [m] at which an engine holds two welded bodies:  (x_a/I_a + x_b/I_b)/(1/I_a + 1/I_b).
+
+    An impulse there turns both alike, so that its rows for places and those for angles do not disturb each other.
+    """
+    shares = [0.0 if k == WORLD or not can_move(model.bodies[k]) else 1.0 / float(np.mean(model.bodies[k].inertia))
+              for k in (joint.a, joint.b)]
+    if sum(shares) == 0.0:
+        return np.array(joint.place, float)
+    places = [np.array(joint.place if k == WORLD else model.bodies[k].x, float) for k in (joint.a, joint.b)]
+    return (shares[0] * places[0] + shares[1] * places[1]) / sum(shares)
 
 
 def by_turning(omega, r):
@@ -253,10 +274,34 @@ def pull_of(spring):
     return pull
 
 
-def checked_step(model, dt):
-    """Return the step [s] of a world.  Raises BadInput unless it is positive, and for anything but a Model."""
+def checked_step(model, dt, refuses):
+    """Return the step [s] of a world.
+
+    Raises BadInput unless it is positive, for anything but a Model, and for one that the world refuses.
+    """
     check_model(model)
+    why = refuses(model)
+    if why:
+        raise BadInput("a model for this engine", f"one that it refuses: {why}", "ask refuses(model) before build")
     return positive_number("step dt [s]", dt)
+
+
+def too_stout(model, most):
+    """Return why an engine refuses a model that has a finite moment of inertia above its infinite one, or ""."""
+    moments = [I for body in model.bodies for I in np.atleast_1d(body.inertia) if most < I < np.inf]
+    return f"a moment of inertia of {moments[0]:.3g} kg m² counts as infinite in it" if moments else ""
+
+
+def stiff_joints(model):
+    """Return the numbers of the joints that with_plain_springs keeps, as the Model numbers them."""
+    return [n for n, joint in enumerate(model.joints) if not isinstance(joint, Distance) or joint.compliance == 0.0]
+
+
+def as_numbered(pushes, model):
+    """Return the function `pushes` of a world without the joints that with_plain_springs takes away, with all numbers.
+    """
+    numbers = stiff_joints(model)
+    return lambda: [push if push.joint is None else push._replace(joint=numbers[push.joint]) for push in pushes()]
 
 
 def with_plain_springs(model):

@@ -4,6 +4,7 @@ Without contacts a step is Runge–Kutta 4.  With contacts it is the semi-implic
 and rods between two points, are soft constraints.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ from .derived import (
     SPINS_ON,
     STICKY,
     Embedding,
+    as_numbered,
     bounces,
     carries,
     checked_step,
@@ -42,6 +44,7 @@ from .derived import (
     opens,
     rubs,
     spins_on,
+    too_stout,
     touches,
     tree,
     with_plain_springs,
@@ -71,13 +74,14 @@ def refuses(model):
         return SPINS_ON
     if opens(model):
         return OPENS
-    return unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
+    return (unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
+            or too_stout(model, WIDE))
 
 
 def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     """Make a World.  integrator: as in MuJoCo's XML; time_constant: of contacts [s]."""
-    dt = checked_step(model, dt)
-    mujoco, model = module(), with_plain_springs(model)
+    dt = checked_step(model, dt, refuses)
+    mujoco, whole, model = module(), model, with_plain_springs(model)
     integrator = integrator or ("Euler" if touches(model) else "RK4")
     parts = with_damped_joints(Parts(model, start_of(model), Embedding(model.d), *tree(model)), integrator)
     model = parts.model
@@ -103,9 +107,9 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
         finally:
             take(None)
     if not model.loads:
-        return World(lambda: advance(world, data), state, lambda: pushes(parts, world, data, order), data=data)
-    return World(lambda: loaded(advance, world, data), state, lambda: loaded(pushes, parts, world, data, order),
-                 data=data)
+        loaded = lambda call, *arguments: call(*arguments)
+    found = as_numbered(lambda: loaded(pushes, parts, world, data, order), whole)
+    return World(partial(loaded, advance, world, data), state, found, data=data)
 
 
 def is_free(parts, k):

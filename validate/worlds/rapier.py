@@ -62,7 +62,7 @@ def refuses(model):
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
     """Make a World.  ahead: share of a substep by which the first velocities lag; ½ makes leapfrog."""
-    dt = checked_step(model, dt)
+    dt = checked_step(model, dt, refuses)
     rapier, model = module(), with_plain_springs(model)
     space = Embedding(model.d)
     world = rapier.PhysicsWorld(gravity=tuple(space.point(model.gravity).tolist()))
@@ -103,7 +103,8 @@ def add_bodies(parts, age):
                 rapier.RigidBody.kinematic_velocity_based if carries else rapier.RigidBody.fixed)
         at = rapier.Isometry3(tuple(space.point(start.x[k]).tolist()), rotation(rapier, space.frame(start.q[k])))
         made = (make().position(at).linvel(tuple(space.point(v[k]).tolist()))
-                .angvel(tuple(space.turning(omega[k]).tolist())).can_sleep(False))
+                .angvel(tuple(space.turning(omega[k]).tolist())).can_sleep(False)
+                .allow_fast_rotation(True))
         if can_move(body):
             made = weighed(parts, made, body)
         parts.bodies.append(parts.world.add_body(made))

@@ -19,7 +19,7 @@ HALF = np.array([0.1, 0.2, 0.3])       # half sizes [m]
 TILT = {"corner": (0.5, 0.7), "edge": (0.5, 0.0), "face": (0.0, 0.0)}                 # about x, then about y [rad]
 OVERLAP = 1e-12              # of the engines' bodies [m], so that they detect a contact
 BRIEF = 1e-12                # their step [s]: nothing moves in it
-ROUGH = 1e6                  # sticking friction [-]: any cone is wide enough, and the engines do not accept infinity
+ROUGH = 1e6                  # sticking friction in the lesson [-]: any cone is wide enough
 
 
 class Params(NamedTuple):
@@ -123,7 +123,7 @@ def model(p):
     y, n, r, _ = landing(p)
     d = 2 if p.flat else 3
     q = TILT[p.lands][0] if p.flat else quaternion(turned(p))
-    box = Body((-(r[0] @ n + OVERLAP) * n)[:d], p.m, Box(HALF[:d]), ROUGH * p.rough, p.e, q, y[:d])
+    box = Body((-(r[0] @ n + OVERLAP) * n)[:d], p.m, Box(HALF[:d]), np.inf if p.rough else 0.0, p.e, q, y[:d])
     return make_model([box, Body(np.zeros(d), shape=HalfSpace(n[:d]), mu=1.0, e=1.0)], np.zeros(d))
 
 
