@@ -40,7 +40,7 @@ UNBROKEN = 1000              # width of a table that a program reads, not a pers
 ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
 ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
 ANSWERS = typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")
-SPEED = typer.Option("--plain/--compiled", help="One speed only; both without this option.")
+SPEED = typer.Option("--plain/--compiled", help="One speed only; else both, but a quick run compiles only some scenes.")
 DEPTH = typer.Option("--quick/--full", help="Compile, refine and time only what is quick; or everything.")
 LIVE = typer.Option(metavar="NAME|FILE.py", help=f"Run only this engine live: {', '.join(map(str, PRODUCTS))} (may be "
                     "repeated); or run an engine of your own, a file with build(model, dt), as docs/engine.md shows.")
@@ -68,10 +68,10 @@ def validate(
     if context.invoked_subcommand:
         return
     files = [name for name in engine or [] if name.endswith(".py")]
+    apart_from_files(out)
     if files:
         refuse_unused(context)
         raise typer.Exit(own_engines(files, [name for name in engine or [] if name not in files], scene, quick, out))
-    not_around_us(out)
     from . import measure  # takes half a second: not for --help
     from .run.run import run
     names, broken = select_scenes(scene or [], lesson or [])
@@ -271,12 +271,14 @@ def piles(
     bodies: Annotated[int, typer.Option(min=1)] = 1000,
     rounds: ROUNDS = 15,
     growth: Annotated[bool, typer.Option("--growth", help="How the cost of a step grows.")] = False,
-    most: Annotated[int, typer.Option(min=316, help="Bodies of the largest pile of --growth, up to 100,000.")] = 10_000,
+    most: Annotated[int, typer.Option(min=316, max=100_000, help="Bodies of the largest pile of --growth.")] = 10_000,
     memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
     figure: Annotated[Path | None, typer.Option(help="File for a picture of the result.")] = None,
 ):
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""
     from .speed.piles import measure
+    if figure:
+        writable(figure.absolute().parent)
     measure(kinds or [], bodies, rounds, growth, memory, figure, most)
 
 
@@ -293,14 +295,17 @@ def targets(
 
 # ---------------------------------------------------------------------------------------------- what was asked for
 
-def not_around_us(out):
-    """Raise BadInput for an output folder that holds the working folder: some 500 files would lie among its own.
+def apart_from_files(out):
+    """Raise BadInput for an output folder that holds the working folder, or Python files: some 500 files would lie
+    among them.
 
     An empty name means the working folder, too.
     """
     if Path.cwd().is_relative_to(out.resolve()):
         raise BadInput(f"--out {str(out)!r}", "the folder in which you work, or one around it",
                        "name a folder for the report, such as report")
+    if out.is_dir() and any(out.glob("*.py")):
+        raise BadInput(f"--out {str(out)!r}", "a folder with Python files", "name one for the report, such as report")
 
 
 def loadable_scenes():
@@ -377,6 +382,8 @@ def overrides(pairs, names):
     changes = []
     for pair in pairs:
         name, _, text = pair.partition("=")
+        if name in dict(changes):
+            raise BadInput(f"--set {name}", "given twice", "give each parameter once")
         if len(names) != 1:
             raise BadInput(f"--set {pair}", f"meant for {len(names)} scenes", "name one with --scene")
         cases = list(modules.bind_scene(names[0]).cases.values())

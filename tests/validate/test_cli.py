@@ -162,6 +162,22 @@ def test_a_report_is_not_written_among_the_files_of_the_working_folder(capsys, t
     assert [path.name for path in tmp_path.rglob("*")] == ["work"]
 
 
+def test_a_report_is_not_written_among_the_files_of_a_program(capsys, tmp_path):
+    (tmp_path / "program.py").write_text("")
+    for more in (("--scene", "oscillator"), ("--engine", str(tmp_path / "program.py"))):
+        code, _, error = run(capsys, *more, "--out", str(tmp_path))
+        assert code == 2 and "a folder with Python files" in error and len(error.splitlines()) == 1
+    assert [path.name for path in tmp_path.rglob("*")] == ["program.py"]
+
+
+def test_a_parameter_that_is_given_twice_and_a_pile_that_is_too_large_are_refused(capsys, tmp_path):
+    for arguments, says in ((("--scene", "oscillator", "--set", "k=1", "--set", "k=2"), "given twice"),
+                            (("piles", "--growth", "--most", "1000000"), "100000"),
+                            (("piles", "discs", "--figure", str(tmp_path / "none" / "file" / "\0")), "")):
+        code, _, error = run(capsys, *arguments)
+        assert code == 2 and says in error and "Traceback" not in error
+
+
 def test_an_unwritable_folder_is_named(capsys, tmp_path):
     (tmp_path / "file").write_text("")
     code, _, error = run(capsys, "--scene", "oscillator", "--out", str(tmp_path / "file" / "report"))

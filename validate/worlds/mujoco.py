@@ -51,6 +51,7 @@ from .derived import (
 )
 
 WIDE = 1e9                   # stands for an infinite moment of inertia [kg m²]
+LEAST = 1e-15                # mass [kg] and moment of inertia [kg m²] of what moves: above mjMINVAL
 SLIPPERY = 1e-9              # stands for friction 0 [-], which it does not take
 
 
@@ -74,6 +75,8 @@ def refuses(model):
         return SPINS_ON
     if opens(model):
         return OPENS
+    if any(can_move(body) and min(body.m, *np.atleast_1d(body.inertia)) <= LEAST for body in model.bodies):
+        return f"its masses and moments must be above {LEAST:g}"
     return (unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
             or too_stout(model, WIDE))
 
