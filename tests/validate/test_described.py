@@ -52,8 +52,9 @@ def test_mujoco_is_of_order_four_where_nothing_touches(name):
 def test_each_engine_runs_most_scenes():
     counts = {product.name: sum(not product.world.refuses(one.model(one.scene.parameters))
                                 for one in DESCRIBED.values()) for product in BUILDERS if product.installed()}
-    assert counts.items() <= {"pymunk": 24, "pybullet": 23, "mujoco": 20, "pyb2d3": 24,
-                               "rapier3d": 27}.items()
+    for name, most in {"pymunk": 24, "pybullet": 23, "mujoco": 20, "pyb2d3": 24, "rapier3d": 27}.items():
+        assert counts.pop(name, most) == most
+    assert all(count >= 15 for count in counts.values())                 # of an engine that is new
 
 
 # ---------------------------------------------------------------------------------------------- our loop
