@@ -132,7 +132,8 @@ def own_motion(t, x, q, v, omega, p):
 
 def inertial(t, x, q, v, omega, p):
     """A load that is as large as bodies are heavy: it would double v and ω in a second, but for the gyroscopic term."""
-    m, I = (np.where(one > 0.0, 1.0 / np.maximum(one, 1e-300), 0.0) for one in (p.inv_mass, p.inv_inertia))
+    m = np.where(p.inv_mass > 0.0, 1.0 / np.maximum(p.inv_mass, 1e-300), 0.0)
+    I = np.where(p.inv_inertia > 0.0, 1.0 / np.maximum(p.inv_inertia, 1e-300), 0.0)
     return m.reshape((-1, 1)) * v, I * omega
 
 
@@ -1791,7 +1792,7 @@ def test_the_largest_gain_is_found_among_all_pairs_of_times(lesson, draw):
           slow[-1] - slow[0], MANY)
     least = draw.whole(1, 9) * 2.0**-43                                   # the last digit of 1000
     close("largest gain of what gains the last digit only [J]",
-          lesson.gain_without_source([1e3, 1e3, 1e3 + least], np.zeros(3)), least, 0.0)
+          lesson.gain_without_source(np.array([1e3, 1e3, 1e3 + least]), np.zeros(3)), least, 0.0)
 
 
 @exercise("10.15", points=0.25, hint="energies, work = checked_histories(energies, work) comes first")
