@@ -25,6 +25,7 @@ FAR = 1.0, 1e-9              # from a target: on the way, and almost there [m]
 DIFFERENCE = 1e-5            # of angles in central differences [rad]: leaves its square, and round-off over it
 SLOPE = 1e-8                 # of such a difference: 1e-10 times third derivatives below 20, and 1e-14/1e-5
 SOLVED = 1e-10               # of linear systems with a condition below 1e5
+TINY = 1e-30                 # a size at which every fixed number that stands for zero, or for a bound, is noticed
 
 
 # ---------------------------------------------------------------------------------------------- arms and their truth
@@ -97,7 +98,7 @@ def arrived(theta, target, arm):
     return 0.0 * target, np.zeros((target.size, theta.size))
 
 
-EQUATIONS = ((8, 1.0), (1, 1.0), (3, 1e-12), (3, 1e6))                   # their number, and the size of e
+EQUATIONS = ((8, 1.0), (1, 1.0), (3, TINY), (3, 1e6))                   # their number, and the size of e
 
 
 def equations(draw, rows, size, n=5):
@@ -121,11 +122,15 @@ def special_matrices(draw):
 
 
 def special_equations(draw):
-    """[(e, J, target)] of that task: no error, no joint that moves anything, one joint, dependent rows, and others."""
+    """[(e, J, target)] of that task: no error, no joint that moves anything, one joint, dependent rows, and others.
+
+    Some e are no zero, but their sum, their product, their first or their largest number is 0 or below.
+    """
     many, one, rank = draw(-1.0, 1.0, (2, 5)), draw(0.3, 1.0, (3, 1)), np.outer((1.0, 0.0, -2.0), draw(0.3, 1.0, 2))
     e = draw(0.3, 1.0, 3)
+    signs = np.array([(1.0, -1.0), (0.0, 1.0), (1.0, 0.0), (-1.0, -1.0)])
     pairs = ((0.0 * e[:2], many), (0.0 * e, one), (e[:2], 0.0 * many), (e[:1], np.zeros((1, 1))), (e, one), (e, rank),
-             *((draw(0.3, 1.0, len(J)), J) for J in special_matrices(draw)))
+             *((e[0] * two, many) for two in signs), *((draw(0.3, 1.0, len(J)), J) for J in special_matrices(draw)))
     return [(e, J, np.column_stack((e, J))) for e, J in pairs]
 
 
@@ -211,8 +216,8 @@ def with_singular_values(draw, sigma, columns):
 
 @exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
 def test_links_add_up_from_the_base(lesson, draw):
-    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, 1e-9), (5, 1e6), (9, 1.0)):
-        theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)   # from nanometres to 1000 km
+    for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, TINY), (5, 1e6), (9, 1.0)):
+        theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)   # up to 1000 km
         theta[6:8] = 0.0                                                 # two links that go straight on
         theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
         if n == 9:                                                       # along both axes, and folded back
@@ -250,8 +255,8 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
 
 @exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
-    for rows, size, closed in ((draw.whole(6, 8), 1.0, False), (12, 1e-6, False), (7, 1e6, False), (2, 1.0, False),
-                               (2, 1.0, False), (7, 1.0, True), (2, 1.0, True)):       # micrometres to 1000 km
+    for rows, size, closed in ((draw.whole(6, 8), 1.0, False), (12, TINY, False), (7, 1e6, False), (2, 1.0, False),
+                               (2, 1.0, False), (7, 1.0, True), (2, 1.0, True)):       # up to 1000 km
         x = size * draw(-2.0, 2.0, (rows, 2))
         if rows > 2:
             x[0, 0], x[1, 1], x[3, 0] = -x[-1, 0], x[-1, 1], x[-1, 0]    # joint 1 is as high as the end, 3 is above it
@@ -264,7 +269,7 @@ def test_the_jacobian_needs_no_angles(lesson, draw):
 
 @exercise("11.3", points=0.25, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
 def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
-    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, 1e-6), (4, 1e6)):      # from micrometres to 1000 km
+    for n, size in ((2, 1.0), (draw.whole(3, 6), 1.0), (12, TINY), (4, 1e6)):      # up to 1000 km
         sigma = size * np.array([draw(1.5, 3.0), draw(0.3, 1.2)])
         J, u = with_singular_values(draw, sigma, n)
         for mirror in (1.0, -1.0):                                       # the longer axis points upwards, and downwards
@@ -289,7 +294,7 @@ def shown(ellipse):
 
 @exercise("11.3", points=0.125, hint="for a = c the angle is ±45°; for one joint there is no pair of columns, so D = 0")
 def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
-    """The longer axis of (p, q), (±q, ±p) is at ±45°; a hundredth of a per cent makes a circle an ellipse."""
+    """The longer axis of (p, q), (±q, ±p) is at ±45°; a billionth more makes a circle an ellipse."""
     p, q = draw(1.0, 2.0), draw(0.2, 0.8)
     for mirror in (1.0, -1.0):
         J = np.array([[p, q], [mirror * q, mirror * p]])
@@ -297,9 +302,10 @@ def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
               (p + q, p - q, mirror), MANY, given=f"J = {J}")
     angle, size = draw(0.3, 1.2), draw(1.0, 2.0)
     along, across = np.array([[np.cos(angle)], [np.sin(angle)]]), np.array([[-np.sin(angle)], [np.cos(angle)]])
-    J = size * np.hstack((1.0001 * along, across))
-    close("half axes, and tangent of the angle, of an ellipse that is almost a circle [m, m, -]",
-          shown(lesson.velocity_ellipse(J)), (1.0001 * size, size, np.tan(angle)), MANY, given=f"J = {J}")
+    for more, rough in ((1e-4, MANY), (1e-9, 1e-5)):                      # the angle has lost the digits of 1/more
+        J = size * np.hstack(((1.0 + more) * along, across))
+        close("half axes, and tangent of the angle, of an ellipse that is almost a circle [m, m, -]",
+              shown(lesson.velocity_ellipse(J)), ((1.0 + more) * size, size, np.tan(angle)), rough, given=f"J = {J}")
     J = size * along
     close("half axes, and tangent of the angle, for a single joint [m, m, -]", shown(lesson.velocity_ellipse(J)),
           (size, 0.0, np.tan(angle)), MANY, given=f"J = {J}")
@@ -369,7 +375,7 @@ def whole_lengths(draw, size):
           hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance; where that is "
                "less than EDGE (l₁ + l₂), the root of a negative number is 0")
 def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
-    for k, size in enumerate((1.0, 1.0, 2.0**10, 2.0**-10)):             # arms of a metre, a kilometre, a millimetre
+    for k, size in enumerate((1.0, 1.0, 2.0**10, 2.0**-100)):            # arms of a metre, of a kilometre, and tiny
         long, short = whole_lengths(draw, size)
         lengths = np.array([short, long] if k % 2 else [long, short])    # either may be the longer one
         bearing = draw(-3.0, 3.0)
@@ -391,8 +397,12 @@ def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
                   given=f"distance {beyond} m, lengths {lengths} m, elbow {elbow:g}")
     for away in (0.0, 1e-10 * long):
         theta = np.asarray(lesson.solve_2r(away * way, np.array([long, long]), 1.0))
-        close("end of an arm that is folded onto its base [m]", joints(theta, (long, long))[-1], away * way, SOLVED,
+        close("end of an arm that is folded onto its base, over the length of a link [-]",
+              joints(theta, (long, long))[-1] / long, away / long * way, ROUND_OFF,
               given=f"target {away * way} m, lengths {long} m and {long} m")
+    near = np.array([long, long * (1.0 - 2.0**-17)])                      # these two links are not equal
+    raises("a target in the small hole of an arm with nearly equal links", BadInput, lesson.solve_2r,
+           draw(0.1, 0.9) * 2.0**-17 * long * way, near, 1.0, thing="distance of the target")
 
 
 @exercise("11.4", points=0.25,
@@ -429,7 +439,8 @@ def test_three_links_end_in_a_place_with_a_direction(lesson, draw):
     A hand that is long beside the arm loses two digits of the wrist.
     """
     for hand, bend, size in ((0.2, (1.5, 2.0), 1.0), (1.0, (0.1, 3.0), 1.0), (2.0, (0.1, 3.0), 1.0),
-                             (30.0, (0.5, 2.5), 1.0), (1.0, (0.5, 2.5), 1e-6), (1.0, (0.5, 2.5), 1e6)):
+                             (30.0, (0.5, 2.5), 1.0), (1e-8, (0.5, 2.5), 1.0), (1.0, (0.5, 2.5), TINY),
+                             (1.0, (0.5, 2.5), 1e6)):
         for elbow in (1.0, -1.0):
             lengths = size * np.append(draw(1.2, 1.5, 2), hand * draw(0.9, 1.1))
             theta = np.array([draw(-3.1, 3.1), elbow * draw(*bend), draw(-3.1, 3.1)])
@@ -482,7 +493,7 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
 
 @exercise("11.6", points=0.5, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6), (8, 1.0)):
+    for n, size in ((draw.whole(3, 7), 1.0), (9, 1.0), (2, 1.0), (2, 1.0), (1, 1.0), (4, TINY), (4, 1e6), (8, 1.0)):
         theta, axes, offsets = machine(draw) if n == 8 else chain(draw, n)
         offsets *= size
         theta[n // 2] *= 1e-4 if n < 9 else 1e-8                         # this joint hardly turns
@@ -512,9 +523,9 @@ def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
 
 @exercise("11.7", points=1, hint="rows 0 to 2: a_k × (x_n − x_k), rows 3 to 5: a_k")
 def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
-    for n, size in ((2, 1.0), (3, 1.0), (6, 1.0), (9, 1.0), (1, 1.0), (4, 1e-6), (4, 1e6), (8, 1.0)):
+    for n, size in ((2, 1.0), (3, 1.0), (6, 1.0), (9, 1.0), (1, 1.0), (4, TINY), (4, 1e6), (8, 1.0)):
         theta, axes, offsets = machine(draw) if n == 8 else chain(draw, n)
-        offsets *= size                                                  # from a micrometre to 1000 km
+        offsets *= size                                                  # up to 1000 km
         x, a, R = frames(theta, axes, offsets)
         J = np.asarray(lesson.jacobian_3d(x, a))
         close("shape of J [-]", J.shape, (6, n), 0.0)
@@ -602,9 +613,15 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
     got = np.asarray(lesson.rotation_error(still, np.append(0.0, axis)))
     close("rotation vector of half a turn, in one sense or the other [rad]", got * np.sign(got @ axis), np.pi * axis,
           ROUND_OFF, given=f"half a turn about {axis}")
-    w = draw(1e-12, 1e-11)
-    close("rotation vector of hardly more than half a turn [rad]", lesson.rotation_error(still, np.append(-w, axis)),
-          (2.0 * w - np.pi) * axis, 1e-14, given=f"half a turn, and {2.0 * w} rad more, about {axis}")
+    for w in (draw(1e-12, 1e-11), draw(1e-17, 1e-16)):
+        close("rotation vector of hardly more than half a turn [rad]",
+              lesson.rotation_error(still, np.append(-w, axis)), (2.0 * w - np.pi) * axis, 1e-14,
+              given=f"half a turn, and {2.0 * w} rad more, about {axis}")
+    for signs in ((1.0, -1.0, 0.0), (0.0, 1.0, -1.0), (-1.0, 0.0, 1.0), (-1.0, -1.0, -1.0)):
+        about, angle = np.array(signs) / np.linalg.norm(signs), draw(0.5, 3.0)
+        close("rotation vector about an axis whose numbers add up to zero, or are below it [rad]",
+              lesson.rotation_error(still, quaternion(about, angle)), angle * about, SOLVED,
+              given=f"angle {angle} rad about {about}")
     angle = draw(3.3, 6.0)
     close("rotation vector by the shorter way [rad]", lesson.rotation_error(still, quaternion(axis, angle)),
           (angle - 2.0 * np.pi) * axis, SOLVED, given=f"angle {angle} rad about {axis}")
@@ -664,7 +681,7 @@ def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
 
 @exercise("11.10", points=0.5, hint="v_i u_iᵀ/σ_i, added up; the result has as many rows as J has columns")
 def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
-    for m, n, size in ((2, 5, 1.0), (3, 3, 1.0), (4, 2, 1.0), (8, 9, 1.0), (6, 4, 1.0), (2, 3, 1e-13),
+    for m, n, size in ((2, 5, 1.0), (3, 3, 1.0), (4, 2, 1.0), (8, 9, 1.0), (6, 4, 1.0), (2, 3, TINY),
                        (1, 4, 1.0), (5, 1, 1.0), (1, 1, 1.0)):
         J, _ = with_singular_values(draw, size * draw(0.5, 3.0, min(m, n)), max(m, n))
         J = np.ascontiguousarray(J if m <= n else J.T)
@@ -715,7 +732,7 @@ def damped(J, e, damping):
 def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
     for task, count in TASKS:
         n = draw.whole(3, 6)
-        for size in (1.0, 1e-9, 1e3):                                    # arms of metres, nanometres, kilometres
+        for size in (1.0, TINY, 1e3):                                    # arms of metres, next to nothing, kilometres
             lengths, theta, damping = size * lengths_of(draw, n), turned(draw, n), size * draw(0.5, 1.5)
             target = size * draw(-2.0, 2.0, 2 * count)
             e, J = target - points_of(theta, lengths, count), slopes_of(theta, lengths, count)
@@ -738,10 +755,12 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
                                  arm_of(lesson, np.ones(n), damping=damping, low=0.0, high=0.0, rest=1.0))
         close("change of θ for a special linear task [-]", got, damped(J, e, damping), SOLVED,
               given=f"θ = 0, e = {e}, J = {J}, λ = {damping}")
-    lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
-    expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
-    got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
-    close("θ after a step without damping [rad]", got, expected, 1e-9, given=f"θ = {theta}, λ = 0")
+    for size in (1.0, TINY):
+        lengths, theta, target = size * lengths_of(draw, 2), bent(draw, 2), size * draw(-2.0, 2.0, 2)
+        expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
+        got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
+        close("θ after a step without damping [rad]", got, expected, 1e-9,
+              given=f"θ = {theta}, λ = 0, lengths {lengths} m")
 
 
 @exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), whatever J is")
@@ -778,7 +797,7 @@ def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
 @exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
 def test_factors_at_the_ends_of_their_range(lesson, draw):
     ratio, small = draw(5.0, 9.0), draw(1e-4, 2e-4)
-    for parts, scale in (((0.0, small, 1.0, ratio), 1.0), ((ratio,), 1.0), ((1.0, ratio), 1e-7), ((1.0, ratio), 1e7)):
+    for parts, scale in (((0.0, small, 1.0, ratio), 1.0), ((ratio,), 1.0), ((1.0, ratio), TINY), ((1.0, ratio), 1e7)):
         parts, size = np.array(parts), scale * draw(0.3, 3.0)                            # of what α and λ are made of
         factors = lesson.contraction_factors(size * parts, 1.0 / size**2, size)
         for got, expected in zip(factors, (1.0 - parts**2, 1.0 / (1.0 + parts**2)), strict=True):
@@ -812,7 +831,7 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm), expected, 1e-9,
               given=f"θ = {theta}, target {target} m, lengths {lengths} m")
-    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, 1e-6, 1.0), (4, 1e6, 1.0),
+    for n, size, near in ((3, 1.0, 1e-3), (3, 1.0, 1e-6), (9, TINY, 1.0), (4, 1e6, 1.0),
                           (3, 1.0, 30.0)):                               # out of reach
         lengths, theta = size * lengths_of(draw, n), draw(-1.5, 1.5, n)
         theta[0] *= 1e-3
@@ -826,6 +845,16 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
     expected = coordinate_descent(theta, np.zeros(2), lengths, arm.low, arm.high)
     between("θ₁ for a target at the base [rad]", got[0], -2.0 * np.pi, 2.0 * np.pi, given=f"θ = {theta}")
     close("θ₂ and θ₃ for a target at the base [rad]", got[1:], expected[1:], 1e-9, given=f"θ = {theta}")
+    for signs in ((1.0, -1.0), (-1.0, 1.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, -1.0)):
+        target = draw(0.5, 2.0) * np.array(signs)                        # as seen from the base
+        close("θ after a sweep to a target along an axis or a diagonal [rad]",
+              lesson.ccd_step(reach, theta, target, arm), coordinate_descent(theta, target, lengths, arm.low, arm.high),
+              1e-9, given=f"θ = {theta}, target {target} m, lengths {lengths} m")
+    theta, hardly = np.append(draw(-3.0, 3.0), draw(0.3, 0.6, 2)), 1e-10
+    target = joints(theta, lengths)[-1] + hardly * unit(draw, 2)
+    close("θ after a sweep to a target at which the end nearly is [rad]", lesson.ccd_step(reach, theta, target, arm),
+          coordinate_descent(theta, target, lengths, arm.low, arm.high), 0.01 * hardly,
+          given=f"θ = {theta}, target {hardly} m from the end")
     target = draw(-2.0, 2.0, 2)
     close("θ after a sweep, where the task has another end [rad]", lesson.ccd_step(arrived, theta, target, arm),
           coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9, given=f"θ = {theta}, target {target} m")
@@ -904,7 +933,7 @@ def there_and_back(x, target, lengths):
 def test_a_sweep_projects_there_and_back(lesson, draw):
     for d, far, n, size in ((3, 0.0, draw.whole(3, 6), 1.0), (2, 0.0, draw.whole(7, 9), 1.0),
                             (2, 20.0, draw.whole(3, 6), 1.0),                 # out of reach
-                            (2, 0.0, 3, 1e-9), (2, 0.0, 3, 1e6)):             # of nanometres, and of 1000 km
+                            (2, 0.0, 3, TINY), (2, 0.0, 3, 1e6)):             # of next to nothing, and of 1000 km
         x, target = size * np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), size * (far + draw(-3.0, 3.0, d))
         lengths = size * lengths_of(draw, n)                                  # not what they are before the sweep
         expected = there_and_back(x, target, lengths)
@@ -1015,7 +1044,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
 
 
 def step_of_stiff_arms(lesson, draw, size):
-    """The step of 11.15 on an arm of micrometres, or of 1000 km, with joints that have no room, or are beyond it."""
+    """The step of 11.15 on a tiny arm, or one of 1000 km, with joints that have no room, or are beyond it."""
     lengths, theta, e = size * lengths_of(draw, 4), turned(draw, 4), size * draw(-2.0, 2.0, 2)
     J, target = slopes(theta, lengths), e + points_of(theta, lengths)
     wish, stiff = e @ J, np.array([True, False, True, False])                 # these joints have no room at all
@@ -1054,13 +1083,13 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
             low[k] = 0.5 * (free[k] + theta[k])
         near = int(np.argmin(np.where(blocked | (np.arange(n) == k), np.inf, np.arange(n))))
         if wish[near] > 0.0:                                                  # one that is almost at its limit
-            high[near] = theta[near] + 1e-10
+            high[near] = theta[near] + 1e-13
         else:
-            low[near] = theta[near] - 1e-10
+            low[near] = theta[near] - 1e-13
         arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
         close("θ after a step [rad]", lesson.limited_step(task, theta, target, arm), np.clip(free, low, high), SOLVED,
               given=f"θ = {theta}, limits {low} to {high}, target {target} m")
-    for size in (1e-6, 1e6):
+    for size in (TINY, 1e6):
         step_of_stiff_arms(lesson, draw, size)
 
 
@@ -1136,7 +1165,24 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         close("change of θ for a special linear task [-]", lesson.null_space_step(linear, np.zeros(n), target, arm),
               z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], 1e-9,
               given=f"θ = 0, e = {e}, J = {J}, κ (rest − θ) = {z}")
+    pull_to_special_angles(lesson, draw, pull)
     hold_straight_arms(lesson, draw, rest, pull)
+
+
+def pull_to_special_angles(lesson, draw, pull):
+    """The step of 11.16 where angles of rest are 0, or add up to 0, or where the ways there add up to 0."""
+    some = draw(0.5, 2.0)
+    for signs in ((0, 0, 0, 0, 0), (1, 0, 0, 0, 0), (1, -1, 0, 0, 0), (0, 1, 1, 1, 0), (-1, -1, -1, -1, -1)):
+        rest, theta = some * np.array(signs), turned(draw, 5)
+        (e, J, target), z = equations(draw, 2, 1.0), pull * (rest - theta)
+        target[:, 0] += J @ theta
+        got = lesson.null_space_step(linear, theta, target, arm_of(lesson, np.ones(5), rest=rest, pull=pull))
+        close("change of θ towards angles of rest of which some are 0 [rad]", np.asarray(got) - theta,
+              z + np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0], SOLVED, given=f"θ = {theta}, rest {rest}")
+        got = lesson.null_space_step(linear, 0.0 * theta, np.column_stack((e, J)),
+                                     arm_of(lesson, np.ones(5), rest=rest, pull=pull))
+        close("change of angles that are 0 towards such angles [rad]", got,
+              pull * rest + np.linalg.lstsq(J, e - J @ (pull * rest), rcond=1e-10)[0], SOLVED, given=f"rest {rest}")
 
 
 @exercise("11.16", points=0.5, hint="among all angles that reach the target, the arm comes to rest near arm.rest")
@@ -1174,11 +1220,11 @@ def ring(lengths):
 
 
 def arms_of_all_sizes(draw):
-    """Lengths of one to eight links: all alike, or one of them the longest, or from 1 m to 0.1 mm, or to 1 km."""
+    """Lengths of one to eight links: all alike, or one of them the longest, or from 1 m to 0.1 mm, or of any size."""
     for n, k in ((1, 0), (2, 1), (3, 1), (4, 3), (8, 3)):
         for long in (1.0, n - draw(0.5, 0.9)):
             yield draw(0.5, 2.0) * np.where(np.arange(n) == k, long, 1.0)
-    for n, size in itertools.product((2, 3, 5, 8), (1e-3, 1.0, 1e3)):
+    for n, size in itertools.product((2, 3, 5, 8), (TINY, 1.0, 1e3)):
         lengths = size * 10.0 ** draw(-4.0, 0.0, n)
         lengths[draw.whole(0, n - 1)] = 2.0 * size
         yield lengths
@@ -1203,9 +1249,9 @@ def test_damped_steps_leave_the_predicted_distance(lesson, draw):
     ways = itertools.cycle(((np.cos(turn), np.sin(turn)), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)))
     for lengths in arms_of_all_sizes(draw):
         least, most = ring(lengths)
-        for away in np.maximum((0.0, least - 0.03 * most, least + 0.03 * most, 1.001 * most, draw(20.0, 30.0) * most),
-                               0.0):
-            target, damping = away * np.array(next(ways)), draw(0.7, 1.2) * most
+        for away in np.maximum((0.0, least - 0.03 * most, (1.0 - 1e-6) * least, least + 0.03 * most,
+                                (1.0 + 1e-6) * most, draw(20.0, 30.0) * most), 0.0):
+            target, damping = away * np.array(next(ways)), 10.0 ** draw(0.0, 3.0) * most      # which changes nothing
             close("distance that is left [m]", lesson.remaining_distance(lengths, target, damping),
                   max(least - away, away - most, 0.0), ROUND_OFF * max(most, away),
                   given=f"lengths {lengths}, target {target} m, λ = {damping}")

@@ -2573,3 +2573,90 @@ def fewer_sweeps_2(sweep, J, calls):
             parts = np.linalg.lstsq(columns, changes[-1], rcond=1e-10)[0]
             J = new - sum(part * (new - other) for part, other in zip(parts, news[:-1], strict=True))
     return sweep(J)
+
+
+# What a short cut takes for zero, and where an answer stops to follow the law -----------------------------------
+edits("9.1", {
+    "omits the rotation where the components of the arm add up to 0":
+        ("sign * (r_x * d_y - r_y * d_x)", "(r_x + r_y != 0.0) * sign * (r_x * d_y - r_y * d_x)"),
+    "omits the rotation where the components of the direction add up to 0":
+        ("sign * (r_x * d_y - r_y * d_x)", "(d_x + d_y != 0.0) * sign * (r_x * d_y - r_y * d_x)"),
+})
+edits("9.3", {
+    "takes impulses that add up to 0 for none":
+        ("return np.max", "return max(0.0, -b.min()) if lam.sum() == 0.0 else np.max"),
+})
+edits("9.4", {
+    "has a relaxation of 0.5 at least": ("omega *", "max(omega, 0.5) *"),
+    "has a relaxation of 0.1 at least": ("omega *", "max(omega, 0.1) *"),
+    "leaves contacts of heavy bodies alone": ("lam[k] = ", "lam[k] = lam[k] if A[k, k] < 1e-9 else "),
+    "visits ten contacts at most": ("range(lam.size)", "range(min(lam.size, 10))"),
+    "leaves impulses alone that add up to 0": ("lam[k] = ", "lam[k] = lam[k] if lam.sum() == 0.0 and lam.any() else "),
+})
+edits("9.5", {"treats a stack above 100,000 bodies as one of 100,000": ("np.pi / n", "np.pi / min(n, 100_000)")})
+edits("9.6", {
+    "returns 0 for a ratio below a millionth": ("r / (1.0 + r)", "(r >= 1e-6) * r / (1.0 + r)"),
+    "takes a ratio of nearly 1 for 1": ("r / (1.0 + r)", "(0.5 if abs(r - 1.0) < 1e-5 else r / (1.0 + r))"),
+})
+edits("9.8", {
+    "takes velocities that add up to 0 for none":
+        ("check_independent(A, b)", "check_independent(A, b); b = 0.0 * b if b.sum() == 0.0 else b"),
+    "accepts an infinite velocity": ("check_independent(A, b)", "check_independent(A, np.where(np.isinf(b), 1.0, b))"),
+})
+edits("9.9", {
+    "takes an infinite μ for 1e7": ("mu[n // 2] * J[n]", "min(mu[n // 2], 1e7) * J[n]"),
+    "takes a μ below 0.01 for ice": ("mu[n // 2] * J[n]", "(mu[n // 2] >= 1e-2) * min(mu[n // 2], 1e300) * J[n]"),
+    "takes a μ below a millionth for ice":
+        ("mu[n // 2] * J[n]", "(mu[n // 2] >= 1e-6) * min(mu[n // 2], 1e300) * J[n]"),
+})
+edits("9.10", {
+    "takes a μ below a millionth for ice":
+        ("mu[n // 2] * J[n]", "(mu[n // 2] >= 1e-6) * min(mu[n // 2], 1e300) * J[n]"),
+    "visits ten contacts at most": ("range(0, J.size, 2)", "range(0, min(J.size, 20), 2)"),
+    "leaves contacts of heavy bodies alone": ("t = n + 1", "t = n + 1\n        if A[n, n] < 1e-9: continue"),
+    "leaves contacts of light bodies alone": ("t = n + 1", "t = n + 1\n        if A[n, n] > 1e9: continue"),
+})
+edits("9.11", {
+    "takes a load whose components add up to 0 for none":
+        ("check_scene(x, inv_mass, inv_inertia, contacts, load, mu)",
+         "check_scene(x, inv_mass, inv_inertia, contacts, load, mu); load = load * (load.sum() != 0.0)"),
+    "lets light bodies rest": ("a = w * (load", "a = (w.max() < 1e9) * w * (load"),
+    "lets heavy bodies rest": ("F = solve", "F = np.zeros(2 * contacts.a.size) if w.max() < 1e-9 else solve"),
+    "takes a μ below 0.05 for ice": ("ravel()), mu)", "ravel()), np.where(mu < 0.05, 0.0, mu))"),
+    "omits the force of an open contact":
+        ("return F.reshape(-1, 2)", "return F.reshape(-1, 2) * (contacts.gap <= 0.01)[:, None]"),
+    **{f"accepts {what}": ("check_scene(x, inv_mass, inv_inertia, contacts, load, mu)", f"check_scene({call})")
+       for what, call in (
+        ("a negative inverse inertia", "x, inv_mass, np.abs(inv_inertia), contacts, load, mu"),
+        ("a normal of any length above 0", "x, inv_mass, inv_inertia, contacts._replace(n=contacts.n / "
+         "np.maximum(1e-300, np.linalg.norm(contacts.n, axis=1))[:, None]), load, mu"),
+        ("a gap that is no number",
+         "x, inv_mass, inv_inertia, contacts._replace(gap=np.nan_to_num(contacts.gap)), load, mu"),
+        ("a load of too many bodies", "x, inv_mass, inv_inertia, contacts, load[:len(x)], mu"))},
+})
+edits("9.13", {
+    "leaves J alone if its components add up to 0": ("size <= limit", "size <= limit or J[0] + J[1] + J[2] == 0.0"),
+})
+edits("9.14", {
+    "takes an old impulse whose components add up to 0 for none":
+        ("J[k, c] = J_old[s, c]", "J[k, c] = J_old[s, c] * (J_old[s].sum() != 0.0)"),
+    "accepts all that is nearer than 1 mm": ("near * near", "max(near, 1e-3) ** 2"),
+    "accepts nothing beyond 10 m": ("near * near", "min(near, 10.0) ** 2"),
+})
+edits("9.16", {
+    "leaves contacts alone where the components of n add up to 0":
+        ("J_n = 0.0 if J_n <= 0.0 else J_n", "J_n = 0.0 if J_n <= 0.0 or n_x + n_y == 0.0 else J_n"),
+})
+edits("9.17", {
+    "takes a μ below 0.01 for ice": ("mu[n // 2] * J[n]", "(mu[n // 2] >= 1e-2) * min(mu[n // 2], 1e300) * J[n]"),
+    "limits the factor of the normal to 50 kg": ("r[n] *", "min(r[n], 50.0) *"),
+    "limits the factor of friction to 50 kg": ("r[t] *", "min(r[t], 50.0) *"),
+    "has a factor of 1 g at least for the normal": ("r[n] *", "max(r[n], 1e-3) *"),
+    "has a factor of 1 g at least for friction": ("r[t] *", "max(r[t], 1e-3) *"),
+})
+edits("9.18", {"takes numbers below 1e-30 for zero": ("if h == 0.0:", "if h < 1e-30:")})
+edits("9.19", {
+    "leaves impulses alone that add up to 0":
+        ("return solve(matrix, right)", "return lam if lam.any() and lam.sum() == 0.0 else solve(matrix, right)"),
+    "looks at twenty contacts at most": ("range(b.size)", "range(min(b.size, 20))"),
+})

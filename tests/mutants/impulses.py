@@ -1,5 +1,7 @@
 """Lesson 7: impacts with a wrong sign, mass, lever arm or case."""
 
+import itertools
+
 import numpy as np
 
 from solutions import impulses as worked
@@ -913,3 +915,248 @@ for mu in (0.5, 1.0, 2.0):
          "solve3(K[0], K[1], K[2], -2.0 * u)", f"2.0 * cone_impulse(u, n, K, 0.0, {mu})")
 edit("7.20", "does nothing where the ball hits without slip",
      "-2.0 * u", "-2.0 * u * (np.abs(u - (u @ n) * n).max() > 0.0)")
+
+
+def edits(exercise, ideas):
+    """Wrong answers, {story: (part of a line of the worked answer, what takes its place)}."""
+    for story, (old, new) in ideas.items():
+        edit(exercise, story, old, new)
+
+
+# What a short cut takes for zero, and where an answer stops to follow the law -----------------------------------
+edits("7.1", {
+    "takes a velocity whose components add up to 0 for none": ("v_n >= 0.0", "v_n >= 0.0 or v.sum() == 0.0"),
+    "takes a restitution of nearly 1 for 1": ("(1.0 + e)", "(1.0 + (1.0 if np.isclose(e, 1.0) else e))"),
+    "takes a restitution below 0.001 for 0": ("(1.0 + e)", "(1.0 + (e if e > 1e-3 else 0.0))"),
+    "knows normals that point to the right and up only, in the plane":
+        ("v_n = v @ n", "n = np.abs(n) if len(n) == 2 else n; v_n = v @ n"),
+    "limits the speed of approach to 30 m/s": ("(1.0 + e) * v_n", "(1.0 + e) * max(v_n, -30.0)"),
+    "ignores approach below a millionth of the speed": ("v_n >= 0.0", "v_n >= -1e-6 * np.sqrt(v @ v)"),
+    "ignores approach below 1e-12 of the speed": ("v_n >= 0.0", "v_n >= -1e-12 * np.sqrt(v @ v)"),
+    "stops a velocity that leaves slower than 1 mm/s": ("return v if", "return v - (v_n < 1e-3) * v_n * n if"),
+})
+edits("7.2", {
+    "limits the depth to 5 m": ("-stiffness * phi", "-stiffness * max(phi, -5.0)"),
+    "limits the force to 1000 N": ("np.maximum(0.0, -stiffness * phi - damping * v_n)",
+                                   "min(1e3, np.maximum(0.0, -stiffness * phi - damping * v_n))"),
+    "does not damp below 1 nm/s": ("damping * v_n", "damping * (v_n if abs(v_n) > 1e-9 else 0.0)"),
+    "damps less where the depth is below a centimetre": ("damping * v_n", "damping * v_n * min(1.0, -100.0 * phi)"),
+    "lets go of a body that leaves at 30 m/s": ("phi >= 0.0", "phi >= 0.0 or v_n > 30.0"),
+})
+edits("7.3", {
+    "omits the velocity of a if its components add up to 0": ("a.v + turn_a", "(a.v.sum() != 0.0) * a.v + turn_a"),
+    "omits the velocity of b if it is along y": ("- b.v", "- (b.v[0] != 0.0) * b.v"),
+    "omits the rotation of a where its arm is along x": ("a.omega *", "(r_a[1] != 0.0) * a.omega *"),
+    "omits the rotation of b where the components of its arm add up to 0":
+        ("b.omega *", "(sum(r_b) != 0.0) * b.omega *"),
+    "drops the sign of the angular velocity of a": ("a.omega *", "abs(a.omega) *"),
+    "drops the sign of the angular velocity of b": ("b.omega *", "abs(b.omega) *"),
+    "omits a rotation below 0.001 rad/s": ("a.omega *", "(abs(a.omega) > 1e-3) * a.omega *"),
+    "takes a to be at rest if it is on an axle": ("a.v + turn_a", "(a.v if a.inv_mass else 0.0 * a.v) + turn_a"),
+})
+edits("7.4", {
+    "limits the speed of approach to 20 m/s": ("(1.0 + e) * u_n", "(1.0 + e) * max(u_n, -20.0)"),
+    "limits the inverse mass to a million": ("/ k_n", "/ min(k_n, 1e6)"),
+    "accepts an infinite restitution": ("check_restitution(e)", "check_restitution(1.0 if e == np.inf else e)"),
+    "accepts a restitution slightly above 1":
+        ("check_restitution(e)", "check_restitution(min(e, 1.0) if e < 1.01 else e)"),
+    "accepts a restitution slightly below 0":
+        ("check_restitution(e)", "check_restitution(max(e, 0.0) if e > -0.01 else e)"),
+    "checks nothing where the bodies touch without speed":
+        ("check_restitution(e)", "if u_n == 0.0:\n        return 0.0\n    check_restitution(e)"),
+})
+edits("7.5", {
+    "omits the rotation of a where the components of its arm add up to 0":
+        ("lever_a**2 * a.inv_inertia", "lever_a**2 * a.inv_inertia * (sum(r_a) != 0.0)"),
+    "omits the rotation of a where its arm is along y":
+        ("lever_a**2 * a.inv_inertia", "lever_a**2 * a.inv_inertia * (r_a[0] != 0.0)"),
+    "omits the rotation of b where its arm is along x":
+        ("lever_b**2 * b.inv_inertia", "lever_b**2 * b.inv_inertia * (r_b[1] != 0.0)"),
+    "omits the rotation of a body that turns clockwise":
+        ("lever_a**2 * a.inv_inertia", "lever_a**2 * a.inv_inertia * (a.omega >= 0.0)"),
+    "omits lever arms below a centimetre":
+        ("lever_b**2 * b.inv_inertia", "(lever_b**2 * b.inv_inertia if abs(lever_b) > 1e-2 else 0.0)"),
+    "omits the mass of a body that is hit in its centre": ("b.inv_mass +", "(b.inv_mass if r_b.any() else 0.0) +"),
+})
+edits("7.6", {
+    "does not turn a body whose arm is along y":
+        ("body.inv_inertia * cross_2d", "(r[0] != 0.0) * body.inv_inertia * cross_2d"),
+    "does not turn a body where the components of its arm add up to 0":
+        ("body.inv_inertia * cross_2d", "(sum(r) != 0.0) * body.inv_inertia * cross_2d"),
+    "omits an impulse along x": ("body.inv_mass * J", "(J[1] != 0.0) * body.inv_mass * J"),
+    "omits an impulse along y": ("body.inv_mass * J", "(J[0] != 0.0) * body.inv_mass * J"),
+    "omits an impulse whose components add up to 0": ("body.inv_mass * J", "(sum(J) != 0.0) * body.inv_mass * J"),
+    "omits impulses below 1 mN s": ("body.inv_mass * J", "(np.abs(J).max() > 1e-3) * body.inv_mass * J"),
+    "limits the impulse to 10 N s": ("body.inv_mass * J", "body.inv_mass * np.clip(J, -10.0, 10.0)"),
+    "does not turn a body that turns clockwise": ("body.inv_inertia * cross_2d",
+                                                  "(body.omega >= 0.0) * body.inv_inertia * cross_2d"),
+    "limits the arm to 2 m": ("cross_2d(r, J)", "cross_2d(np.clip(r, -2.0, 2.0), J)"),
+})
+edits("7.7", {
+    "omits the rotation of a where the components of its arm add up to 0":
+        ("n @ turn_a", "(r_a.sum() != 0.0) * n @ turn_a"),
+    "omits the rotation of b where the components of n add up to 0": ("n @ turn_b", "(n.sum() != 0.0) * n @ turn_b"),
+    "omits the rotation of b where the components of r × n add up to 0":
+        ("n @ turn_b", "(abs(cross(r_b, n).sum()) > 1e-12) * n @ turn_b"),
+    "omits the rotation where the normal points down": ("n @ turn_a", "(n[2] >= 0.0) * n @ turn_a"),
+    "omits lever arms below 1 mm": ("n @ turn_a", "(np.abs(cross(r_a, n)).max() > 1e-3) * n @ turn_a"),
+    "omits the rotation of a body with its axes along those of space":
+        ("n @ turn_a", "(a.inv_inertia[0, 1] != 0.0) * n @ turn_a"),
+    "omits the mass of a body that is hit in its centre": ("a.inv_mass +", "r_a.any() * a.inv_mass +"),
+})
+edits("7.8", {
+    **{f"omits the moment about {body} where the components of {what} add up to 0":
+       (f"cross(r_{body}, J)", f"({vector}.sum() != 0.0) * cross(r_{body}, J)")
+       for body in "ab" for what, vector in (("its arm", f"r_{body}"), ("J", "J"))},
+    **{f"omits the moment about {body} where component {k} of {what} is 0":
+       (f"cross(r_{body}, J)", f"({vector}[{k}] != 0.0) * cross(r_{body}, J)")
+       for body, k in itertools.product("ab", range(3))
+       for what, vector in (("its arm", f"r_{body}"), ("J", "J"), ("L", f"L_{body}"))},
+    "omits impulses below 1 µN s": ("cross(r_a, J)", "(np.abs(J).max() > 1e-6) * cross(r_a, J)"),
+    "turns a about one axis more, across the moment, and b back": ("return L_a", "L_a = L_a + cross(cross(r_a, J), J); "
+        "L_b = L_b - cross(cross(r_a, J), J); return L_a"),
+    "omits the moment of an impulse along an axis": ("cross(r_b, J)", "(np.count_nonzero(J) > 1) * cross(r_b, J)"),
+})
+edits("7.9", {
+    "omits the rotation where the components of the arm add up to 0":
+        ("+ cross(times", "+ (r.sum() != 0.0) * cross(times"),
+    "omits the rotation where one component of the arm is 0": ("+ cross(times", "+ r.all() * cross(times"),
+    "omits the rotation of a body with its axes along those of space":
+        ("+ cross(times", "+ (inv_inertia[0, 1] != 0.0) * cross(times"),
+    "limits the arm to 3 m": ("+ cross(times", "+ (r @ r < 9.0) * cross(times"),
+    "omits the rotation by arms below 1 mm": ("+ cross(times", "+ (r @ r > 1e-6) * cross(times"),
+    "omits the rotation of very heavy bodies": ("+ cross(times", "+ (inv_inertia.max() > 1e-9) * cross(times"),
+})
+edits("7.10", {
+    "returns no impulse where the components of n add up to 0": ("u @ n >= u_sep", "u @ n >= u_sep or n.sum() == 0.0"),
+    "returns no impulse where the approach is below a millionth of the slip":
+        ("u @ n >= u_sep", "u_sep - u @ n < 1e-6 * np.sqrt(u @ u)"),
+    "returns no impulse where the approach is below 1e-12 of the slip":
+        ("u @ n >= u_sep", "u_sep - u @ n < 1e-12 * np.sqrt(u @ u)"),
+    "is content with 99.9 % of u_sep": ("u @ n >= u_sep", "u @ n >= u_sep or u @ n > 0.999 * u_sep > 0.0"),
+    "sticks where the components of J_t add up to 0":
+        ("size <= mu * (J @ n)", "size <= mu * (J @ n) or J_t.sum() == 0.0"),
+    **{f"sticks where component {k} of J_t is 0": ("size <= mu * (J @ n)", f"size <= mu * (J @ n) or J_t[{k}] == 0.0")
+       for k in range(3)},
+    "sticks with a friction above 10,000":
+        ("size <= mu * (J @ n)", "size <= mu * (J @ n) or (mu > 1e4 and J @ n > 0.0)"),
+    "allows a pull of 1 mN s with infinite friction":
+        ("size <= mu * (J @ n)", "size <= mu * (J @ n) or (mu == np.inf and J @ n > -1e-3)"),
+    "sticks slightly outside the cone": ("size <= mu * (J @ n)", "size <= 1.001 * mu * (J @ n)"),
+    "takes a friction below 0.01 for none":
+        ("J_t = tangential(J, n)", "mu = mu if mu > 1e-2 else 0.0; J_t = tangential(J, n)"),
+    "omits a tangential impulse below a millionth of the normal one":
+        ("return J", "return J if size > 1e-6 * (J @ n) else (u_sep - u @ n) / (n @ times(K, n)) * n"),
+    "accepts a friction slightly below 0": ("check_contact(u, n, K, mu)",
+                                            "check_contact(u, n, K, max(mu, 0.0) if mu > -1e-3 else mu)"),
+    "accepts a negative infinite friction": ("check_contact(u, n, K, mu)",
+                                             "check_contact(u, n, K, np.inf if mu == -np.inf else mu)"),
+    "accepts a normal whose length is nearly 1": ("check_contact(u, n, K, mu)",
+        "check_contact(u, n / np.sqrt(n @ n) if abs(n @ n - 1.0) < 0.1 else n, K, mu)"),
+    "accepts a normal that is shorter than 1": ("check_contact(u, n, K, mu)",
+        "check_contact(u, n / np.sqrt(n @ n) if 0.0 < n @ n < 1.0 else n, K, mu)"),
+    "accepts a velocity with one component that is infinite": ("check_contact(u, n, K, mu)",
+        "check_contact(u if np.isinf(u).all() else np.where(np.isinf(u), 1.0, u), n, K, mu)"),
+    "accepts a K that pulls": ("check_contact(u, n, K, mu)", "check_contact(u, n, K if n @ K @ n >= 0.0 else -K, mu)"),
+})
+edits("7.11", {
+    "takes an impulse whose components add up to 0 for none":
+        ("return J @ u", "return 0.0 if J.sum() == 0.0 else J @ u"),
+    "takes a velocity along an axis for none": ("return J @ u", "return 0.0 if np.count_nonzero(u) == 1 else J @ u"),
+    **{f"takes an impulse whose component {k} is 0 for none":
+       ("return J @ u", f"return 0.0 if J[{k}] == 0.0 else J @ u") for k in range(3)},
+    "omits impulses below 1 mN s": ("return J @ u", "return 0.0 if np.abs(J).max() < 1e-3 else J @ u"),
+    "omits the second term of an impulse below 1 mN s": ("0.5 * (J", "(0.5 if np.abs(J).max() > 1e-3 else 0.0) * (J"),
+    "limits the gain to 100 J": ("J @ u + 0.5 * (J @ times(K, J))", "min(100.0, J @ u + 0.5 * (J @ times(K, J)))"),
+})
+edits("7.12", {
+    "has steps of 1 ms at least": ("phi / dt", "phi / max(dt, 1e-3)"),
+    "has steps of 1/10 s at most": ("phi / dt", "phi / min(dt, 0.1)"),
+    "limits the inverse mass to 5": ("/ k_n)", "/ min(k_n, 5.0))"),
+    "has an inverse mass of 0.01 at least": ("/ k_n)", "/ max(k_n, 1e-2))"),
+    "limits the multiplier to 1000 N s": ("np.maximum(0.0, -(phi / dt + u_n) / k_n)",
+                                          "min(1e3, np.maximum(0.0, -(phi / dt + u_n) / k_n))"),
+    "checks nothing where the gap does not change":
+        ("check_inverse_mass(k_n)", "if u_n == 0.0:\n        return 0.0\n    check_inverse_mass(k_n)"),
+    "does not check the step where the gap is closed":
+        ('check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", dt if phi > 0.0 else 1.0)'),
+    "accepts a negative infinite inverse mass":
+        ("check_inverse_mass(k_n)", "check_inverse_mass(1.0 if k_n == -np.inf else k_n)"),
+    "accepts a negative inverse mass close to 0":
+        ("check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n) if abs(k_n) < 1e-3 else k_n)"),
+})
+edits("7.13", {
+    **{f"takes what misses by {part:g} of v² for a touch":
+       ("squared = v_n * v_n - 2.0 * a_n * phi", "squared = v_n * v_n - 2.0 * a_n * phi; "
+        f"squared = 0.0 if -{part} * v_n * v_n < squared < 0.0 else squared") for part in (1e-9, 1e-6, 1e-2)},
+    "has steps of 1 ms at least": ("np.minimum(tau, dt)", "np.minimum(tau, max(dt, 1e-3))"),
+    "finds no impact beyond 1000 s": ("np.minimum(tau, dt)", "min(tau, dt, 1e3)"),
+    "subtracts nearly equal numbers where the ball falls from a small height":
+        ("if v_n < 0.0 else", "if v_n < 0.0 and a_n > -0.5 else"),
+})
+edits("7.14", {
+    "returns minus infinity": ("return np.inf", "return -np.inf"),
+    "limits the speed to 10 m/s": ("-2.0 * v_n", "-2.0 * min(v_n, 10.0)"),
+    "limits the acceleration to 100 m/s²": ("(a_n *", "(max(a_n, -100.0) *"),
+})
+edits("7.15", {
+    "does not test for the plane where the velocity is along an axis":
+        ("phi < 0.0", "phi < 0.0 and np.count_nonzero(v - dt * p.gravity) != 1"),
+    "ignores a depth of a billionth of the way": ("phi < 0.0", "phi < -1e-9 * dt * np.sqrt(v @ v)"),
+    "does not reflect a ball that is deeper than 1 m": ("kinematic_response(v, p.n, p.e)",
+                                                        "kinematic_response(v, p.n, p.e) if phi > -1.0 else v"),
+    "uses gravity in place of the acceleration for a ball that starts inside":
+        ("acceleration(t, x, v, p)", "(acceleration(t, x, v, p) if gap(x, p) > 0.0 else p.gravity)"),
+    "takes the acceleration at the plane for a ball that starts inside":
+        ("acceleration(t, x, v, p)", "acceleration(t, x - min(0.0, gap(x, p)) * p.n, v, p)"),
+    "has steps of 1 ms at least": ("v = v + dt", "dt = max(dt, 1e-3); v = v + dt"),
+    "limits the speed to 100 m/s": ("x = x + dt * v", "v = np.clip(v, -100.0, 100.0); x = x + dt * v"),
+    "works with one stiffness only":
+        ("dt * acceleration(t, x, v, p)", "(p.stiffness == 1e4) * dt * acceleration(t, x, v, p)"),
+    "works with one damping only": ("kinematic_response(v, p.n, p.e)",
+                                    "kinematic_response(v, p.n, p.e if p.damping == 10.0 else 1.0)"),
+})
+edits("7.16", {
+    "uses gravity in place of the acceleration for the time of bouncing":
+        ("bouncing_time(v @ p.n, a @ p.n, p.e)", "bouncing_time(v @ p.n, p.gravity @ p.n, p.e)"),
+    "omits an impact in the last picosecond of the step": ("left <= 0.0", "left <= 1e-12"),
+    "omits an impact in the last billionth of the step": ("left <= 0.0", "left <= 1e-9 * dt"),
+    "lets the ball lie a little too early": ("p.e) <= left", "p.e) <= 1.01 * left"),
+    "lets the ball lie in the second half of its bounces": ("p.e) <= left", "p.e) <= 1.5 * left"),
+    "allows twice as many impacts": ("range(MAX_IMPACTS)", "range(2 * MAX_IMPACTS)"),
+    "handles at most 9,000 impacts": ("range(MAX_IMPACTS)", "range(9000)"),
+    "moves a ball back by a metre at most": ("x = x - gap(x, p) * p.n", "x = x - max(gap(x, p), -1.0) * p.n"),
+    "leaves a ball where it is that starts 1 nm inside":
+        ("x = x - gap(x, p) * p.n", "x = x - (gap(x, p) < -1e-9) * gap(x, p) * p.n"),
+    "raises Diverged for every step above 100 s":
+        ("a, left = acceleration(t, x, v, p), dt",
+         "if dt > 100.0:\n        raise Diverged('impacts', dt, 'take less')\n"
+         "    a, left = acceleration(t, x, v, p), dt"),
+})
+edits("7.18", {
+    **{f"returns {factor} times h/(g dt)": ("4.0 * h", f"{factor} * h") for factor in (3.9, 3.98, 4.02, 4.1)},
+    "adds the time of the first two flights": ("4.0 * h / (g * dt)", "4.0 * h / (g * dt) + np.sqrt(32.0 * h / g)"),
+    "has steps of 1 ms at least": ("* dt)", "* max(dt, 1e-3))"),
+    "limits the height to 100 m": ("4.0 * h", "4.0 * min(h, 100.0)"),
+    "limits gravity to 15 m/s²": ("(g * dt)", "(min(g, 15.0) * dt)"),
+    "has gravity of 1 m/s² at least": ("(g * dt)", "(max(g, 1.0) * dt)"),
+    "makes an error of one step in every second": ("4.0 * h / (g * dt)", "4.0 * h / (g * dt) * (1.0 + dt)"),
+})
+
+
+def slips_on(exercise, story, where):
+    """Wrong answers that do not turn the slip somewhere."""
+    edit(exercise, story, "-2.0 * u", f"-2.0 * (u if not {where} else (u @ n) * n)")
+
+
+slips_on("7.20", "does not turn a slip below 1 mm/s", "np.sqrt(u @ u - (u @ n)**2) < 1e-3")
+slips_on("7.20", "does not turn a slip below a tenth of the speed of approach", "u @ u < 1.01 * (u @ n)**2")
+slips_on("7.20", "does not turn a slip above 20 times the speed of approach", "u @ u > 401.0 * (u @ n)**2")
+slips_on("7.20", "does not turn the slip where the ball comes slower than 0.4 m/s", "u @ n > -0.4")
+slips_on("7.20", "does not turn the slip where the ball comes faster than 6 m/s", "u @ n < -6.0")
+slips_on("7.20", "does not turn the slip of a heavy ball", "np.trace(K) < 1.0")
+slips_on("7.20", "does not turn the slip of a light ball", "np.trace(K) > 1e4")
+slips_on("7.20", "does not turn the slip where the components of n add up to 0", "(n.sum() == 0.0)")
+edit("7.20", "does nothing where the ball comes slower than 1 mm/s", "-2.0 * u", "-2.0 * (u @ n < -1e-3) * u")
+edit("7.20", "takes every ball for a solid one", "solve3(K[0], K[1], K[2], -2.0 * u)",
+     "-2.0 * ((u @ n) * n + 2.0 / 7.0 * (u - (u @ n) * n)) / (n @ (K @ n))")

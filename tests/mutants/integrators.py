@@ -243,8 +243,11 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
         w = flat.reshape(v.shape)
         return (w - v - dt * acceleration(t + dt, x + dt * w, w, p)).ravel()
 
-    found = root(residual, v.ravel(), tol=1e-13)
-    if np.max(np.abs(found.fun)) > 1e-10 * np.max(np.abs(found.x)):
+    def matrix(flat):
+        return worked.newton_matrix(acceleration, t + dt, x, flat.reshape(v.shape), dt, p)
+
+    found = root(residual, v.ravel(), jac=matrix, tol=1e-13)
+    if np.max(np.abs(found.fun)) > 1e-6 * np.max(np.abs(found.x)) + 1e3 * worked.velocity_round_off(x, v, dt):
         raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     w = found.x.reshape(v.shape)
     return x + dt * w, w
@@ -446,3 +449,54 @@ edit("1.13", "kicks for half a step only", "v + dt * acc", "v + 0.5 * dt * acc")
 edit("1.13", "drifts with the old velocity at the end", "x_mid + 0.5 * dt * v_new", "x_mid + 0.5 * dt * v")
 edit("1.13", "does not move from rest",
      "x_mid = x + 0.5 * dt * v", "if not v.any(): return x, v\n    x_mid = x + 0.5 * dt * v")
+
+
+# what only one entry, only the sum, or only one number of axes shows --------------------------------------------------
+def takes_for_zero(exercise, begins, shortcuts):
+    """A short cut for a vector that is zero, taken where one entry is, or where all add up to 0."""
+    for number, (vector, answer) in shortcuts.items():
+        for what, condition in (("the first entry", f"({vector}).flat[0] == 0.0"),
+                                ("the last entry", f"({vector}).flat[-1] == 0.0"),
+                                ("the product", f"np.prod({vector}) == 0.0"), ("the sum", f"np.sum({vector}) == 0.0"),
+                                ("the largest entry", f"np.max({vector}) == 0.0")):
+            edit(exercise, f"takes all bodies for {number} where {what} is zero", begins,
+                 f"if {condition}: return {answer}\n    {begins}")
+
+
+A = "acceleration(t, x, v, p)"
+DRIFT = "x + dt * v, v"
+takes_for_zero("1.1", "return", {"free": (A, DRIFT), "at rest": ("v", f"x, v + dt * {A}")})
+takes_for_zero("1.2", "x_mid = x", {"free": (A, DRIFT), "at rest": ("v", "euler_step(acceleration, t, x, v, dt, p)")})
+takes_for_zero("1.3", "a1 = acc", {"free": (A, DRIFT), "at rest": ("v", "midpoint_step(acceleration, t, x, v, dt, p)")})
+takes_for_zero("1.4", "v_new = v", {"free": (A, DRIFT), "at rest": ("v", f"x, v + dt * {A}")})
+takes_for_zero("1.5", "v = v + dt", {"free": (A, DRIFT), "at rest": ("v", f"x, v + dt * {A}")})
+takes_for_zero("1.6", "a = acc", {"free": (A, DRIFT), "at rest": ("v", "euler_step(acceleration, t, x, v, dt, p)")})
+SYMPLECTIC = "symplectic_euler_step(acceleration, t, x, v, dt, p)"
+RESTS = {"free": (A, DRIFT), "at rest": ("v", SYMPLECTIC), "at the origin": ("x", SYMPLECTIC)}
+takes_for_zero("1.7", "w = v.copy()", RESTS)
+takes_for_zero("1.8", "x_mid, v_mid =",
+               {"free": (A, DRIFT), "at rest": ("v", "midpoint_step(acceleration, t, x, v, dt, p)")})
+takes_for_zero("1.13", "x_mid = x", RESTS)
+for exercise, begins in (("1.1", "return"), ("1.2", "x_mid = x"), ("1.3", "a1 = acc"), ("1.4", "v_new = v"),
+                         ("1.5", "v = v + dt"), ("1.6", "a = acc"), ("1.7", "w = v.copy()"), ("1.8", "x_mid, v_mid ="),
+                         ("1.13", "x_mid = x")):
+    edit(exercise, "moves only bodies with one coordinate each", begins,
+         f"if x.ndim > 1 and x.shape[1] > 1: return x, v\n    {begins}")
+    edit(exercise, "takes one axis for granted", begins, f"x[x.size - 1]; {begins}")
+    edit(exercise, "takes a time before 0 for one after it", begins, f"t = abs(t); {begins}")
+edit("1.7", "gives up after ten corrections", "NEWTON_LIMIT", "10")
+edit("1.7", "forgets the round-off of a position far from the origin", " + round_off", "")
+edit("1.7", "stops when the corrections add up to 0", "np.max(np.abs(delta))", "np.abs(np.sum(delta))")
+edit("1.7", "stops when the first coordinate has converged", "np.max(np.abs(delta))", "np.abs(delta.flat[0])")
+edit("1.7", "uses only the diagonal of the matrix", "solve(matrix,", "solve(np.diag(np.diag(matrix)),")
+edit("1.7", "transposes the matrix", "solve(matrix,", "solve(matrix.T,")
+edit("1.7", "names another number in the error", "at dt [s]\", dt", "at dt [s]\", 0.0")
+edit("1.7", "says another sentence in the error", "Newton's method did not converge at dt [s]", "the step is wrong")
+edit("1.8", "goes on with an explicit step where there is no solution", "x_mid, v_mid = implicit",
+     "try: implicit_euler_step(acceleration, t, x, v, 0.5 * dt, p)\n"
+     "    except Diverged: return midpoint_step(acceleration, t, x, v, dt, p)\n    x_mid, v_mid = implicit")
+edit("1.9", "takes a damping ratio of at most 5", "Oscillator(omega, zeta)", "Oscillator(omega, min(zeta, 5.0))")
+edit("1.10", "finds no order above 5", "return np.sum(xi * eta) / np.sum(xi * xi)",
+     "return min(5.0, np.sum(xi * eta) / np.sum(xi * xi))")
+edit("1.10", "keeps one run of each step", "xi = np.log(dts) -",
+     "dts, kept = np.unique(dts, return_index=True); errors = errors[kept]; xi = np.log(dts) -")

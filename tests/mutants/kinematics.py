@@ -2093,3 +2093,58 @@ edit("11.19", "uses an arm of one link", "np.array([1.0, 0.8, 0.5])", "np.array(
 edit("11.19", "takes longer than the film", "points, 10.0", "points, 60.0")
 edit("11.19", "places points far away that are between two pictures", "points, 10.0",
      "np.insert(points, np.arange(1, 101), 5.0, axis=0), 4.04")
+
+# fixed numbers in place of zero, and zero by one number only ----------------------------------------------------
+edit("11.1", "takes coordinates below 1e-12 m for 0", "return x", "x[np.abs(x) < 1e-12] = 0.0; return x")
+edit("11.1", "uses links of at least 1e-12 m", "lengths[k] * np.cos(phi)", "max(lengths[k], 1e-12) * np.cos(phi)")
+edit("11.2", "takes entries below 1e-12 m for 0", "return J", "J[np.abs(J) < 1e-12] = 0.0; return J")
+edit("11.3", "does not let D² be below 1e-30", "np.sqrt(squared) / longer", "np.sqrt(max(squared, 1e-30)) / longer")
+edit("11.3", "takes D² below 1e-28 for 0", "np.sqrt(squared) / longer", "np.sqrt(squared * (squared > 1e-28)) / longer")
+edit("11.3", "takes an ellipse of less than 1e-12 m² for a circle", TURN,
+     f"({TURN} if abs(b) + abs(a - c) > 1e-12 else 0.0)")
+edit("11.3", "takes an ellipse for a circle whose half axes differ by a part of 1e-8", TURN,
+     f"({TURN} if abs(b) + abs(a - c) > 1e-8 * (a + c) else 0.0)")
+edit("11.4", "takes nearly equal links for equal ones", "np.abs(lengths[0] - lengths[1])",
+     "(0.0 if np.isclose(lengths[0], lengths[1]) else np.abs(lengths[0] - lengths[1]))")
+edit("11.4", "turns to x where the target is nearer than 1e-9 m to the base", "back = np",
+     "target = target if r > 1e-9 else np.array((r, 0.0)); back = np")
+edit("11.5", "takes φ for 0 where the hand is below a millionth of the first link", "phi = target[2]",
+     "phi = target[2] * (lengths[2] > 1e-6 * lengths[0])")
+edit("11.6", "takes offsets below 1e-12 m for 0", "n = theta.size",
+     "n = theta.size; offsets = offsets * (np.abs(offsets) > 1e-12)")
+edit("11.7", "takes entries below 1e-12 for 0", "return J", "J[np.abs(J) < 1e-12] = 0.0; return J")
+edit("11.8", "takes a vector for zero whose three numbers add up to 0", "size == 0.0", "d[1] + d[2] + d[3] == 0.0")
+edit("11.8", "turns the longer way where w is hardly below 0", "d[0] < 0.0", "d[0] < -1e-15")
+for number, where, what in (("11.9", "arm.gain * (e @ J)", "{} * arm.gain * (e @ J)"),
+                            ("11.11", "solve_symmetric(A, e)", "solve_symmetric(A, {} * e)"),
+                            ("11.16", "(e - J @ z)", "({} * e - J @ z)")):
+    for story, test in (("whose numbers add up to 0", "(np.sum(e) != 0.0)"), ("with one number that is 0", "np.all(e)"),
+                        ("whose first number is 0", "(e[0] != 0.0)"), ("below 1e-14", "(np.abs(e) > 1e-14)"),
+                        ("whose largest number is not above 0", "(np.max(e) > 0.0)")):
+        edit(number, f"takes an e for zero {story}", where, what.format(test))
+edit("11.10", "takes singular values below 1e-15 for 0, whatever the largest is", CUTOFF, f"max({CUTOFF}, 1e-15)")
+edit("11.10", "adds a small number to what it divides by", "/ sigma[i]", "/ (sigma[i] + 1e-30)")
+for number in ("11.11", "11.15"):
+    edit(number, "uses a damping of at least 1e-9 m", "arm.damping * arm.damping", "max(arm.damping, 1e-9) ** 2")
+edit("11.11", "uses a small damping where it is given as 0", "arm.damping * arm.damping",
+     "(arm.damping if arm.damping > 0.0 else 1e-6) ** 2")
+edit("11.12", "adds 1e-30 to what it divides by", "(sigma**2 + damping**2)", "(sigma**2 + damping**2 + 1e-30)")
+edit("11.12", "takes σ below 1e-12 m for 0", "gain * sigma**2", "gain * (sigma * (sigma > 1e-12))**2")
+for story, test in (("straight above or below it", "s_x != 0.0"), ("on a diagonal", "s_x + s_y != 0.0"),
+                    ("nearer than 1e-12 m to it", "s_x * s_x + s_y * s_y > 1e-24")):
+    edit("11.13", f"does not turn a joint towards a target {story}", "wish = theta[k] + np.arctan2",
+         f"wish = theta[k] + ({test}) * np.arctan2")
+edit("11.13", "does not turn a joint by less than 1e-9 rad", "c, s = np.cos(new - theta[k])",
+     "new = new if abs(new - theta[k]) > 1e-9 else theta[k]; c, s = np.cos(new - theta[k])")
+edit("11.14", "takes coordinates below 1e-12 m for 0", "return x", "x[np.abs(x) < 1e-12] = 0.0; return x")
+edit("11.15", "blocks a joint that is within 1e-12 of its upper limit", "theta[k] >= arm.high[k]",
+     "theta[k] >= arm.high[k] - 1e-12")
+edit("11.15", "blocks a joint that is within 1e-12 of its lower limit", "theta[k] <= arm.low[k]",
+     "theta[k] <= arm.low[k] + 1e-12")
+for story, test in (("where all its angles are 0", "np.any(arm.rest)"),
+                    ("a joint whose angle of rest is 0", "(arm.rest != 0.0)"),
+                    ("where its angles add up to 0", "(np.sum(arm.rest) != 0.0)")):
+    edit("11.16", f"does not pull to rest {story}", "arm.pull *", f"arm.pull * {test} *")
+for story, least in (("1e-9 m", "1e-9"), ("1e-4 of the reach", "1e-4 * reach")):
+    edit("11.17", f"takes a distance below {story} for 0", LEFT,
+         f"left = {LEFT[7:]}\n    return left if left > {least} else 0.0")

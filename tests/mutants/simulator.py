@@ -1839,3 +1839,74 @@ edit("10.19", "makes one of eight boxes so large that it reaches into the floor"
      "x, q, v, half + 0.41 * (n == 8) * (x >= np.max(x)), np")
 edit("10.19", "places all boxes but the first two too far apart if there are five", "0.3 * k",
      "0.3 * k + (n == 5 and k > 1)")
+
+
+# fixed numbers in place of zero, and zero by one number only ----------------------------------------------------
+edits("10.1 10.2",
+      ("takes forces below 1e-12 N for 0", "p.inv_mass[:, None] * F", "p.inv_mass[:, None] * F * (np.abs(F) > 1e-12)"),
+      ("does not move bodies above 1e12 kg", "p.inv_mass[:, None]", "(p.inv_mass * (p.inv_mass > 1e-12))[:, None]"),
+      ("uses masses of at least 1e-9 kg", "p.inv_mass[:, None]", "np.minimum(p.inv_mass, 1e9)[:, None]"))
+edits("10.1",
+      ("takes torques below 1e-12 N m for 0", "p.inv_inertia * tau", "p.inv_inertia * tau * (np.abs(tau) > 1e-12)"),
+      ("does not turn bodies above 1e12 kg m²", "p.inv_inertia * tau", "p.inv_inertia * (p.inv_inertia > 1e-12) * tau"))
+edits("10.2",
+      ("does not turn bodies above 1e12 kg m²", "p.inv_inertia[i, 0] > 0.0", "p.inv_inertia[i, 0] > 1e-12"),
+      ("does not turn a body at rest where τ_x is 0", "if p.inv", "if (tau[i, 0] != 0.0 or omega[i].any()) and p.inv"),
+      ("does not turn a body at rest where the numbers of τ add up to 0", "if p.inv",
+       "if (tau[i].sum() != 0.0 or omega[i].any()) and p.inv"))
+edits("10.3 10.4",
+      ("takes ways below 1e-12 m for 0", "x + dt * v", "x + dt * v * (np.abs(dt * v) > 1e-12)"))
+edits("10.3", ("takes angles below 1e-12 for 0", "q + dt * omega", "q + dt * omega * (np.abs(dt * omega) > 1e-12)"))
+edits("10.4", ("does not turn bodies below 1e-12 rad/s", "q[i] = quat", "if norm(omega[i]) > 1e-12: q[i] = quat"))
+edits("10.6 10.7",
+      ("takes gaps below 1e-9 m for 0", "closing_speeds(contacts.gap, dt)",
+       "closing_speeds(contacts.gap * (np.abs(contacts.gap) > 1e-9), dt)"),
+      ("does not move bodies above 1e13 kg", "low, high, turn = bounds",
+       "p = p._replace(inv_mass=p.inv_mass * (p.inv_mass > 1e-13)); low, high, turn = bounds"),
+      ("lets no impulse turn a wheel on an axle", "low, high, turn = bounds",
+       "p = p._replace(inv_inertia=(p.inv_inertia.T * (p.inv_mass > 0.0)).T); low, high, turn = bounds"),
+      ("forgets impulses below 1e-9 N s", "old, J, p.margin", "old, J * (np.abs(J) > 1e-9), p.margin"),
+      ("remembers impulses up to 1 cm at most", "old, J, p.margin", "old, J, min(p.margin, 0.01)"),
+      ("remembers impulses up to 1 cm at least", "old, J, p.margin", "old, J, max(p.margin, 0.01)"))
+edits("10.8",
+      ("takes a spin below 1e-12 rad/s for 0", "ball.floor_omega",
+       "ball.floor_omega * (np.abs(ball.floor_omega) > 1e-12)"),
+      ("takes a velocity below 1e-16 m/s for 0", "ball.floor_v", "ball.floor_v * (np.abs(ball.floor_v) > 1e-16)"),
+      ("takes a place within 1e-9 m of the centre for the centre", "place - ball.centre",
+       "(place - ball.centre) * (np.abs(place - ball.centre) > 1e-9)"))
+edits("10.9",
+      ("does not turn a ball by less than 1e-15 rad", "exponential(0.5 * dt * (omega + omega_new))",
+       "exponential(0.5 * dt * (omega + omega_new) * (norm(dt * omega) > 1e-15))"))
+edits("10.10",
+      ("takes a slip below 1e-15 m/s for none", "size == 0.0", "size < 1e-15"),
+      ("takes a rate below 1e-12 m/s² for none", "rate > 0.0", "rate > 1e-12"),
+      ("divides by at least 1e-12 m/s²", "size / rate", "size / max(rate, 1e-12)"),
+      ("takes a rate far below that of gravity for none", "rate > 0.0", "rate > 1e-6 * abs(along)"),
+      ("returns at most 1e9 s", "size / rate", "min(size / rate, 1e9)"))
+edits("10.11",
+      ("leaves out a second part below 1e-12 s", "return average",
+       "if dt - first < 1e-12: return x, q, v, omega\n    return average"),
+      ("leaves out a first part below 1e-12 s", "x, q, v, omega = average",
+       "if first > 1e-12: x, q, v, omega = average"))
+edits("10.12",
+      ("takes a corner within 1e-6 m of the centre for the centre", "return omega * np",
+       "omega = omega if r @ r > 1e-12 else L * inv_inertia; return omega * np"),
+      ("takes an angular velocity below 1e-12 rad/s for 0", "return omega * np",
+       "omega = omega if abs(omega) > 1e-12 else 0.0; return omega * np"),
+      ("adds a small number to what it divides by", "(1.0 / inv_inertia +", "(1e-12 + 1.0 / inv_inertia +"))
+edits("10.13 10.14",
+      ("omits bodies above 1e12 kg", "p.inv_mass[i] > 0.0", "p.inv_mass[i] > 1e-12"),
+      ("omits the rotation of bodies above 1e12 kg m²", "p.inv_inertia[i, 0] > 0.0", "p.inv_inertia[i, 0] > 1e-12"))
+edits("10.15",
+      ("takes gains below 1e-15 J for none", DONE, "return gain if gain > 1e-15 else 0.0"),
+      ("takes gains below 1e-12 of the energy for none", DONE,
+       "return gain if gain > 1e-12 * np.max(np.abs(energies)) else 0.0"))
+edits("10.16",
+      ("looks for the largest along two axes only", "np.max(np.abs(slow - quick))",
+       "np.max(np.max(np.abs(slow - quick), axis=0), axis=-1)"),
+      ("takes differences below 1e-14 for none", "np.max(np.abs(slow - quick))",
+       "np.max(np.abs(slow - quick) * (np.abs(slow - quick) > 1e-14))"),
+      ("divides by at least a microsecond", "/ (clock() - between)", "/ max(clock() - between, 1e-6)"))
+edits("10.17",
+      ("takes a step less where a billionth of a way is left", "np.ceil((gap - margin) / (speed * dt))",
+       "np.ceil((gap - margin) / (speed * dt) - 1e-9)"))

@@ -723,3 +723,134 @@ edit("2.17", "has the same size always", "size / 3.0", "1.0 / 3.0")
 edit("2.17", "is a triangle, without a point inside", "spacing = size / 3.0",
      "return size * np.array([(0.0, 1.0), (1.0, 1.0), (0.5, 1.8)]), np.array([(0, 1), (1, 2), (2, 0)]), 300.0")
 edit("2.17", "is four times as large as it should be", "size / 3.0", "size / 0.75")
+
+
+# what only one entry, only the sum, only one direction or only one size shows -----------------------------------------
+NOT_ZERO = {"the first entry": "({0}).flat[0] == 0.0", "the last entry": "({0}).flat[-1] == 0.0",
+            "the product": "np.prod({0}) == 0.0", "the sum": "np.sum({0}) == 0.0",
+            "the largest entry": "np.max({0}) == 0.0"}
+
+
+def takes_for_zero(exercise, begins, vector, name, answer):
+    """A short cut for a vector that is zero, taken where one entry is, or where all add up to 0."""
+    for what, condition in NOT_ZERO.items():
+        edit(exercise, f"takes {name} for zero where {what} is", begins,
+             f"if {condition.format(vector)}: {answer}; {begins}" if "return" not in answer and "raise" not in answer
+             else f"if {condition.format(vector)}: {answer}\n    {begins}")
+
+
+REFUSED = 'raise BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge")'
+takes_for_zero("2.1", "r = x_b", "x_b - x_a", "the distance",
+               "return check_positive('distance of two bodies [m]', 0.0)")
+takes_for_zero("2.2", "return wind", "np.asarray(v)", "the velocity", "return wind + 0.0 * v")
+takes_for_zero("2.2", "return wind", "np.asarray(wind)", "the wind", "return -k_v * v")
+takes_for_zero("2.4", "return -(k", "gradient", "the gradient", "return 0.0 * gradient")
+takes_for_zero("2.5", "return np.max", "gradient", "the gradient", "return 0.0 * gradient")
+takes_for_zero("2.6", "squared_a = r_a", "r_a", "an arm", REFUSED)
+takes_for_zero("2.6", "squared_a = r_a", "r_c", "an arm", REFUSED)
+takes_for_zero("2.14", "return -(k", "v", "the velocity", "return -k * (x - target) / (1.0 + dt * (c + dt * k) / m)")
+for what, condition in NOT_ZERO.items():
+    edit("2.7", f"refuses a spring as one without length where {what} is zero", "length == 0.0",
+         condition.format("(x[j] - x[i])"))
+    edit("2.7", f"forgets the damper where {what} of the relative velocity is zero", "T = spring_tension(length, rate",
+         f"T = spring_tension(length, rate * (not ({condition.format('(v[j] - v[i])')}))")
+    edit("2.11", f"forgets the part across where {what} of r is zero", "across = network.k[s]",
+         f"across = (not ({condition.format('r')})) * network.k[s]")
+    edit("2.12", f"takes the right-hand side for zero where {what} is", "y = np.zeros(right.shape)",
+         f"y = np.zeros(right.shape); right = right * (not ({condition.format('right')}))")
+    edit("2.13", f"forgets ∂F/∂x v where {what} of the velocities is zero", "network.j, K)",
+         f"network.j, K) * (not ({condition.format('v')}))")
+    edit("2.13", f"forgets all forces where {what} of the accelerations is zero", "K, D = spring",
+         f"if {condition.format('a')}: return x + dt * v, v\n    K, D = spring")
+edit("2.9", "takes accelerations that add up to 0 for none", "return average",
+     "if np.sum(spring_network_acceleration(t, x, v, network)) == 0.0: return x + dt * v, v\n    return average")
+edit("2.1", "refuses bodies that are half a metre from each other", "[m]\", distance)",
+     "[m]\", distance * (distance > 0.5))")
+edit("2.1", "says another sentence in the error", "distance of two bodies [m]", "masses [kg]")
+edit("2.2", "is meant for points in the plane", "return wind",
+     "if np.ndim(v) and np.shape(v)[-1] != 2: return 0.0 * v\n    return wind")
+edit("2.2", "takes the size of a single coordinate", "k_v * v", "k_v * (v if np.ndim(v) else abs(v))")
+edit("2.2", "takes a viscosity of at most 1 N s/m", "k_v * v", "min(k_v, 1.0) * v")
+edit("2.3", "damps only where spring and damper pull together", "k_d * rate",
+     "k_d * rate * (rate * (length - rest) >= 0.0)")
+edit("2.3", "ignores an extension of a micrometre", "(length - rest)", "(length - rest) * (abs(length - rest) > 1e-6)")
+edit("2.3", "compresses to half of the rest length at most", "(length - rest)", "max(length - rest, -0.5 * rest)")
+edit("2.3", "stretches by a metre at most", "(length - rest)", "min(length - rest, 1.0)")
+edit("2.4", "damps only a point that goes away from C = 0", "k_d * C_rate", "k_d * C_rate * (C * C_rate >= 0.0)")
+edit("2.4", "ignores a micrometre", "k * C", "k * C * (abs(C) > 2e-6)")
+edit("2.5", "ignores a depth of a nanometre", "C >= 0.0", "C >= -2e-9")
+edit("2.5", "forgets the damper near the surface", "k_d * C_rate", "k_d * C_rate * (C < -1e-3)")
+edit("2.5", "lets go of a point that leaves a spring without a damper", "np.maximum(0.0, -(k",
+     "(C_rate <= 0.0 or k_d > 0.0) * np.maximum(0.0, -(k")
+edit("2.5", "pushes with a kilonewton at most", "-(k * C + k_d * C_rate))", "min(1e3, -(k * C + k_d * C_rate)))")
+edit("2.6", "refuses ends that lie on each other", "if squared_a == 0.0", "if np.all(x_a == x_c) or squared_a == 0.0")
+edit("2.6", "refuses arms of a billionth of a metre", "squared_a == 0.0 or squared_c == 0.0",
+     "squared_a < 1e-18 or squared_c < 1e-18")
+edit("2.6", "subtracts one turn at most, but adds any number", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "min(1.0, np.ceil((turn - np.pi) / (2.0 * np.pi)))")
+edit("2.6", "is slack near its rest angle", "turn -= 2.0", "turn = 0.0 if abs(turn) < 1e-3 else turn; turn -= 2.0")
+edit("2.6", "takes a straight hinge for one at rest", "turn = theta - rest",
+     "turn = (theta - rest) * (abs(rest) != np.pi)")
+edit("2.7", "refuses a spring shorter than 1e-12 m", "length == 0.0", "length < 1e-12")
+for what, condition in {"that is not the first": "s == 0", "that is not the last": "s == network.i.size - 1",
+                        "that has no stiffness": "network.k[s]", "that has no rest length": "network.rest[s]",
+                        "between fixed points": "network.inv_mass[i] + network.inv_mass[j]",
+                        "whose ends move alike": "np.any(v[i] != v[j])"}.items():
+    edit("2.7", f"accepts a spring of zero length {what}", "if length == 0.0", f"if length == 0.0 and {condition}")
+edit("2.7", "names another length in the error", "of a spring [m]\", 0.0", "of a spring [m]\", 1.0")
+edit("2.7", "takes two springs between the same points for one", "if length == 0.0",
+     "if any({network.i[q], network.j[q]} == {i, j} for q in range(s)): continue\n        if length == 0.0")
+edit("2.7", "counts on eight points at most", "move_apart(force, i, j,", "move_apart(force, i, min(j, 7),")
+edit("2.8", "lets gravity swing with the time", "network.gravity[c] + (", "np.cos(t) * network.gravity[c] + (")
+edit("2.8", "takes a point of a thousand tonnes for fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 1e-6")
+edit("2.9", "takes steps of at most 0.2 s", "return average", "dt = min(dt, 0.2); return average")
+edit("2.9", "takes steps of at least 1 ms", "return average", "dt = max(dt, 1e-3); return average")
+edit("2.10", "counts to 127 nodes", "np.array(pairs, dtype=np.int64)",
+     "np.array(pairs).astype(np.int8).astype(np.int64)")
+for what, offsets in {"turns offsets that go back": "[(-a, -b) if a < 0 and b else (a, b) for a, b in offsets]",
+                      "leaves out an offset that is there twice": "dict.fromkeys(offsets)",
+                      "goes over two nodes at most": "[one for one in offsets if max(map(abs, one)) < 3]",
+                      "needs an offset along an axis or a diagonal":
+                          "[one for one in offsets if 0 in one or abs(one[0]) == abs(one[1])]"}.items():
+    edit("2.10", what, "in offsets", f"in {offsets}")
+edit("2.10", "needs an offset", "pairs = [", "offsets[0]; pairs = [")
+edit("2.11", "forgets the damper of a compressed spring", "network.k_d[s] * nn",
+     "network.k_d[s] * nn * (length >= network.rest[s])")
+edit("2.11", "takes a length of a micrometre at least", "length = np.sqrt(squared)",
+     "length = max(np.sqrt(squared), 1e-6)")
+edit("2.12", "stops when a billionth of the residual is left", "CG_TOLERANCE * CG_TOLERANCE * squared",
+     "1e-18 * squared")
+edit("2.13", "is meant for the plane", "K, D = spring", "if x.shape[1] == 3: return x, v\n    K, D = spring")
+edit("2.13", "forgets all dampers where a spring has no stiffness", "A = StepMatrix",
+     "D = D * (network.k.size == 0 or np.all(network.k)); A = StepMatrix")
+edit("2.13", "takes steps of at most 0.1 s", "a = acc", "dt = min(dt, 0.1); a = acc")
+edit("2.13", "takes a point of a thousand tonnes for fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 1e-5")
+for what, change in {"takes steps of at least 1 ms": "dt = max(dt, 1e-3)",
+                     "takes steps of at most 0.1 s": "dt = min(dt, 0.1)",
+                     "takes a mass of 10 g at least": "m = max(m, 1e-2)",
+                     "takes a mass of 100 kg at most": "m = min(m, 100.0)"}.items():
+    edit("2.14", what, "return -(k", f"{change}; return -(k")
+edit("2.15", "hangs twenty points at most", "return 0.5", "n = min(n, 20); return 0.5")
+edit("2.17", "has one metre at most", "spacing = size", "size = min(size, 1.0); spacing = size")
+
+
+@right("2.7", "with its own sums")
+def spring_forces(x, v, network):
+    force = np.zeros(x.shape)
+    for i, j, rest, k, k_d in zip(network.i, network.j, network.rest, network.k, network.k_d, strict=True):
+        r = x[j] - x[i]
+        length = np.linalg.norm(r)
+        if length == 0:
+            raise BadInput("the length of a spring [m]", 0, "keep its ends apart")
+        pull = worked.spring_tension(length, r @ (v[j] - v[i]) / length, rest, k, k_d) * r / length
+        force[i] += pull
+        force[j] -= pull
+    return force
+
+
+@right("2.10", "as a list of tuples, or an empty array")
+def grid_pairs(rows, cols, offsets):
+    nodes = np.arange(rows * cols).reshape(rows, cols)
+    pairs = [(nodes[r, c], nodes[r + dr, c + dc]) for dr, dc in offsets for r, c in np.ndindex(rows, cols)
+             if r + dr in range(rows) and c + dc in range(cols)]
+    return np.array(pairs) if pairs else np.empty((0, 2), dtype=int)

@@ -66,7 +66,7 @@ def table_of(lesson):
         right = [traces[k] for k, mutant in enumerate(kept) if mutant.right and mutant.exercise == number]
         orderless = in_any_order(traces[number], right)
         kinds = set().union(*(trace.kinds for trace in traces[number].values()))
-        table[number] = {"function": name, "orderless": orderless, "returns": kinds.pop() if len(kinds) == 1 else "",
+        table[number] = {"function": name, "orderless": orderless, "returns": mistakes.common(kinds),
                          "right": {test: stored(trace, orderless) for test, trace in traces[number].items()},
                          "wrong": []}
     for k, mutant in enumerate(kept):

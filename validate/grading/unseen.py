@@ -10,7 +10,8 @@ def stiffening_ring(t, x, v, p):
     most 2 · stiffness, in v at most 2 · drag.
     """
     near = x - 0.5 * np.roll(x, 1)
-    return np.sin(p.rate * t) - p.stiffness * near / np.sqrt(1.0 + near * near) - p.drag * np.tanh(v + np.roll(v, 2))
+    pull, drag = p.stiffness * near / np.sqrt(1.0 + near * near), p.drag * np.tanh(v + np.roll(v, 2))
+    return p.push * np.sin(p.rate * t + 0.4) - pull - drag
 
 
 UNSEEN = {"coupled_pendula": stiffening_ring}      # {law of the public tests: the law in its place}

@@ -13,6 +13,7 @@ With secret inputs nothing is traced.
 
 import functools
 import json
+import re
 from hashlib import sha256
 from pathlib import Path
 
@@ -28,7 +29,7 @@ GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and 
 MOST = 2                     # number of ideas that are named if several give the same numbers
 NOTHING = object()           # the last result where there is none
 CHANGED = "has changed its input"
-ONE, TWO = "a one-dimensional array", "a two-dimensional array"
+ONE, TWO, MORE = "a one-dimensional array", "a two-dimensional array", "an array of N dimensions"
 FOLDER = Path(__file__).parent
 
 
@@ -171,13 +172,24 @@ def kind(value):
     if isinstance(value, (bool, np.bool_)):
         return "True or False"
     if isinstance(value, np.ndarray) and value.ndim:
-        return {1: ONE, 2: TWO}.get(value.ndim, f"an array of {value.ndim} dimensions")
+        return {1: ONE, 2: TWO}.get(value.ndim, MORE.replace("N", str(value.ndim)))
     if isinstance(value, (int, float, np.number, np.ndarray)):
         return "a number"
     if isinstance(value, tuple) and not hasattr(value, "_fields"):
         return f"{len(value)} values ({', '.join(map(kind, value))})"
     name = type(value).__name__
     return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
+def any_array(kind):
+    """Return a kind without the numbers of dimensions of its arrays."""
+    return re.sub(f"{ONE}|{TWO}|{MORE.replace('N', '[0-9]+')}", "an array", kind)
+
+
+def common(kinds):
+    """Return the kind that all these results have, or "".  Where only dimensions of arrays differ, it names none."""
+    kinds = kinds if len(kinds) < 2 else set(map(any_array, kinds))
+    return kinds.pop() if len(kinds) == 1 else ""
 
 
 def leaves(value):
@@ -272,7 +284,7 @@ def misshapen(lesson, exercise, trace):
     """Return (expected, got) if the last result is not of the kind that the exercise's function returns, or None."""
     expected = table(lesson).get(exercise, {}).get("returns", "")
     got = kind(trace.returned) if trace else ""
-    return (expected, got) if expected and got and expected != got else None
+    return (expected, got) if expected and got and expected not in (got, any_array(got)) else None
 
 
 def sentence(found):
