@@ -258,6 +258,11 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
             close("residual beside the answer [m/s]", lesson.complementarity_residual(A, b, off), expected, ROUND_OFF,
                   given=f"A = {A}, b = {b}, λ = {off}")
         close("residual at the answer [m/s]", lesson.complementarity_residual(A, b, lam), 0.0, ROUND_OFF)
+        for k in range(m):                                               # one contact pulls, and all bodies separate
+            pull = draw(0.5, 2.0) / A[k, k]
+            close("residual where one contact pulls [m/s]",
+                  lesson.complementarity_residual(A, np.abs(A[k]) * pull + 0.1, -pull * np.eye(m)[k]), A[k, k] * pull,
+                  ROUND_OFF, given=f"A = {A}, contact {k}")
 
 
 # ---------------------------------------------------------------------------------------------- sweeps
@@ -536,14 +541,16 @@ def test_contacts_of_any_size_are_solved_side_by_side(lesson, draw):
 def beside_open_ones(draw):
     """(A, b) of seven contacts in any order: two push, and they open the next two, the only neighbours of the others.
 
-    b of the other three is 0, and so are their velocities.
+    b of the other three is 0, and so are their velocities.  All are multiplied by the same size: where A is large,
+    elimination exchanges rows, and each λ_k that a row of A decides gets round-off.
     """
+    size = 10.0 ** draw(1.0, 4.0)
     A = np.diag(np.append(draw(3.0, 4.0, 2), np.append(draw(8.0, 12.0, 2), draw(2.0, 4.0, 3))))
     A[2:4, :2], A[2:4, 4:] = draw(1.0, 2.0, (2, 2)), draw(-1.0, 1.0, (2, 3))
     A[:2, 2:4], A[4:, 2:4] = A[2:4, :2].T, A[2:4, 4:].T
     b = np.concatenate((-draw(5.0, 9.0, 2), -draw(0.2, 1.0, 2), np.zeros(3)))
     order = np.argsort(draw(0.0, 1.0, 7))
-    return A[np.ix_(order, order)], b[order]
+    return size * A[np.ix_(order, order)], size * b[order]
 
 
 @exercise("9.8", points=0.125,
@@ -561,10 +568,10 @@ def test_contacts_that_neither_push_nor_separate_do_not_keep_the_solver_busy(les
         b = np.append(-A[:2, :2] @ lam[:2], 0.0)
         close("λ where the impulses of two contacts cancel at a third [N s]", lesson.solve_lcp(A, b), lam, SOLVED,
               given=f"A = {A}, b = {b}")
-    for k in range(40):
+    for k in range(160):
         m = 2 + k % 5
-        A, b = beside_open_ones(draw) if k % 2 else (positive_definite(draw, m), draw(-3.0, 3.0, m))
-        b = b * (draw(0.0, 1.0, len(b)) < 0.5) if k % 4 == 0 else b
+        A, b = beside_open_ones(draw) if k % 4 else (positive_definite(draw, m), draw(-3.0, 3.0, m))
+        b = b * (draw(0.0, 1.0, len(b)) < 0.5) if k % 8 == 0 else b
         close("λ where b is 0 at some contacts [N s]", lesson.solve_lcp(A, b), enumerated(A, b), SOLVED,
               given=f"A = {A}, b = {b}")
 

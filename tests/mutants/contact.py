@@ -929,6 +929,8 @@ right("9.8", "by twice as many rounds")(murty(rounds=2 * worked.MAX_PIVOTS))
 
 edits("9.8", {
     "takes a contact for wrong that separates by round-off": ("u[k] < -epsilon[k]", "u[k] < epsilon[k]"),
+    "leaves the impulses of contacts that do not push at the round-off of solve":
+        ("np.where(pushes, A[k], 0.0)", "A[k]"),
     "names the residual without impulses when it gives up": ("complementarity_residual(A, b, lam)",
                                                              "complementarity_residual(A, b, 0.0 * lam)"),
     "names the largest impulse when it gives up": ("complementarity_residual(A, b, lam)", "np.max(np.abs(lam))"),
