@@ -5,6 +5,7 @@ The truths are closed forms, most of them evaluated at complex inputs s + i h: t
 derivative, up to h² = 1e-40.
 """
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,8 @@ import pytest
 from solutions.checks import BadInput, Diverged
 from validate.grading.expect import NotYet, between, choice, close, instance, raises, truth
 from validate.reference import choices
+
+from .zeros import nearly_zero
 
 exercise = pytest.mark.exercise
 H = 1e-20                    # of the complex steps in these tests
@@ -49,13 +52,27 @@ def wave(s, p):
 
 
 def place(s, p):
-    """Place (2,) and height above a parabola: an array that depends on one number."""
+    """An array of any shape that depends on one number."""
     return p * s * s * s
+
+
+def places(draw):
+    """(size, s, p) for `place`: arrays of any shape, entries that are 0 or add up to 0, and s of all sizes."""
+    for shape in ((2,), (1,), (2, 3), (2, 2), (1, 3), (3, 1), (1, 1), (2, 3, 2)):
+        yield 1.0, draw(-2.0, -0.5), draw(-2.0, 2.0, shape)
+    for shape in ((3,), (3, 2)):
+        yield 1.0, 0.0, draw(-2.0, 2.0, shape)
+    for p in (draw.sparse(-2.0, 2.0, 8), np.zeros(2), *nearly_zero(draw, 2), *nearly_zero(draw, 3)):
+        yield 1.0, draw(-2.0, 2.0), p
+    for size in (1e-8, 1e-4, 1e4, 1e8):
+        yield size, draw(-2.0, 2.0), draw(-2.0, 2.0, 2)
+        yield size, 0.0, draw(-2.0, 2.0, 2)
 
 
 @exercise("12.1", points=0.5, hint="(f(s + h) − f(s − h)) / 2h: the distance between the two inputs is 2h")
 def test_a_central_difference_of_a_cubic_is_off_by_a_sixth_of_its_third_derivative(lesson, draw):
-    for h, s in ((draw(0.1, 0.5), draw(0.5, 2.0)), (draw(1.0, 2.0), draw(0.5, 2.0)), (draw(0.1, 0.5), 0.0)):
+    for h, s in ((draw(0.1, 0.5), draw(0.5, 2.0)), (draw(1.0, 2.0), draw(0.5, 2.0)), (draw(0.1, 0.5), 0.0),
+                 (draw(0.1, 0.5), draw(-2.0, -0.5))):
         p = draw(0.5, 2.0, 4)
         slope = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s
         close("central difference of a cubic", lesson.central_difference(cubic, s, h, p), slope + h * h * p[3],
@@ -64,45 +81,54 @@ def test_a_central_difference_of_a_cubic_is_off_by_a_sixth_of_its_third_derivati
 
 @exercise("12.1", points=0.5, hint="f may return an array: subtract and divide it as a whole")
 def test_a_central_difference_has_the_shape_of_its_function(lesson, draw):
-    for s, p in ((draw(-2.0, -0.5), draw(-2.0, 2.0, 2)), (draw(-2.0, -0.5), draw(-2.0, 2.0, 1)),
-                 (0.0, draw(-2.0, 2.0, 3)), (draw(-2.0, -0.5), draw.sparse(-2.0, 2.0, 8)), (0.0, np.zeros(2))):
+    for size, s, p in places(draw):
         h = draw(0.1, 0.5)
-        close("central difference of an array", lesson.central_difference(place, s, h, p), (3.0 * s * s + h * h) * p,
-              ROUND_OFF, given=f"s = {s}, h = {h}, factors {p}")
+        got = lesson.central_difference(place, size * s, size * h, p)
+        close("central difference of an array, over the square of the size of s and h", np.asarray(got) / size**2,
+              (3.0 * s * s + h * h) * p, ROUND_OFF, given=f"s = {size * s}, h = {size * h}, factors {p}")
 
 
 @exercise("12.2", points=1, hint="set the derivative of h² |f‴|/6 + round_off |f|/h to zero: h³ = 3 round_off |f|/|f‴|")
 def test_the_best_step_is_where_the_bound_is_flat(lesson, draw):
-    for round_off in (2.2e-16, 10.0 ** draw(-9.0, -3.0)):
-        value, third = draw(0.1, 9.0), draw(0.1, 9.0)
-        h = float(lesson.best_step(value, third, round_off))
-        given = f"f = {value}, third derivative {third}, round-off {round_off}"
-        between("best step, a number above zero", h, 1e-12, 10.0, given=given)
-        close("slope of the truncation error over that of the round-off [-]",
-              (h * third / 3.0) / (round_off * value / h**2), 1.0, ROUND_OFF, given=given)
+    """With f, f‴ and the round-off of all sizes: f may be 1e-12 m, and f‴ 1e12 m/s³."""
+    for of_f, of_third in ((1.0, 1.0), *zip(10.0 ** np.arange(-12, 13, 3.0), 10.0 ** -np.arange(-12, 13, 3.0),
+                                            strict=True), *itertools.product((1e-12, 1.0, 1e12), repeat=2)):
+        for round_off in (2.2e-16, 10.0 ** draw(-9.0, -3.0)):
+            value, third = of_f * draw(0.1, 9.0), of_third * draw(0.1, 9.0)
+            h = float(lesson.best_step(value, third, round_off))
+            given = f"f = {value}, third derivative {third}, round-off {round_off}"
+            between("best step, a number above zero", h, 1e-16, 1e10, given=given)
+            close("slope of the truncation error over that of the round-off [-]",
+                  (h * third / 3.0) / (round_off * value / h**2), 1.0, ROUND_OFF, given=given)
 
 
 @exercise("12.2", points=0.5, hint="only the sizes of f and of f‴ count: take np.abs of both")
 def test_the_best_step_is_the_same_for_either_sign(lesson, draw):
-    value, third, round_off = draw(0.1, 9.0), draw(0.1, 9.0), 1e-12
-    h = (3.0 * round_off * value / third) ** (1.0 / 3.0)
-    for sign, other in ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
-        close("best step over what it should be [-]", lesson.best_step(sign * value, other * third, round_off) / h, 1.0,
-              ROUND_OFF, given=f"f = {sign * value}, third derivative {other * third}, round-off {round_off}")
+    for size, other_size in itertools.product((1e-12, 1e-3, 1.0, 1e12), repeat=2):
+        value, third, round_off = size * draw(0.1, 9.0), other_size * draw(0.1, 9.0), 10.0 ** draw(-15.0, -3.0)
+        h = (3.0 * round_off * value / third) ** (1.0 / 3.0)
+        for sign, other in ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
+            close("best step over what it should be [-]", lesson.best_step(sign * value, other * third, round_off) / h,
+                  1.0, ROUND_OFF, given=f"f = {sign * value}, third derivative {other * third}, round-off {round_off}")
 
 
 @exercise("12.2", points=0.5, hint="where f‴ is 0 there is no truncation error: return np.inf")
 def test_the_best_step_of_a_parabola_is_infinite(lesson, draw):
-    for value in (draw(0.1, 9.0), -draw(0.1, 9.0)):
-        h = float(lesson.best_step(value, 0.0, 1e-15))
+    """It is finite for the smallest third derivative that is not 0."""
+    for size in (1.0, -1.0, 1e-12, -1e-12, 1e12, -1e12):
+        value, round_off = size * draw(0.1, 9.0), 10.0 ** draw(-15.0, -3.0)
+        h = float(lesson.best_step(value, 0.0, round_off))
         truth("the best step is infinite where the third derivative is 0", h == np.inf, True, given=f"f = {value}")
-        h = float(lesson.best_step(value, draw(0.1, 9.0), 1e-15))
-        between("best step where the third derivative is not 0", h, 1e-8, 1.0, given=f"f = {value}")
+        for small in (1.0, 1e-12, 1e-30, 1e-100):
+            third = small * draw(0.1, 9.0)
+            h = float(lesson.best_step(value, third, round_off))
+            between("best step times ∛|f‴|, where the third derivative is not 0", h * np.cbrt(third), 1e-10, 1e4,
+                    given=f"f = {value}, third derivative {third}")
 
 
 @exercise("12.3", points=0.5, hint="np.imag(f(s + 1j * h, p)) / h: no difference, so no digits are lost")
 def test_a_complex_step_gives_all_digits(lesson, draw):
-    for h, s in ((1e-20, draw(0.5, 1.5)), (1e-100, draw(0.5, 1.5)), (1e-20, 0.0)):
+    for h, s in ((1e-20, draw(0.5, 1.5)), (1e-100, draw(0.5, 1.5)), (1e-20, 0.0), (1e-20, draw(-1.5, -0.5))):
         p = draw(0.5, 1.5, 3)
         slope = p[0] * np.exp(p[1] * s) * (p[1] * np.sin(p[2] * s) + p[2] * np.cos(p[2] * s))
         close("derivative by a complex step", lesson.complex_step(wave, s, h, p), slope, ROUND_OFF,
@@ -111,11 +137,11 @@ def test_a_complex_step_gives_all_digits(lesson, draw):
 
 @exercise("12.3", points=0.5, hint="divide the imaginary part by h; f may return an array")
 def test_a_long_complex_step_of_a_cubic_is_off_by_the_negative_of_a_difference(lesson, draw):
-    for s, p in ((draw(-2.0, -0.5), draw(-2.0, 2.0, 2)), (draw(-2.0, -0.5), draw(-2.0, 2.0, 1)),
-                 (0.0, draw(-2.0, 2.0, 3)), (draw(-2.0, -0.5), draw.sparse(-2.0, 2.0, 8)), (0.0, np.zeros(2))):
+    for size, s, p in places(draw):
         h = draw(0.1, 0.5)
-        close("complex step of an array", lesson.complex_step(place, s, h, p), (3.0 * s * s - h * h) * p, ROUND_OFF,
-              given=f"s = {s}, h = {h}, factors {p}")
+        got = lesson.complex_step(place, size * s, size * h, p)
+        close("complex step of an array, over the square of the size of s and h", np.asarray(got) / size**2,
+              (3.0 * s * s - h * h) * p, ROUND_OFF, given=f"s = {size * s}, h = {size * h}, factors {p}")
 
 
 # ---------------------------------------------------------------------------------------------- steps

@@ -34,6 +34,18 @@ edit("12.1", "always takes a very short step", "(f(s + h, p) - f(s - h, p)) / (2
      "(f(s + 1e-6, p) - f(s - 1e-6, p)) / 2e-6")
 edit("12.1", "takes a forward difference at s = 0", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
      "(f(s + h, p) - f(s - h, p)) / (2.0 * h) if s != 0.0 else (f(s + h, p) - f(s, p)) / h")
+WHOLE = "(f(s + h, p) - f(s - h, p)) / (2.0 * h)"
+edit("12.1", "flattens an array", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) else {WHOLE}")
+edit("12.1", "flattens an array with two axes", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) == 2 else {WHOLE}")
+edit("12.1", "turns an array with two axes over", WHOLE, f"np.transpose({WHOLE})")
+edit("12.1", "returns the first row of an array with two axes", WHOLE,
+     f"({WHOLE})[0] if np.ndim(f(s, p)) > 1 else {WHOLE}")
+edit("12.1", "leaves out axes of one entry", WHOLE, f"np.squeeze({WHOLE}) if np.ndim(f(s, p)) > 1 else {WHOLE}")
+edit("12.1", "takes no step below a thousandth", WHOLE, WHOLE.replace("h", "max(h, 1e-3)"))
+edit("12.1", "takes no step above a thousand", WHOLE, WHOLE.replace("h", "min(h, 1e3)"))
+edit("12.1", "never divides by less than 1e-6", "(2.0 * h)", "max(2.0 * h, 1e-6)")
+edit("12.1", "takes the size of s", WHOLE, WHOLE.replace("f(s", "f(abs(s)"))
+edit("12.1", "rounds what is below 1e-12 to 0", WHOLE, f"np.round({WHOLE}, 12)")
 
 
 # 12.2 -----------------------------------------------------------------------------------------------------------
@@ -63,6 +75,20 @@ edit("12.2", "returns 1 where the third derivative is 0", "return np.inf", "retu
 edit("12.2", "always uses the round-off of floats", "3.0 * round_off", "3.0 * 2.2e-16")
 edit("12.2", "takes the root of the round-off only",
      "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)", "np.cbrt(round_off)")
+for small in (0.05, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-30, 1e-80):
+    edit("12.2", f"takes a third derivative below {small:g} for 0", "third == 0.0", f"np.abs(third) < {small}")
+edit("12.2", "takes a negative third derivative for 0", "third == 0.0", "third <= 0.0")
+edit("12.2", "takes a third derivative near 0 for 0", "third == 0.0", "np.isclose(third, 0.0)")
+edit("12.2", "adds a small number to the third derivative", "/ np.abs(third)", "/ (np.abs(third) + 1e-15)")
+edit("12.2", "adds a small number to f", "* np.abs(value)", "* (np.abs(value) + 1e-15)")
+edit("12.2", "takes an f below 1 for 1", "np.abs(value)", "np.maximum(np.abs(value), 1.0)")
+edit("12.2", "takes an f above 1000 for 1000", "np.abs(value)", "np.minimum(np.abs(value), 1e3)")
+edit("12.2", "takes a third derivative above 1000 for 1000", "/ np.abs(third)", "/ np.minimum(np.abs(third), 1e3)")
+edit("12.2", "takes no step above 1", "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)",
+     "min((3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0), 1.0)")
+edit("12.2", "takes no step below 1e-8", "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)",
+     "max((3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0), 1e-8)")
+edit("12.2", "returns a large number where the third derivative is 0", "return np.inf", "return 1e300")
 
 
 # 12.3 -----------------------------------------------------------------------------------------------------------
@@ -87,6 +113,18 @@ edit("12.3", "returns one number for an array", "np.imag(f(s + 1j * h, p))",
      "np.sum(np.imag(f(s + 1j * h, p)))")
 edit("12.3", "takes a real difference at s = 0", "np.imag(f(s + 1j * h, p)) / h",
      "np.imag(f(s + 1j * h, p)) / h if s != 0.0 else (f(s + h, p) - f(s - h, p)) / (2.0 * h)")
+WHOLE = "np.imag(f(s + 1j * h, p)) / h"
+edit("12.3", "flattens an array", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) else {WHOLE}")
+edit("12.3", "flattens an array with two axes", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) == 2 else {WHOLE}")
+edit("12.3", "turns an array with two axes over", WHOLE, f"np.transpose({WHOLE})")
+edit("12.3", "returns the first row of an array with two axes", WHOLE,
+     f"({WHOLE})[0] if np.ndim(f(s, p)) > 1 else {WHOLE}")
+edit("12.3", "leaves out axes of one entry", WHOLE, f"np.squeeze({WHOLE}) if np.ndim(f(s, p)) > 1 else {WHOLE}")
+for most in ("1e-6", "1e3"):
+    edit("12.3", f"takes no step above {most}", WHOLE, WHOLE.replace(" h", f" min(h, {most})"))
+edit("12.3", "takes no step below 1e-30", WHOLE, WHOLE.replace("* h", "* max(h, 1e-30)"))
+edit("12.3", "takes the size of s", "f(s +", "f(abs(s) +")
+edit("12.3", "rounds what is below 1e-12 to 0", WHOLE, f"np.round({WHOLE}, 12)")
 
 
 # 12.4 -----------------------------------------------------------------------------------------------------------
