@@ -33,6 +33,20 @@ def unit(draw, d):
     return n / np.linalg.norm(n)
 
 
+def mostly_zero(draw, *shapes):
+    """Arrays of these shapes, one of which is nearly zero: the others are full or all 0 in turn, then nearly zero, too.
+
+    What is taken for zero by its sum, its product or one entry shows here.
+    """
+    nearly = [[y.reshape(shape) for y in nearly_zero(draw, int(np.prod(shape)))] for shape in shapes]
+    for k, choices_of in enumerate(nearly):
+        for number, y in enumerate(choices_of):
+            rest = [np.zeros(shape) if number % 2 else draw(-1.0, 1.0, shape) for shape in shapes]
+            yield *rest[:k], y, *rest[k + 1:]
+    for k in range(max(map(len, nearly))):
+        yield tuple(choices_of[k % len(choices_of)] for choices_of in nearly)
+
+
 def slopes(function, *inputs):
     """Derivatives (…, m) of a function; an input that depends on s is a pair (value, its derivatives (…, m))."""
     def at(k):
@@ -151,7 +165,7 @@ class Spring(NamedTuple):
     k: float                 # [1/s²]
     c: float                 # [1/s]
     load: np.ndarray         # (d,) [m/s²]
-    rate: float              # of the load [1/s]
+    rate: float              # of the load [1/s]; at t and at −t, the load differs
     S: np.ndarray            # (d, d) [-]
     G: np.ndarray            # (d, d) [-]
     k_s: np.ndarray          # (m,) derivatives of k with respect to the inputs
@@ -161,7 +175,7 @@ class Spring(NamedTuple):
 
 def pull(t, x, v, p):
     """Acceleration (d,) of a Spring."""
-    return p.load * np.cos(p.rate * t) - p.k * (p.S @ x + (x @ x) * x) - p.c * (p.G @ v + (v @ v) * v)
+    return p.load * np.cos(p.rate * t + 1.0) - p.k * (p.S @ x + (x @ x) * x) - p.c * (p.G @ v + (v @ v) * v)
 
 
 def pull_derivatives(t, x, v, p):
@@ -169,7 +183,7 @@ def pull_derivatives(t, x, v, p):
     one = np.eye(x.size)
     a_x = -p.k * (p.S + (x @ x) * one + 2.0 * np.outer(x, x))
     a_v = -p.c * (p.G + (v @ v) * one + 2.0 * np.outer(v, v))
-    a_s = (np.cos(p.rate * t) * p.load_s - np.outer(p.S @ x + (x @ x) * x, p.k_s)
+    a_s = (np.cos(p.rate * t + 1.0) * p.load_s - np.outer(p.S @ x + (x @ x) * x, p.k_s)
            - np.outer(p.G @ v + (v @ v) * v, p.c_s))
     return a_x, a_v, a_s
 
@@ -193,6 +207,34 @@ def springs(draw):
         yield p, x, v, np.zeros((d, m)), np.zeros((d, m))
         yield p, np.zeros(d), np.zeros(d), dx, dv
         yield p._replace(k_s=np.zeros(m), c_s=np.zeros(m), load_s=np.zeros((d, m))), x, v, dx, dv
+    for d, m in ((3, 1), (2, 2)):
+        p, _, _, full_dx, full_dv = spring(draw, d, m)
+        q = p._replace(k_s=np.zeros(m), c_s=np.zeros(m))
+        for x, v, load, dx, dv, load_s in mostly_zero(draw, (d,), (d,), (d,), (d, m), (d, m), (d, m)):
+            yield q._replace(load=load, load_s=load_s), x, v, dx, dv
+    rest, still = np.zeros(2), np.zeros((2, 2))
+    for S, G in mostly_zero(draw, (2, 2), (2, 2)):                       # at rest, a_x and a_v are −k S and −c G
+        yield q._replace(S=S, G=G, load=rest, load_s=still), rest, rest, full_dx, full_dv
+    for k_s, c_s in mostly_zero(draw, (2,), (2,)):
+        yield p._replace(k_s=k_s, c_s=c_s, load_s=still), draw(0.5, 1.0, 2), draw(0.5, 1.0, 2), still, still
+
+
+def other_units(draw):
+    """Springs as of `spring` in units of other sizes: the Spring and its state, then the units of x, time and s."""
+    for metre, second, unit_of_s in ((1e-9, 1.0, 1.0), (1.0, 1.0, 1e-15), (1.0, 1.0, 1e12), (1e-6, 1e3, 1e-6),
+                                     (1.0, 1e9, 1.0)):
+        p, x, v, dx, dv = spring(draw, 2, 3)
+        p = p._replace(k=p.k / second**2, c=p.c / second, load=metre / second**2 * p.load, rate=p.rate / second,
+                       k_s=unit_of_s / second**2 * p.k_s, c_s=unit_of_s / second * p.c_s,
+                       load_s=unit_of_s * metre / second**2 * p.load_s)
+        speed = metre / second
+        yield p, metre * x, speed * v, unit_of_s * metre * dx, unit_of_s * speed * dv, metre, second, unit_of_s
+
+
+def times_and_steps(draw):
+    """(t, dt) without end: before and after t = 0, soon and late, and every seventh step a very short one."""
+    for t, short in itertools.cycle(itertools.product((1.0, -1.0, 100.0, -100.0, 0.0), np.arange(7) == 6)):
+        yield t * draw(0.3, 1.0), (1e-6 if short else 1.0) * draw(0.1, 0.4)
 
 
 def moved(p, x, v, dx, dv, k):
@@ -215,12 +257,20 @@ def explicit(t, p, x, v, dt):
 
 
 def implicit(t, p, x, v, dt):
-    """The velocity at the end of the step by Newton's method at complex inputs, with the exact matrix."""
-    w = v + 0j
+    """The velocity at the end of the step by Newton's method at complex inputs, with the exact matrix.
+
+    After a correction by 1e-8 of it, and of its derivatives, the next one is round-off.
+    """
+    w, last = v + 0j, False
     for _ in range(12):
         a_x, a_v, _ = pull_derivatives(t + dt, x + dt * w, w, p)
-        residual = w - v - dt * pull(t + dt, x + dt * w, w, p)
-        w = w - np.linalg.solve(np.eye(x.size) - dt * a_v - dt * dt * a_x, residual)
+        change = np.linalg.solve(np.eye(x.size) - dt * a_v - dt * dt * a_x,
+                                 w - v - dt * pull(t + dt, x + dt * w, w, p))
+        w = w - change
+        if last:
+            break
+        last = all(np.abs(by).max() <= 1e-8 * np.abs(of).max() for by, of in ((change.real, w.real),
+                                                                              (change.imag, w.imag)))
     return x + dt * w, w
 
 
@@ -232,10 +282,22 @@ def four(result):
     return result
 
 
-def close_tangents(result, expected, tolerance, given):
-    for name, got, right in zip(("position x [m]", "velocity v [m/s]", "sensitivity dx", "sensitivity dv"),
-                                four(result), expected, strict=True):
-        close(f"{name} after a step", got, right, tolerance, given=given)
+def close_tangents(result, expected, tolerance, sizes, given):
+    """sizes: of x, v, dx and dv."""
+    names = "position x [m]", "velocity v [m/s]", "sensitivity dx", "sensitivity dv"
+    for name, got, right, size in zip(names, four(result), expected, sizes, strict=True):
+        close(f"{name} after a step", got, right, tolerance * size, given=given)
+
+
+def check_tangents(draw, step, exact, tolerance):
+    """Compare a step of a lesson with the derivatives of the exact step, which is evaluated at complex inputs."""
+    cases = itertools.chain(((*case, 1.0, 1.0, 1.0) for case in springs(draw)), other_units(draw))
+    for (p, x, v, dx, dv, metre, second, unit_of_s), (t, dt) in zip(cases, times_and_steps(draw), strict=False):
+        t, dt, speed = second * t, second * dt, metre / second
+        got = step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
+        close_tangents(got, tangents(exact, t, p, x, v, dx, dv, dt), tolerance,
+                       (metre, speed, unit_of_s * metre, unit_of_s * speed),
+                       given=f"x = {x} m, v = {v} m/s, inputs: {dx.shape[1]}, t = {t} s, dt = {dt} s")
 
 
 def oscillation(t, x, v, k, c):
@@ -289,12 +351,7 @@ def errors_of_tangents(step, draw):
           hint="differentiate both lines: dv gains dt (a_x dx + a_v dv + a_s) with the old dx and dv; dx gains dt times"
                " the new dv")
 def test_the_tangents_are_the_derivatives_of_the_step(lesson, draw):
-    t = draw(0.3, 1.0)
-    for p, x, v, dx, dv in springs(draw):
-        dt = draw(0.1, 0.5)
-        got = lesson.tangent_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
-        close_tangents(got, tangents(explicit, t, p, x, v, dx, dv, dt), ROUND_OFF,
-                       given=f"x = {x} m, v = {v} m/s, inputs: {dx.shape[1]}, t = {t} s, dt = {dt} s")
+    check_tangents(draw, lesson.tangent_step, explicit, ROUND_OFF)
 
 
 @exercise("12.4", points=0.5,
@@ -310,6 +367,20 @@ def test_the_tangents_of_an_oscillator_approach_those_of_its_motion(lesson, draw
     between("error after 800 steps over that after 400 [-]", np.abs(twice).max() / size, 0.45, 0.55)
 
 
+class Drive(NamedTuple):
+    """A drive that becomes stronger with the velocity."""
+    strength: float
+
+
+def runaway(t, x, v, p):
+    """No w solves w = v + dt s (1 + w²) once 4 s dt (v + s dt) > 1."""
+    return p.strength * (1.0 + v * v)
+
+
+def runaway_derivatives(t, x, v, p):
+    return np.zeros((x.size, x.size)), np.diag(2.0 * p.strength * v), np.zeros((x.size, 2))
+
+
 def after_three_implicit_steps(x, v, k, c, dt):
     """State (2,) of ẍ = −k x − c ẋ after three steps of implicit Euler; all but dt may be complex."""
     return np.linalg.matrix_power(np.linalg.inv(np.eye(2) - dt * np.array([[0.0, 1.0], [-k, -c]])), 3) @ (x, v)
@@ -318,12 +389,12 @@ def after_three_implicit_steps(x, v, k, c, dt):
 @exercise("12.5", points=1,
           hint="(1 − dt a_v − dt² a_x) dvₙ₊₁ = dvₙ + dt (a_x dxₙ + a_s), with derivatives at t + dt and the new x, v")
 def test_the_tangents_are_the_derivatives_of_the_implicit_step(lesson, draw):
-    t = draw(0.3, 1.0)
-    for p, x, v, dx, dv in springs(draw):
-        dt = draw(0.1, 0.4)
-        got = lesson.tangent_implicit_step(pull, pull_derivatives, t, x, v, dx, dv, dt, p)
-        close_tangents(got, tangents(implicit, t, p, x, v, dx, dv, dt), SOLVED,
-                       given=f"x = {x} m, v = {v} m/s, inputs: {dx.shape[1]}, t = {t} s, dt = {dt} s")
+    check_tangents(draw, lesson.tangent_implicit_step, implicit, SOLVED)
+    for d in (1, 2):
+        p, dt, x, v = Drive(draw(0.5, 2.0)), draw(5.0, 15.0), draw(-1.0, 1.0, d), draw(0.0, 1.0, d)
+        raises("a step without a solution", Diverged, lesson.tangent_implicit_step, runaway, runaway_derivatives, 0.0,
+               x, v, draw(-1.0, 1.0, (d, 2)), draw(-1.0, 1.0, (d, 2)), dt, p, naming=[dt],
+               thing="Newton's method did not converge at dt")
 
 
 @exercise("12.5", points=1, hint="solve one linear system for dvₙ₊₁, with a_x, a_v and a_s at the new x and v;"

@@ -10,6 +10,18 @@ from . import collection, of_variants, variants
 wrong, right, edit, MUTANTS = collection(worked)
 wrongs, alike = of_variants(wrong)
 
+HOW = {"its sum": "{0}.sum() != 0.0", "its first entry": "{0}.flat[0] != 0.0", "its last entry": "{0}.flat[-1] != 0.0",
+       "its largest entry": "{0}.max() > 0.0", "a fixed small number": "np.abs({0}).max() > 1e-8"}
+
+
+def by_part(exercise, what, y, old, new, hows=tuple(HOW)):
+    """Wrong answers that take y for zero by less than all of it; KEPT in `new` is whether they do not."""
+    for how in hows:
+        edit(exercise, f"takes {what} for zero by {how}", old, new.replace("KEPT", f"({HOW[how].format(y)})"))
+
+
+TIMES = {"the size of": "abs(t)", "at most 1 for": "min(t, 1.0)", "at least 0 for": "max(t, 0.0)", "0 for": "0.0"}
+
 
 # 12.1 -----------------------------------------------------------------------------------------------------------
 @right("12.1", "as the mean of a difference ahead and one behind")
@@ -163,6 +175,28 @@ edit("12.4", "moves x with the old velocity", "return x + dt * v_new, v_new", "r
 edit("12.4", "differentiates explicit Euler", "dv + dt * (a_x @ dx + a_v @ dv + a_s)",
      "dv + dt * (a_x @ dx + a_v @ dv + a_s); dx = dx - dt * dt * (a_x @ dx + a_v @ dv + a_s)")
 edit("12.4", "leaves the tangents as they are where dx and dv are 0", " + a_s)", " + (dx.any() or dv.any()) * a_s)")
+by_part("12.4", "dx", "dx", "a_x @ dx", "KEPT * (a_x @ dx)")
+by_part("12.4", "dv", "dv", "a_v @ dv", "KEPT * (a_v @ dv)")
+by_part("12.4", "a_s", "a_s", " + a_s)", " + KEPT * a_s)")
+by_part("12.4", "a_x", "a_x", "a_x @ dx", "KEPT * (a_x @ dx)")
+by_part("12.4", "a_v", "a_v", "a_v @ dv", "KEPT * (a_v @ dv)")
+by_part("12.4", "x", "x", "return x + dt", "return KEPT * x + dt")
+by_part("12.4", "v", "v", "v_new = v + dt", "v_new = KEPT * v + dt")
+by_part("12.4", "the old dx", "dx", "dx + dt * dv_new, dv_new", "KEPT * dx + dt * dv_new, dv_new")
+by_part("12.4", "the old dv", "dv", "dv + dt * (a_x", "KEPT * dv + dt * (a_x")
+by_part("12.4", "the new velocity", "v_new", "return x + dt * v_new", "return x + KEPT * dt * v_new", ["its sum"])
+by_part("12.4", "the acceleration", "acceleration(t, x, v, p)", "dt * acceleration(t, x, v, p)",
+        "KEPT * dt * acceleration(t, x, v, p)")
+by_part("12.4", "dx and dv together", "(dx + dv)", " + a_s)", " + KEPT * a_s)")
+for what, time in TIMES.items():
+    edit("12.4", f"takes {what} the time of the derivatives", "derivatives(t,", f"derivatives({time},")
+    edit("12.4", f"takes {what} the time of the acceleration", "acceleration(t,", f"acceleration({time},")
+edit("12.4", "takes no step below a thousandth", "v_new = v +", "dt = max(dt, 1e-3); v_new = v +")
+edit("12.4", "takes the step of the tangents for a thousandth at least", "dv + dt *", "dv + max(dt, 1e-3) *")
+edit("12.4", "rounds the tangents to twelve digits", "dv_new = dv + dt * (a_x @ dx + a_v @ dv + a_s)",
+     "dv_new = np.round(dv + dt * (a_x @ dx + a_v @ dv + a_s), 12)")
+edit("12.4", "moves only the first input", " + a_s)", " + a_s * (np.arange(a_s.shape[1]) == 0))")
+edit("12.4", "takes the derivatives at the place at rest", "derivatives(t, x, v, p)", "derivatives(t, x, 0.0 * v, p)")
 
 
 # 12.5 -----------------------------------------------------------------------------------------------------------
@@ -202,6 +236,34 @@ edit("12.5", "moves the state by an explicit step", "implicit_euler_step(acceler
      "x + dt * v, v + dt * acceleration(t, x, v, p)")
 edit("12.5", "leaves the tangents as they are where dx and dv are 0", "(a_x @ dx + a_s)",
      "(a_x @ dx + (dx.any() or dv.any()) * a_s)")
+RIGHT = "dv + dt * (a_x @ dx + a_s)"
+by_part("12.5", "dx", "dx", "a_x @ dx", "KEPT * (a_x @ dx)")
+by_part("12.5", "a_s", "a_s", " + a_s))", " + KEPT * a_s))")
+by_part("12.5", "dv", "dv", RIGHT, f"KEPT * {RIGHT}")
+by_part("12.5", "a_x", "a_x", " - dt * dt * a_x", " - KEPT * dt * dt * a_x")
+by_part("12.5", "a_v", "a_v", " - dt * a_v", " - KEPT * dt * a_v")
+by_part("12.5", "the right-hand side", f"({RIGHT})", RIGHT, f"KEPT * ({RIGHT})")
+by_part("12.5", "dx and dv together", "(dx + dv)", " + a_s))", " + KEPT * a_s))")
+by_part("12.5", "the old dx", "dx", "dx + dt * dv_new, dv_new", "KEPT * dx + dt * dv_new, dv_new")
+by_part("12.5", "x", "x", "step(acceleration, t, x,", "step(acceleration, t, KEPT * x,", ["its sum", "its last entry"])
+by_part("12.5", "v", "v", "step(acceleration, t, x, v,", "step(acceleration, t, x, KEPT * v,",
+        ["its sum", "its last entry"])
+for what, time in TIMES.items():
+    edit("12.5", f"takes {what} the time of the derivatives", "derivatives(t +", f"derivatives({time} +")
+    edit("12.5", f"takes {what} the time of the step", "step(acceleration, t,", f"step(acceleration, {time},")
+edit("12.5", "takes the size of the time at the end of the step", "derivatives(t + dt,", "derivatives(abs(t + dt),")
+edit("12.5", "takes the step of the tangents for a thousandth at least", "    dv_new =",
+     "    dt = max(dt, 1e-3); dv_new =")
+edit("12.5", "rounds the tangents to twelve digits", "return x_new, v_new, dx + dt * dv_new, dv_new",
+     "return x_new, v_new, dx + dt * dv_new, np.round(dv_new, 12)")
+edit("12.5", "takes the derivatives at the old velocity", "derivatives(t + dt, x_new, v_new, p)",
+     "derivatives(t + dt, x_new, v, p)")
+edit("12.5", "takes the derivatives at the old position", "derivatives(t + dt, x_new, v_new, p)",
+     "derivatives(t + dt, x, v_new, p)")
+edit("12.5", "moves the state where no step is found",
+     "x_new, v_new = implicit_euler_step(acceleration, t, x, v, dt, p)",
+     "try:\n        x_new, v_new = implicit_euler_step(acceleration, t, x, v, dt, p)\n"
+     "    except Diverged:\n        x_new, v_new = x, v")
 
 
 # 12.6 -----------------------------------------------------------------------------------------------------------
