@@ -27,9 +27,14 @@ SIZES = ((1, 1), (1, 3), (2, 1), (2, 2), (3, 2), (3, 3))                 # coord
 LARGER = (*SIZES, (7, 2), (2, 8))
 
 
+def full(draw, shape):
+    """An array of numbers of either sign, none of them near 0."""
+    return draw(0.3, 1.0, shape) * np.where(draw(-1.0, 1.0, shape) < 0.0, -1.0, 1.0)
+
+
 def unit(draw, d):
     """A unit vector with no entry near 0."""
-    n = draw(0.3, 1.0, d) * np.array([2.0 * draw.whole(0, 1) - 1.0 for _ in range(d)])
+    n = full(draw, d)
     return n / np.linalg.norm(n)
 
 
@@ -41,7 +46,7 @@ def mostly_zero(draw, *shapes):
     nearly = [[y.reshape(shape) for y in nearly_zero(draw, int(np.prod(shape)))] for shape in shapes]
     for k, choices_of in enumerate(nearly):
         for number, y in enumerate(choices_of):
-            rest = [np.zeros(shape) if number % 2 else draw(-1.0, 1.0, shape) for shape in shapes]
+            rest = [np.zeros(shape) if number % 2 else full(draw, shape) for shape in shapes]
             yield *rest[:k], y, *rest[k + 1:]
     for k in range(max(map(len, nearly))):
         yield tuple(choices_of[k % len(choices_of)] for choices_of in nearly)
@@ -465,6 +470,37 @@ def drops(draw):
         yield draw, (*flight[:5], np.zeros((d, m)), np.zeros((d, m)), np.zeros(m)), tau
 
 
+def reaches(gap_x, gap_v, x, v, a, level):
+    """The τ near 0 of g = gap_x · x + gap_v · v − level = 0, of a flight that is there at τ = 0."""
+    phi, rate, bend = gap_x @ x + gap_v @ v - level, gap_x @ v + gap_v @ a, gap_x @ a
+    return -2.0 * phi / (rate + np.sign(rate.real) * np.sqrt(rate * rate - 2.0 * bend * phi + 0j))
+
+
+def with_rate(draw, y, z, by_y, by_z):
+    """(by_y, by_z), of which one is changed: y · by_y + z · by_z is from 0.5 to 2, with either sign."""
+    change = draw(0.5, 2.0) * (2.0 * draw.whole(0, 1) - 1.0) - y @ by_y - z @ by_z
+    return (by_y + change / (y @ y) * y, by_z) if y.any() else (by_y, by_z + change / (z @ z) * z)
+
+
+def events(draw):
+    """(gap_x, gap_v, gap_s, v, a, dx, dv, unit of s) of events, in which some arrays are nearly zero."""
+    for d, m in ((2, 2), (3, 1)):
+        for gap_s, dx, dv in mostly_zero(draw, (m,), (d, m), (d, m)):
+            gap_x, gap_v, v, a = full(draw, (4, d))
+            yield gap_x, gap_v, gap_s, *with_rate(draw, gap_x, gap_v, v, a), dx, dv, 1.0
+        of_s = full(draw, m), full(draw, (d, m)), full(draw, (d, m))
+        for y, z in mostly_zero(draw, (d,), (d,)):
+            v, a = with_rate(draw, y, z, *full(draw, (2, d)))
+            yield y, z, of_s[0], v, a, *of_s[1:], 1.0
+            gap_x, gap_v = with_rate(draw, y, z, *full(draw, (2, d)))
+            yield gap_x, gap_v, of_s[0], y, z, *of_s[1:], 1.0
+        for of_gap, metre, unit_of_s in ((1.0, 1.0, 1e-15), (1.0, 1.0, 1e12), (1e-15, 1.0, 1.0), (1e12, 1.0, 1.0),
+                                         (1.0, 1e-12, 1.0), (1.0, 1e12, 1.0)):
+            gap_s, dx, dv = (unit_of_s * by for by in of_s)
+            yield (of_gap / metre * gap_x, of_gap / metre * gap_v, of_gap * gap_s, metre * y, metre * z, metre * dx,
+                   metre * dv, unit_of_s)
+
+
 @exercise("12.6", points=1,
           hint="dtau = −(g_x dx + g_v dv + g_s)/(g_x · v + g_v · a): the change of g at a fixed time, over its rate")
 def test_the_time_of_an_impact_on_an_oblique_plane_moves_with_all_inputs(lesson, draw):
@@ -474,6 +510,11 @@ def test_the_time_of_an_impact_on_an_oblique_plane_moves_with_all_inputs(lesson,
         expected = slopes(arrival, n, (x, X), (v, V), a, (c, c_s))
         got = lesson.event_time_sensitivity(n, 0.0 * n, -c_s, v + tau * a, a, X + tau * V, V)
         close("dtau of an impact", got, expected, ROUND_OFF, given=f"coordinates: {d}, inputs: {m}, n = {n}")
+    for gap_x, gap_v, gap_s, v, a, dx, dv, unit_of_s in events(draw):
+        expected = slopes(reaches, gap_x, gap_v, (0.0 * v, dx), (v, dv), a, (gap_v @ v, -gap_s))
+        got = lesson.event_time_sensitivity(gap_x, gap_v, gap_s, v, a, dx, dv)
+        close("dtau of an event, per unit of the inputs", np.asarray(got) / unit_of_s, expected / unit_of_s, ROUND_OFF,
+              given=f"gap_x = {gap_x}, gap_v = {gap_v}, gap_s = {gap_s}, v = {v} m/s, a = {a} m/s²")
 
 
 def crossing(k, x, v, level, by_x, by_v):
@@ -503,35 +544,86 @@ def test_the_time_at_which_a_velocity_is_reached_moves_too(lesson, draw):
               given=f"g = {by_x} x + {by_v} v − {level}, {m} inputs")
 
 
+def slow_events(draw, shares):
+    """(gap_x, gap_v, v, a, rate): the rate is such a share of 1e-12 times the sizes of its terms, and has no round-off.
+
+    Only two terms are not 0, both in gap_x · v, or both in gap_v · a, or one in each.  They are products with a power
+    of two, and the float numbers are so close together that their sum is exact.  Other entries of gap_x and v are large
+    where the other factor is 0: the sizes are those of the terms, not products of lengths.
+    """
+    scales = itertools.cycle(itertools.product((1.0, 1e6, TINY), (2.0**-50, 1.0, 2.0**60)))
+    for d, share, sign in itertools.product((2, 3), shares, (1.0, -1.0)):
+        for first, second in ((0, d - 1), (d, 2 * d - 1), (d - 1, d)):
+            size, power = next(scales)
+            gap, motion = np.zeros(2 * d), np.zeros(2 * d)
+            gap[[first, second]] = power, -power
+            term = sign * size * draw(1.0, 2.0)
+            motion[[first, second]] = term, term * (1.0 - 2e-12 * share)
+            idle = [k for k in range(2 * d) if k not in (first, second)]
+            motion[idle[0]], gap[idle[-1]] = 9.0 * size, 9.0 * power if len(idle) > 1 else 0.0
+            yield gap[:d], gap[d:], motion[:d], motion[d:], power * (motion[first] - motion[second])
+
+
 @exercise("12.6", points=0.5,
           hint="if |rate| ≤ GRAZING (|g_x| · |v| + |g_v| · |a|), raise BadInput: a comparison of sizes, at any scale")
 def test_an_event_that_only_grazes_is_refused(lesson, draw):
+    dtau_of, thing = lesson.event_time_sensitivity, "rate of the event"
     for d in (2, 3):
         n, a, still, dx = unit(draw, d), draw(-5.0, 5.0, d), np.zeros(d), draw(-1.0, 1.0, (d, 2))
         along = draw(0.5, 2.0, d)
         along -= (along @ n) * n
-        arguments = n, still, np.zeros(2)
         for size in (1.0, 1e6, TINY):
-            raises("an event whose rate is zero but for round-off", BadInput, lesson.event_time_sensitivity, *arguments,
-                   size * along, size * a, dx, dx)
+            raises("an event whose rate is zero but for round-off", BadInput, dtau_of, n, still, np.zeros(2),
+                   size * along, size * a, dx, dx, thing=thing)
             for slow in (1e-9, 1e-3):
                 v = size * (along - slow * n)
-                got = np.asarray(lesson.event_time_sensitivity(*arguments, v, size * a, dx, dx))
-                rate = n @ v
-                close("dtau of a slow event times its rate", got * rate, -n @ dx, 1e-5, given=f"v = {v} m/s, n = {n}")
-        raises("an event in which nothing moves", BadInput, lesson.event_time_sensitivity, *arguments, still, a, dx, dx)
-        raises("an event in the velocity without acceleration along it", BadInput, lesson.event_time_sensitivity,
-               still, n, np.zeros(2), draw(-1.0, 1.0, d), along, dx, dx)
+                close("dtau of a slow event times its rate",
+                      np.asarray(dtau_of(n, still, np.zeros(2), v, size * a, dx, dx)) * (n @ v), -n @ dx, 1e-5,
+                      given=f"v = {v} m/s, n = {n}")
+        raises("an event in which nothing moves", BadInput, dtau_of, n, still, np.zeros(2), still, a, dx, dx,
+               naming=[0.0], thing=thing)
+        raises("an event in the velocity without acceleration along it", BadInput, dtau_of, still, n, np.zeros(2),
+               draw(-1.0, 1.0, d), along, dx, dx, thing=thing)
+    for gap_x, gap_v, v, a, rate in slow_events(draw, (*draw.within(), 0.0)):
+        dx = np.zeros((v.size, 2))
+        raises("an event with a rate of just below 1e-12 of the sizes of its terms", BadInput, dtau_of, gap_x, gap_v,
+               np.ones(2), v, a, dx, dx, naming=[rate], thing=thing)
+    for gap_x, gap_v, v, a, rate in slow_events(draw, (*draw.beyond(3.0), 1e2, 1e5)):
+        dx, gap_s = np.zeros((v.size, 2)), draw(0.5, 1.0, 2)
+        close("dtau times the rate of an event, above 1e-12 of the sizes of its terms",
+              np.asarray(dtau_of(gap_x, gap_v, gap_s, v, a, dx, dx)) * rate, -gap_s, ROUND_OFF,
+              given=f"gap_x = {gap_x}, gap_v = {gap_v}, v = {v} m/s, a = {a} m/s²")
 
 
 # ---------------------------------------------------------------------------------------------- impacts
 
+def after_jump(time, tau, x, v, a, a_new, R, kick):
+    """State (2, d) at a fixed time: a flight until τ, the jump v⁺ = R v⁻ + kick, and a flight with a_new."""
+    left = time - tau
+    place, speed = x + tau * v + 0.5 * tau * tau * a, R @ (v + tau * a) + kick
+    return np.array([place + left * speed + 0.5 * left * left * a_new, speed + left * a_new])
+
+
 def behind(time, n, x, v, a, c, a_new, R):
     """State (2, d) at a fixed time: a flight to the plane n · x = c, the jump v⁺ = R v⁻, and a flight with a_new."""
-    tau = arrival(n, x, v, a, c)
-    left = time - tau
-    place, speed = x + tau * v + 0.5 * tau * tau * a, R @ (v + tau * a)
-    return np.array([place + left * speed + 0.5 * left * left * a_new, speed + left * a_new])
+    return after_jump(time, arrival(n, x, v, a, c), x, v, a, a_new, R, 0.0)
+
+
+UNITS = (1.0, 1e-15), (1.0, 1e12), (1e-12, 1.0), (1e12, 1.0)             # of length and of the inputs
+
+
+def jumps(draw):
+    """(dtau, dx, dv, v, a, v_new, a_new, R_v, R_s, unit of length, unit of s) of impacts; some arrays are nearly zero.
+    """
+    for d, m in ((2, 2), (3, 1)):
+        shapes = (m,), (d, m), (d, m), (d,), (d,), (d,), (d,), (d, d), (d, m)
+        for arrays in mostly_zero(draw, *shapes):
+            yield *arrays, 1.0, 1.0
+        for metre, unit_of_s in UNITS:
+            dtau, dx, dv, v, a, v_new, a_new, R_v, R_s = (full(draw, shape) for shape in shapes)
+            both = metre * unit_of_s
+            yield (unit_of_s * dtau, both * dx, both * dv, metre * v, metre * a, metre * v_new, metre * a_new, R_v,
+                   both * R_s, metre, unit_of_s)
 
 
 @exercise("12.7", points=1,
@@ -549,6 +641,13 @@ def test_behind_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw)
         given = f"coordinates: {d}, inputs: {m}, dtau = {dtau}"
         close("dx behind the impact", dx, expected[0], 1e-10, given=given)
         close("dv behind the impact", dv, expected[1], 1e-10, given=given)
+    for dtau, dx, dv, v, a, v_new, a_new, R_v, R_s, metre, unit_of_s in jumps(draw):
+        expected = slopes(after_jump, 0.0, (0.0, dtau), (0.0 * v, dx), (v, dv), a, a_new, R_v, (v_new - R_v @ v, R_s))
+        got = lesson.saltation(dtau, dx, dv, v, a, v_new, a_new, R_v, R_s)
+        for name, by, right in zip(("dx", "dv"), got, expected, strict=True):
+            unit_of_by = metre * unit_of_s
+            close(f"{name} behind an impact, per unit of the inputs", np.asarray(by) / unit_of_by, right / unit_of_by,
+                  1e-10, given=f"dtau = {dtau}, v = {v} m/s, a = {a} m/s², v_new = {v_new} m/s, a_new = {a_new} m/s²")
 
 
 @exercise("12.7", points=1,
@@ -587,10 +686,36 @@ def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, d
         close("dv behind the bounce", dv, expected[1], 1e-10, given=given)
 
 
+def impacts(draw):
+    """(v, a, dx, dv, n, e, gap_s, e_s) of impacts, the unit of length and that of s.
+
+    Some arrays are nearly zero, and e is anywhere from 0 to 1.
+    """
+    restitutions = itertools.cycle((0.0, 1e-9, 1e-6, 1e-3, 0.03, draw(0.05, 0.1), draw(0.3, 0.7), 1.0 - 1e-6, 1.0))
+    for d, m in ((2, 2), (3, 1)):
+        normals = itertools.cycle([y / np.linalg.norm(y) for y in nearly_zero(draw, d)] + [unit(draw, d)])
+        for a, dx, dv, gap_s, e_s in mostly_zero(draw, (d,), (d, m), (d, m), (m,), (m,)):
+            v, n = full(draw, d), next(normals)
+            yield v - (v @ n + draw(1.0, 3.0)) * n, a, dx, dv, n, next(restitutions), gap_s, e_s, 1.0, 1.0
+        rest = full(draw, d), full(draw, (d, m)), full(draw, (d, m))
+        for v in nearly_zero(draw, d):
+            aside = full(draw, d)
+            aside -= (aside @ v) / (v @ v) * v
+            n = 0.5 * aside - v
+            yield v, *rest, n / np.linalg.norm(n), next(restitutions), full(draw, m), full(draw, m), 1.0, 1.0
+        for metre, u in UNITS:
+            a, dx, dv, n, gap_s, both = *rest, unit(draw, d), full(draw, m), metre * u
+            v = full(draw, d)
+            v -= (v @ n + draw(1.0, 3.0)) * n
+            yield (metre * v, metre * a, both * dx, both * dv, n, next(restitutions), both * gap_s, u * full(draw, m),
+                   metre, u)
+
+
 @exercise("12.8", points=0.5, hint="e_s moves only the velocity: R_s = −(v · n) n e_sᵀ; 0 ≤ e ≤ 1")
 def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
     for d in (1, 2, 3):
-        for e, n in ((0.0, unit(draw, d)), (1.0, unit(draw, d)), (draw(0.2, 0.8), np.eye(d)[-1])):     # a level floor
+        for e, n in ((0.0, unit(draw, d)), (1.0, unit(draw, d)), (draw(0.2, 0.8), np.eye(d)[-1]),    # a level floor
+                     (1e-6, unit(draw, d)), (draw(0.01, 0.09), unit(draw, d)), (1.0 - 1e-6, unit(draw, d))):
             v, a = draw(-1.0, 1.0, d), draw(-9.0, 9.0, d)
             v -= (v @ n + draw(1.0, 3.0)) * n
             still, e_s = np.zeros((d, 2)), np.array([0.0, draw(0.5, 2.0)])
@@ -598,17 +723,38 @@ def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
             given = f"v = {v} m/s, n = {n}, e = {e}"
             close("dx behind the bounce, for the input e", dx, still, 0.0, given=given)
             close("dv behind the bounce, for the input e", dv, -(v @ n) * np.outer(n, e_s), ROUND_OFF, given=given)
+    for v, a, dx, dv, n, e, gap_s, e_s, metre, unit_of_s in impacts(draw):
+        R = reflected(n, e), -np.multiply.outer(np.outer(n, n), e_s)
+        expected = slopes(behind, 0.0, n, (0.0 * v, dx), (v, dv), a, (0.0, -gap_s), a, R)
+        got = lesson.bounce(v, a, dx, dv, n, e, gap_s, e_s)
+        given = f"v = {v} m/s, a = {a} m/s², n = {n}, e = {e}"
+        for name, y, right, size in zip(("velocity", "dx", "dv"), got, (reflected(n, e) @ v, *expected),
+                                        (metre, metre * unit_of_s, metre * unit_of_s), strict=True):
+            close(f"{name} behind a bounce, over its unit", np.asarray(y) / size, right / size, ROUND_OFF, given=given)
 
 
 @exercise("12.8", points=0.5, hint="call event_time_sensitivity: it refuses a ball that only slides along the plane")
 def test_a_ball_that_grazes_a_plane_has_no_sensitivities(lesson, draw):
+    """In four dimensions there is a normal whose products with a velocity have no round-off."""
+    thing = "rate of the event"
     for d in (2, 3):
         n, v, a, dx = unit(draw, d), draw(0.5, 1.0, d), draw(-9.0, 9.0, d), draw(-1.0, 1.0, (d, 2))
         v -= (v @ n) * n
         raises("a ball that moves along the plane", BadInput, lesson.bounce, v, a, dx, dx, n, draw(0.2, 0.9),
-               np.zeros(2), np.zeros(2))
+               np.zeros(2), np.zeros(2), thing=thing)
         v_new, _, _ = lesson.bounce(v - n, a, dx, dx, n, 1.0, np.zeros(2), np.zeros(2))
         close("velocity behind the bounce of a ball that comes down [m/s]", v_new, v + n, ROUND_OFF, given=f"n = {n}")
+    n, e = 0.5 * np.where(draw(-1.0, 1.0, 4) < 0.0, -1.0, 1.0), draw(0.2, 0.9)
+    for share in (*draw.within(), *draw.beyond(3.0), 1e3):
+        a, dx, v = draw(-9.0, 9.0, 4), full(draw, (4, 2)), np.zeros(4)
+        v[:2] = draw(0.5, 2.0) * np.array([1.0 - 2e-12 * share, -1.0]) * np.sign(n[:2])
+        ball = v, a, dx, np.zeros((4, 2)), n, e, np.zeros(2), np.zeros(2)
+        if share < 1.0:
+            raises("a ball that comes down with less than 1e-12 of the sizes of the terms", BadInput, lesson.bounce,
+                   *ball, naming=[n @ v], thing=thing)
+        else:                                            # v⁺ − v⁻ has a relative error of 1e-4
+            close("dx behind the bounce of a ball that comes down very slowly", lesson.bounce(*ball)[1],
+                  dx - (1.0 + e) * np.outer(n, n @ dx), 5e-3, given=f"v = {v} m/s, n = {n}")
 
 
 # ---------------------------------------------------------------------------------------------- what they are for

@@ -300,6 +300,42 @@ edit("12.6", "compares the rate with its sign", "np.abs(rate) <=", "rate <=")
 edit("12.6", "refuses only a rate below the limit, not zero", f"np.abs(rate) <= {SIZES}", f"np.abs(rate) < {SIZES}")
 edit("12.6", "forgets dx where nothing accelerates",
      "-(gap_x @ dx", "-(a.any() * gap_x @ dx")
+RATE = "rate = gap_x @ v + gap_v @ a"
+by_part("12.6", "gap_x", "gap_x", "(gap_x @ dx", "(KEPT * gap_x @ dx")
+by_part("12.6", "dx", "dx", "(gap_x @ dx", "(KEPT * gap_x @ dx")
+by_part("12.6", "gap_v", "gap_v", "+ gap_v @ dv", "+ KEPT * gap_v @ dv")
+by_part("12.6", "dv", "dv", "+ gap_v @ dv", "+ KEPT * gap_v @ dv")
+by_part("12.6", "gap_s", "gap_s", "+ gap_s) / rate", "+ KEPT * gap_s) / rate")
+by_part("12.6", "dx and dv together", "(dx + dv)", "+ gap_s) / rate", "+ KEPT * gap_s) / rate")
+FEW = [how for how in HOW if how != "a fixed small number"]
+by_part("12.6", "gap_x in the rate", "gap_x", RATE, "rate = KEPT * (gap_x @ v) + gap_v @ a", FEW)
+by_part("12.6", "v in the rate", "v", RATE, "rate = KEPT * (gap_x @ v) + gap_v @ a")
+by_part("12.6", "gap_v in the rate", "gap_v", RATE, "rate = gap_x @ v + KEPT * (gap_v @ a)", FEW)
+by_part("12.6", "a in the rate", "a", RATE, "rate = gap_x @ v + KEPT * (gap_v @ a)", FEW)
+for limit in ("0.0", "1e-15", "2.2e-16", "1e-14", "0.98e-12", "1.02e-12", "2e-12", "1e-11", "5e-10", "1e-9"):
+    edit("12.6", f"takes {limit} for GRAZING", "<= GRAZING *", f"<= {limit} *")
+edit("12.6", "compares with the sizes of the arrays, not with those of the terms",
+     "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "(np.sqrt((gap_x @ gap_x) * (v @ v)) + np.sqrt((gap_v @ gap_v) * (a @ a)))")
+edit("12.6", "compares with the sum of the largest terms", "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "(np.abs(gap_x * v).max() + np.abs(gap_v * a).max())")
+edit("12.6", "compares with the largest term", "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "np.maximum(np.abs(gap_x * v).max(), np.abs(gap_v * a).max())")
+edit("12.6", "compares with the sizes of both products", "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "(np.abs(gap_x @ v) + np.abs(gap_v @ a))")
+edit("12.6", "compares with the sizes of the terms of v alone", " + np.abs(gap_v) @ np.abs(a)", "")
+edit("12.6", "compares with the sizes of the terms of a alone", "np.abs(gap_x) @ np.abs(v) + ", "")
+edit("12.6", "compares with sizes that are at least 1", f"<= {SIZES}", f"<= max({SIZES}, 1e-12)")
+edit("12.6", "compares with sizes that are at most 1", f"<= {SIZES}", f"<= min({SIZES}, 1e-12)")
+edit("12.6", "names another thing", '"rate of the event"', '"the event"')
+edit("12.6", "names the time in place of the rate", '"rate of the event"', '"time of the event"')
+edit("12.6", "names no value", 'event", rate, "an', 'event", "too small", "an')
+edit("12.6", "names zero, not the rate", 'event", rate, "an', 'event", 0.0, "an')
+edit("12.6", "names the size of the rate", 'event", rate, "an', 'event", np.abs(rate), "an')
+edit("12.6", "names the velocity", 'event", rate, "an', 'event", v, "an')
+edit("12.6", "raises Diverged", "raise BadInput(", "raise Diverged(")
+edit("12.6", "raises another error", 'raise BadInput("rate of the event", rate, "an event that only grazes has no '
+     'sensitivity: change the inputs")', 'raise ValueError(f"rate of the event is {rate}")')
 
 
 # 12.7 -----------------------------------------------------------------------------------------------------------
@@ -342,6 +378,18 @@ edit("12.7", "exchanges rows and columns of the outer product", "np.outer(v - v_
 edit("12.7", "takes the state at the impact, not at a fixed time", PLACE, "dx + np.outer(v, dtau)")
 edit("12.7", "returns dx and dv unchanged where the time of the impact does not move", "at_impact = dv",
      "if not dtau.any(): return dx.copy(), dv.copy()\n    at_impact = dv")
+by_part("12.7", "dtau", "dtau", "v - v_new, dtau", "KEPT * (v - v_new), dtau")
+by_part("12.7", "the change of the velocity", "(v - v_new)", "v - v_new, dtau", "KEPT * (v - v_new), dtau")
+by_part("12.7", "v", "v", "v - v_new, dtau", "KEPT * v - v_new, dtau")
+by_part("12.7", "v_new", "v_new", "v - v_new, dtau", "v - KEPT * v_new, dtau")
+by_part("12.7", "a", "a", "np.outer(a, dtau)", "np.outer(KEPT * a, dtau)")
+by_part("12.7", "a_new", "a_new", "np.outer(a_new, dtau)", "np.outer(KEPT * a_new, dtau)")
+by_part("12.7", "dx", "dx", "return dx + np", "return KEPT * dx + np")
+by_part("12.7", "dv", "dv", "at_impact = dv", "at_impact = KEPT * dv")
+by_part("12.7", "R_v", "R_v", "R_v @ at_impact", "KEPT * R_v @ at_impact", FEW)
+by_part("12.7", "R_s", "R_s", "at_impact + R_s", "at_impact + KEPT * R_s")
+by_part("12.7", "dtau, which leaves dv alone,", "dtau", "at_impact = dv + np.outer(a, dtau)",
+        "dtau = KEPT * dtau; at_impact = dv + np.outer(a, dtau)")
 
 
 # 12.8 -----------------------------------------------------------------------------------------------------------
@@ -379,6 +427,35 @@ edit("12.8", "computes where a ball grazes",
      "event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)", "-(n @ dx + gap_s) / (v @ n - 1e-300)")
 edit("12.8", "takes the time of the impact for fixed where nothing accelerates", "saltation(dtau,",
      "saltation(a.any() * dtau,")
+R_S = "-(v @ n) * np.outer(n, e_s)"
+by_part("12.8", "a", "a", "v, a, v_new, a, R_v", "v, KEPT * a, v_new, a, R_v")
+by_part("12.8", "a behind the impact", "a", "v, a, v_new, a, R_v", "v, a, v_new, KEPT * a, R_v")
+by_part("12.8", "dx", "dx", "saltation(dtau, dx,", "saltation(dtau, KEPT * dx,")
+by_part("12.8", "dx at the event", "dx", "gap_s, v, a, dx,", "gap_s, v, a, KEPT * dx,")
+by_part("12.8", "dv", "dv", "dtau, dx, dv, v,", "dtau, dx, KEPT * dv, v,")
+by_part("12.8", "gap_s", "gap_s", "n, gap_s, v", "n, KEPT * gap_s, v")
+by_part("12.8", "e_s", "e_s", R_S, f"KEPT * {R_S}")
+by_part("12.8", "n", "n", "- (1.0 + e) * np.outer(n, n)", "- KEPT * (1.0 + e) * np.outer(n, n)", FEW[:3])
+by_part("12.8", "v", "v", R_S, f"KEPT * {R_S}", FEW)
+for change in ("max(e, 0.1)", "max(e, 1e-3)", "max(e, 1e-6)", "(0.0 if e < 0.1 else e)", "(0.0 if e < 1e-2 else e)",
+               "(0.0 if e < 1e-5 else e)", "min(e, 0.9)", "min(e, 0.99)", "(1.0 if e > 0.95 else e)",
+               "(1.0 if e > 0.999 else e)", "(e or 0.5)", "(e if e < 1.0 else 0.5)"):
+    edit("12.8", f"takes {change} for e in R_v", "- (1.0 + e) * np.outer", f"- (1.0 + {change}) * np.outer")
+    edit("12.8", f"takes {change} for e in the velocity", "response(v, n, e)", f"response(v, n, {change})")
+edit("12.8", "takes e for no input where it is 0", R_S, f"(e > 0.0) * {R_S}")
+edit("12.8", "takes e for no input where it is 1", R_S, f"(e < 1.0) * {R_S}")
+for least in ("1e-11", "1e-9", "1e-6"):
+    edit("12.8", f"refuses an impact slower than {least} m/s", "    v_new = kinematic_response(v, n, e)",
+         f'    if -(v @ n) < {least}: raise BadInput("rate of the event", v @ n, "too slow")\n'
+         "    v_new = kinematic_response(v, n, e)")
+edit("12.8", "catches the error of a ball that grazes", "event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)",
+     "np.zeros(gap_s.size) if np.abs(v @ n) < 1e-12 else event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)")
+edit("12.8", "raises another error", "    v_new = kinematic_response(v, n, e)",
+     '    if -(v @ n) <= 1e-12 * (np.abs(v) @ np.abs(n)): raise ValueError("it grazes")\n'
+     "    v_new = kinematic_response(v, n, e)")
+edit("12.8", "names another thing", "    v_new = kinematic_response(v, n, e)",
+     '    if -(v @ n) <= 1e-12 * (np.abs(v) @ np.abs(n)): raise BadInput("velocity", v @ n, "it grazes")\n'
+     "    v_new = kinematic_response(v, n, e)")
 
 
 # 12.9 -----------------------------------------------------------------------------------------------------------
