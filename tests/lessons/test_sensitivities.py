@@ -764,8 +764,8 @@ def hills(s, p):
     return np.sum(p[0] + (p[1] + (p[2] + p[3] * s) * s) * s)
 
 
-def check_orders(lesson, draw, s, y, p, gradient):
-    steps = np.array([draw(0.3, 0.4), draw(0.1, 0.2), draw(0.04, 0.05), draw(0.01, 0.02), draw(0.5, 0.6)])
+def check_orders(lesson, draw, s, y, p, gradient, longest=1.0):
+    steps = longest * np.array([draw(0.3, 0.4), draw(0.1, 0.2), draw(0.04, 0.05), draw(0.01, 0.02), draw(0.5, 0.6)])
     first, second, third = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s, (p[2] + 3.0 * p[3] * s) @ y**2, p[3] @ y**3
     left = np.abs((first - gradient) @ y * steps + second * steps**2 + third * steps**3)
     expected = np.log(left[1:] / left[:-1]) / np.log(steps[1:] / steps[:-1])
@@ -789,17 +789,50 @@ def test_taylors_test_tells_a_right_gradient_from_a_wrong_one(lesson, draw):
         y[0], p[1:, 0], p[0] = 1.0, draw(0.5, 1.5, 3), 0.0
         check_orders(lesson, draw, s, y, p, p[1])
         check_orders(lesson, draw, s, y, p, np.zeros(m))                 # the gradient of a place where f is flat
+    check_orders_of_parts(lesson, draw)
+    for size, metre, longest in ((1.0, 1.0, 1e-8), (1e-12, 1.0, 1.0), (1e-12, 1.0, 1e-8), (1.0, 1.0, 1e6),
+                                 (1e12, 1.0, 1e6), (1.0, 1e-12, 1e12), (1.0, 1e12, 1e-12)):
+        p, y = size * draw(0.5, 1.5, (4, 2)), metre * draw(0.5, 1.0, 2)
+        p[0] = 0.0                                       # f is 0 at s = 0: no digit of the smallest remainder is lost
+        check_orders(lesson, draw, np.zeros(2), y, p, 0.5 * p[1], longest)
+        p[1] = 0.0
+        check_orders(lesson, draw, np.zeros(2), y, p, np.zeros(2), longest)
+
+
+def check_orders_of_parts(lesson, draw):
+    """The place, the direction or the gradient is nearly zero; none of these signs makes the remainder pass 0."""
+    for m in (2, 3):
+        s, y, p = draw(0.5, 1.0, m), draw(0.5, 1.0, m), draw(0.5, 1.5, (4, m))
+        right = p[1] + 2.0 * p[2] * s + 3.0 * p[3] * s * s
+        for part in nearly_zero(draw, m, 0.5, 1.0):
+            check_orders(lesson, draw, s, part, p, right)
+            check_orders(lesson, draw, s, y, p, 0.5 * part)
+            check_orders(lesson, draw, 0.1 * part, y, p, p[1] + 0.2 * p[2] * part + 0.03 * p[3] * part * part)
+        p[1], across = 0.0, draw(0.5, 1.0) * (np.eye(m)[0] - np.eye(m)[1])
+        p[1, 0] = draw(2.0, 3.0)
+        check_orders(lesson, draw, np.zeros(m), across, p, np.full(m, draw(0.5, 1.0)))   # the direction is across it
 
 
 @exercise("12.9", points=0.5, hint='call check_positive("remainder of a step", …) for every remainder')
 def test_taylors_test_refuses_a_function_without_a_remainder(lesson, draw):
-    """A linear function of whole numbers, with steps that are powers of two, has no round-off."""
+    """A linear function of whole numbers, with steps that are powers of two, has no round-off.
+
+    Neither has p h + 2ⁿ c h² − c h³ at h = 2ⁿ, where a single remainder is 0.
+    """
+    thing = "remainder of a step"
+    for m, n in ((1, 2), (2, 2), (1, 3), (2, 4)):
+        p, steps = np.zeros((4, m)), 0.5 ** (np.arange(n) + draw.whole(0, 9))
+        p[1], p[3, -1] = float(draw.whole(1, 9)), float(draw.whole(1, 9))
+        for h in steps:
+            p[2, -1] = -p[3, -1] * h
+            raises("a single step without a remainder", BadInput, lesson.remainder_orders, hills, p[1], np.zeros(m),
+                   np.ones(m), steps, p, naming=[0.0], thing=thing)
     for m in (1, 2):
         s, y = (np.array([float(draw.whole(1, 9)) for _ in range(m)]) for _ in range(2))
         p = np.zeros((4, m))
         p[1] = [float(draw.whole(1, 9)) for _ in range(m)]
         raises("a function that is linear", BadInput, lesson.remainder_orders, hills, p[1], s, y,
-               np.array([0.5, 0.25]), p)
+               np.array([0.5, 0.25]), p, naming=[0.0], thing=thing)
         orders = lesson.remainder_orders(hills, p[1] + 1.0, s, y, np.array([0.5, 0.25, 0.125]), p)
         close("observed orders for a wrong gradient [-]", orders, [1.0, 1.0], ROUND_OFF)
 
@@ -847,6 +880,75 @@ def pit(s, p):
     return np.array([s[0] * s[0] + p[0]]), np.array([[2.0 * s[0]]])
 
 
+class Narrow(NamedTuple):
+    """Throws of which only those near s = 0 miss by less."""
+    first: np.ndarray        # (k,) miss at s = 0
+    near: np.ndarray         # (k,) miss within the reach
+    beyond: np.ndarray       # (k,) miss beyond it
+    reach: float             # in Newton's steps
+
+
+def narrow(s, p):
+    """From s = 0, Newton's step is −1 or 0 for each input; beyond the reach, the derivatives are others."""
+    far = np.max(np.abs(s))
+    J = np.diag(np.where(p.first == 0.0, 1.0, p.first))
+    if far == 0.0:
+        return p.first.copy(), J
+    if far <= p.reach:
+        return p.near.copy(), J
+    return p.beyond.copy(), 3.0 * J
+
+
+def both(s, p):
+    """The same sum of two inputs shall be two numbers."""
+    return s[0] + s[1] - p, np.ones((2, 2))
+
+
+SMALLER = (                  # two misses, the second of which is smaller; but not its sum, largest entry, first, last …
+    ((0.9, 0.9, 0.0), (1.2, 0.0, 0.0)), ((0.9, 0.9, 0.0), (0.0, 0.0, 1.2)), ((1.4, 0.0, 0.0), (0.9, 0.9, 0.0)),
+    ((0.0, 0.0, 1.4), (0.9, 0.9, 0.0)), ((1.0, -1.0, 0.0), (0.7, 0.7, 0.7)), ((-1.0, -1.0, -1.0), (0.9, 0.9, 0.9)),
+    ((1.0, 1.0, 1.0), (-0.9, -0.9, -0.9)), ((1.0, 1.0, 1.0), (0.0, 1.2, -1.2)), ((-1.0, 0.0, 0.0), (0.0, 0.9, 0.0)))
+
+
+def check_sizes(lesson, draw):
+    """A throw is measured by √(r · r), at its first place, and as smaller or not, and as within the tolerance."""
+    for k in (1, 2, 3):
+        for first in nearly_zero(draw, k):
+            s, misses = lesson.aim(narrow, np.zeros(k), 1e-3, 3, Narrow(first, 0.0 * first, first, 1.5))
+            given = f"from a miss of {first} m"
+            close("inputs that hit, in Newton's steps", s, -1.0 * (first != 0.0), ROUND_OFF, given=given)
+            close("misses", misses, [np.linalg.norm(first), 0.0], ROUND_OFF, given=given)
+    for large, small in draw(0.5, 2.0) * np.array(SMALLER):
+        sizes = [np.linalg.norm(large), np.linalg.norm(small)]
+        for tolerance in (sizes[1] * 1.001, sizes[0] * 0.999):
+            s, misses = lesson.aim(narrow, np.zeros(3), tolerance, 1, Narrow(large, small, large, 1.5))
+            given = f"misses of {large} m, then {small} m"
+            close("inputs after a step that is good enough, in Newton's steps", s, -1.0 * (large != 0.0), ROUND_OFF,
+                  given=given)
+            close("misses before and after it", misses, sizes, ROUND_OFF, given=given)
+        raises("a step after which the miss is larger, however short it is", Diverged, lesson.aim, narrow, np.zeros(3),
+               1e-3, 3, Narrow(small, small, large, 0.0), naming=[sizes[1]], thing="miss of the last throw")
+        raises("a miss that is just above the tolerance", Diverged, lesson.aim, narrow, np.zeros(3), sizes[1] * 0.999,
+               1, Narrow(large, small, large, 1.5), naming=[sizes[1]], thing="miss of the last throw")
+
+
+def check_halvings(lesson, draw):
+    """Only a step that was halved so many times makes the miss smaller: before, it is as large, or larger, or NaN."""
+    for k, beyond in ((1, 1.0), (2, -1.0), (3, 2.0), (2, np.nan), (1, 1e9), (3, 1.0)):
+        first = full(draw, k)
+        for halvings in (0, 1, 2, draw.whole(3, 8), 39, 40):
+            p = Narrow(first, 0.0 * first, beyond * first, draw(1.1, 1.9) * 0.5**halvings)
+            given = f"a miss of {first} m is smaller after {halvings} halvings"
+            s, misses = lesson.aim(narrow, np.zeros(k), 1e-3, 1, p)
+            close("inputs that hit, in halved steps", np.asarray(s) * 2.0**halvings, -np.ones(k), ROUND_OFF,
+                  given=given)
+            close("misses", misses, [np.linalg.norm(first), 0.0], ROUND_OFF, given=given)
+        for reach in (draw(0.6, 0.9) * 0.5**40, 0.0):
+            raises("a step that has to be halved more than 40 times", Diverged, lesson.aim, narrow, np.zeros(k), 1e-3,
+                   9, Narrow(first, 0.0 * first, beyond * first, reach), naming=[np.linalg.norm(first)],
+                   thing="miss of the last throw")
+
+
 @exercise("12.10", points=0.75, hint="step = solve(J, r), s ← s − step, until √(r · r) ≤ tolerance; keep every |r|")
 def test_newtons_method_hits_what_it_aims_at(lesson, draw):
     T, g, x, y = draw(0.8, 1.2), 9.81, draw(2.0, 4.0), draw(0.5, 1.5)
@@ -865,6 +967,7 @@ def test_newtons_method_hits_what_it_aims_at(lesson, draw):
         s, misses = lesson.aim(ring, np.full(k, start), 1e-12, 20, right + 0.3 * np.roll(right, -1) ** 2)
         close("inputs that hit, of equations with a known solution", s, right, ROUND_OFF, given=f"{k} inputs")
         between("number of iterations", len(misses) - 1, 1, 8, given=f"{k} inputs")
+    check_sizes(lesson, draw)
 
 
 @exercise("12.10", points=0.25, hint="misses has one entry for the first throw, and one per iteration")
@@ -880,15 +983,16 @@ def test_the_misses_are_those_of_newtons_method(lesson, draw):
             given = f"s² = 4, s = {root}, tolerance {tolerance}"
             close("inputs that hit, with a miss of just the tolerance", found, [root], 0.0, given=given)
             close("misses, where the first is just the tolerance", misses, [tolerance], 0.0, given=given)
-    for tolerance in (1e-2, 1e-9):
+    for tolerance, size in ((1e-2, 1.0), (1e-9, 1.0), (1e-2, 1e-9), (1e-9, 1e-9), (1e-2, 1e9), (1e-9, 1e9)):
         s, expected = start, [start * start - a]
         while expected[-1] > tolerance:
             s = 0.5 * (s + a / s)
             expected.append(abs(s * s - a))
-        found, misses = lesson.aim(square, np.array([start]), tolerance, len(expected) - 1, np.array([a]))
-        given = f"s² = {a}, from {start}, tolerance {tolerance}"
-        close("root of s² = a", found, [s], ROUND_OFF, given=given)
-        close("misses", misses, expected, ROUND_OFF, given=given)
+        found, misses = lesson.aim(square, np.array([size * start]), size * size * tolerance, len(expected) - 1.0,
+                                   np.array([size * size * a]))
+        given = f"s² = {size * size * a}, from {size * start}, tolerance {size * size * tolerance}"
+        close("root of s² = a, over its size", np.asarray(found) / size, [s], ROUND_OFF, given=given)
+        close("misses, over their size", np.asarray(misses) / size**2, expected, ROUND_OFF, given=given)
 
 
 @exercise("12.10", points=0.5, hint="while the new miss is not smaller, halve the step; write not (new < old) for NaN")
@@ -909,43 +1013,70 @@ def test_a_step_that_goes_too_far_is_halved(lesson, draw):
     s, _ = lesson.aim(logarithm, np.array([far * root]), 1e-12, 40, np.array([root]))
     close("root of a logarithm, where throws beyond zero never arrive", s, [root], ROUND_OFF,
           given=f"root {root}, from {far * root}")
+    check_halvings(lesson, draw)
 
 
 @exercise("12.10", points=0.5, hint="raise Diverged with the last miss; begin with checked_search")
 def test_a_search_that_does_not_arrive_says_so(lesson, draw):
     a, start = draw(2.0, 5.0), draw(3.0, 5.0)
     once = 0.5 * (start + a / start)
-    raises("too few iterations", Diverged, lesson.aim, square, np.array([start]), 1e-12, 1, np.array([a]),
-           naming=[once * once - a])
-    raises("no iteration at all", Diverged, lesson.aim, square, np.array([start]), 1e-12, 0, np.array([a]),
-           naming=[start * start - a])
-    raises("a target that no throw hits", Diverged, lesson.aim, pit, np.array([start]), 1e-6, 100, np.array([a]))
-    raises("inputs that are not finite", BadInput, lesson.aim, square, np.array([np.nan]), 1e-6, 10, np.array([a]))
-    raises("a negative tolerance", BadInput, lesson.aim, square, np.array([start]), -1e-6, 10, np.array([a]))
-    raises("a negative number of iterations", BadInput, lesson.aim, square, np.array([start]), 1e-6, -1, np.array([a]))
+    last, p = "miss of the last throw", np.array([a])
+    raises("too few iterations", Diverged, lesson.aim, square, np.array([start]), 1e-12, 1, p,
+           naming=[once * once - a], thing=last)
+    raises("no iteration at all", Diverged, lesson.aim, square, np.array([start]), 1e-12, 0, p,
+           naming=[start * start - a], thing=last)
+    raises("a target that no throw hits", Diverged, lesson.aim, pit, np.array([start]), 1e-6, 100, p, thing=last)
+    for wrong in (np.nan, np.inf):
+        raises("inputs that are not finite", BadInput, lesson.aim, square, np.array([wrong]), 1e-6, 10, p,
+               thing="inputs s")
+        raises("a tolerance that is not finite", BadInput, lesson.aim, square, np.array([start]), wrong, 10, p,
+               thing="tolerance of a search")
+    raises("a negative tolerance", BadInput, lesson.aim, square, np.array([start]), -1e-6, 10, p, naming=[-1e-6],
+           thing="tolerance of a search")
+    for wrong in (-1, 2.5):
+        raises("a number of iterations that is negative or not whole", BadInput, lesson.aim, square, np.array([start]),
+               1e-6, wrong, p, naming=[wrong], thing="number of iterations")
+    root = float(draw.whole(2, 9))
+    for miss, s, aim_at in ((square, np.zeros(1), p), (both, draw(-1.0, 1.0, 2), draw(2.0, 5.0, 2)),
+                            (pit, np.array([root]), np.array([root * root]))):           # Newton's step is to s = 0
+        raises("a sensitivity that is singular", np.linalg.LinAlgError, lesson.aim, miss, s, 1e-6, 10, aim_at)
 
 
 # ---------------------------------------------------------------------------------------------- how long they help
 
 @exercise("12.11", points=0.75, hint="the error grows by cosh(rate t): e^(rate t) and e^(−rate t) have half of it each")
 def test_the_error_of_a_pencil_has_grown_to_what_is_allowed(lesson, draw):
-    for error, growth in ((draw(1e-3, 1e-2), draw(2.0, 9.0)), (1e-9, 1e8), (draw(0.1, 1.0), 1.05)):
-        rate = draw(1.0, 6.0)
-        t = float(lesson.predicted_horizon(rate, error, growth * error))
+    """Growths from a millionth above 1 to 5e8: log(2 growth) is off by 1/(4 growth²)."""
+    def grown(error, growth, tolerance):
+        rate = draw(1.0, 6.0) * 10.0 ** draw.whole(-6, 6)
+        turns = rate * float(lesson.predicted_horizon(rate, error, growth * error))
         given = f"rate {rate} 1/s, error {error} m, allowed {growth * error} m"
-        between("time, a number from zero to 50 s", t, 0.0, 50.0, given=given)
-        close("error at that time over the allowed one [-]",
-              0.5 * (np.exp(rate * t) + np.exp(-rate * t)) / growth, 1.0, ROUND_OFF, given=given)
+        between("time times the rate, a number from zero to 50", turns, 0.0, 50.0, given=given)
+        close("error at that time over the allowed one [-]", 0.5 * (np.exp(turns) + np.exp(-turns)) / growth, 1.0,
+              tolerance, given=given)
+        close("growth less 1, at that time, over the allowed one [-]",
+              2.0 * np.sinh(0.5 * turns) ** 2 / (growth - 1.0), 1.0, max(tolerance, 1e-14 / (growth - 1.0)),
+              given=given)
+    for error, growth in ((draw(1e-3, 1e-2), draw(2.0, 9.0)), (1e-9, 1e8), (draw(0.1, 1.0), 1.05)):
+        grown(error, growth, ROUND_OFF)
+    for power in (1e1, 1e2, 1e3, 1e4, 1e5):
+        for size in (1.0, 1e-9, 1e9):
+            grown(size * draw(0.1, 1.0), power * draw(1.0, 5.0), 2e-13)
+    for above in (1e-1, 1e-2, 1e-3, 1e-6, 1e-8):
+        grown(draw(0.1, 1.0), 1.0 + above * draw(1.0, 5.0), 2e-13)
 
 
 @exercise("12.11", points=0.25, hint="where the error is as large as allowed from the start, the time is 0")
 def test_an_error_that_is_too_large_from_the_start_helps_for_no_time(lesson, draw):
-    error = draw(0.1, 1.0)
-    for share in (1.0, *draw.within(), 0.0):
-        close("time for which the start is known well enough [s]", lesson.predicted_horizon(3.0, error, share * error),
-              0.0, 0.0, given=f"error {error} m, allowed {share * error} m")
-    known = lesson.predicted_horizon(3.0, error, 2.0 * error)
-    between("time until the error has doubled [s]", known, 0.4, 0.5, given=f"error {error} m, rate 3 1/s")
+    for size in (1.0, 1e-9, 1e9):
+        error, rate = size * draw(0.1, 1.0), draw(1.0, 6.0)
+        for share in (1.0, 1.0 - 1e-9, *draw.within(), 1e-9, 0.0):
+            close("time for which the start is known well enough [s]",
+                  lesson.predicted_horizon(rate, error, share * error), 0.0, 0.0,
+                  given=f"error {error} m, allowed {share * error} m")
+        known = rate * lesson.predicted_horizon(rate, error, 2.0 * error)
+        between("time until the error has doubled, times the rate [-]", known, 1.3, 1.35,
+                given=f"error {error} m, rate {rate} 1/s")
 
 
 def bounced_once(heights, x):

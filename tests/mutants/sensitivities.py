@@ -501,6 +501,31 @@ edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.lo
 edit("12.9", "divides by f(s), which may be 0", "remainder = np.abs(", "remainder = 1.0 / np.abs(f(s, p)) * np.abs(")
 edit("12.9", "takes a gradient of 0 for right: the order 2", "logs = np.zeros(steps.size)",
      "if not gradient.any(): return np.full(steps.size - 1, 2.0)\n    logs = np.zeros(steps.size)")
+CHECK = 'check_positive("remainder of a step", remainder)'
+by_part("12.9", "the direction", "direction", "f(s + h * direction, p)", "f(s + KEPT * h * direction, p)")
+by_part("12.9", "the direction at the gradient", "direction", "h * (gradient", "KEPT * h * (gradient")
+by_part("12.9", "the gradient", "gradient", "h * (gradient", "KEPT * h * (gradient")
+by_part("12.9", "the gradient, which then is right,", "gradient", "    logs = np.zeros(steps.size)",
+        "    if not KEPT: return np.full(steps.size - 1, 2.0)\n    logs = np.zeros(steps.size)", ["its sum"])
+by_part("12.9", "the place", "s", "- f(s, p)", "- f(KEPT * s, p)", FEW[:3])
+edit("12.9", "takes a direction across the gradient for none", "h * (gradient @ direction)",
+     "h * (gradient @ direction or 1.0)")
+for part in ("i == 0", "i == steps.size - 1", "i in (0, steps.size - 1)", "i > 0", "i < steps.size - 1", "i == 1"):
+    edit("12.9", f"refuses a remainder of 0 only where {part}", CHECK, f"_ = {part} and {CHECK}")
+for least in ("1e-6", "1e-12", "1e-15", "1e-18", "1e-25"):
+    edit("12.9", f"refuses a remainder below {least}", CHECK,
+         f'check_positive("remainder of a step", remainder if remainder > {least} else 0.0)')
+    edit("12.9", f"takes a remainder for {least} at least", "log(remainder)", f"log(max(remainder, {least}))")
+edit("12.9", "adds a small number to the remainder", "log(remainder)", "log(remainder + 1e-20)")
+edit("12.9", "takes no step below a millionth", "h = steps[i]", "h = max(steps[i], 1e-6)")
+edit("12.9", "takes no step above 1", "h = steps[i]", "h = min(steps[i], 1.0)")
+edit("12.9", "names another thing", '"remainder of a step"', '"the step"')
+edit("12.9", "names the step, not the remainder", CHECK,
+     'check_positive("remainder of a step", -h if remainder == 0.0 else remainder)')
+edit("12.9", "raises another error", CHECK, 'if remainder == 0.0: raise ValueError("remainder of a step is 0.0")')
+edit("12.9", "raises Diverged", CHECK, 'if remainder == 0.0: raise Diverged("remainder of a step", 0.0, "stop")')
+edit("12.9", "limits the orders to 2", "    return (logs[1:] - logs[:-1]) / (np.log(steps[1:]) - np.log(steps[:-1]))",
+     "    return np.minimum((logs[1:] - logs[:-1]) / (np.log(steps[1:]) - np.log(steps[:-1])), 2.0)")
 
 
 # 12.10 ----------------------------------------------------------------------------------------------------------
@@ -563,6 +588,62 @@ edit("12.10", "keeps the Jacobian of the first throw", "step = solve(J, r)",
      "step = solve(miss(s, p)[1] if i == 0 else first, r); first = miss(s, p)[1] if i == 0 else first")
 edit("12.10", "takes the halved step from where the long step ended", "step = 0.5 * step",
      "s, step = s - step, 0.5 * step")
+for most in (4, 9, 19, 29, 38, 39, 41, 42, 49, 59, 99, 199):
+    edit("12.10", f"halves a step at most {most} times", "MOST_HALVINGS + 1", f"{most} + 1")
+edit("12.10", "counts the whole step as a halving", "MOST_HALVINGS + 1", "MOST_HALVINGS")
+edit("12.10", "halves until the miss is smaller or the same", "np.sqrt(r @ r) < misses[i]",
+     "np.sqrt(r @ r) <= misses[i]")
+edit("12.10", "takes a tenth less for smaller", "np.sqrt(r @ r) < misses[i]", "np.sqrt(r @ r) < 0.9 * misses[i]")
+edit("12.10", "takes a quarter of the step", "step = 0.5 * step", "step = 0.25 * step")
+edit("12.10", "takes two thirds of the step", "step = 0.5 * step", "step = step / 1.5")
+edit("12.10", "computes a new step beyond", "step = 0.5 * step", "step = 0.5 * solve(J, r)")
+for how, size in (("the sum of its entries", "np.abs(np.sum(r))"), ("its largest entry", "np.max(np.abs(r))"),
+                  ("the sum of their sizes", "np.sum(np.abs(r))"), ("its first entry", "np.abs(r[0])"),
+                  ("its last entry", "np.abs(r[-1])"), ("the mean of the squares", "np.sqrt(np.mean(r * r))")):
+    alike("12.10", f"measures the miss by {how}", aiming, {"size": eval(f"lambda r: {size}", {"np": np})})
+    edit("12.10", f"measures the first miss by {how}", "misses[0] = np.sqrt(r @ r)", f"misses[0] = {size}")
+    edit("12.10", f"measures the later misses by {how}", "s - step, np.sqrt(r @ r)", f"s - step, {size}")
+    edit("12.10", f"compares {how} with the miss before", "if np.sqrt(r @ r) <", f"if {size} <")
+for how, solving in (("by least squares", "np.linalg.lstsq(J, r, rcond=None)[0]"), ("by a pseudo-inverse",
+                     "np.linalg.pinv(J) @ r"), ("with a small number on the diagonal",
+                     "solve(J + 1e-12 * np.eye(r.size), r)"), ("or takes none where that is singular",
+                     "solve(J, r) if np.linalg.det(J) != 0.0 else 0.0 * r")):
+    edit("12.10", f"solves for the step {how}", "step = solve(J, r)", f"step = {solving}")
+edit("12.10", "raises Diverged where J is singular", "step = solve(J, r)",
+     "if np.linalg.det(J) == 0.0: raise Diverged('miss of the last throw', misses[i], 'begin elsewhere')\n"
+     "        step = solve(J, r)")
+edit("12.10", "raises BadInput where J is singular", "step = solve(J, r)",
+     "if np.linalg.det(J) == 0.0: raise BadInput('sensitivity', J, 'begin elsewhere')\n        step = solve(J, r)")
+edit("12.10", "looks at J where the first throw hits", "misses[0] = np.sqrt(r @ r)",
+     "misses[0] = np.sqrt(r @ r); solve(J, r)")
+for end, value in (("misses[most]", "after all iterations"), ("misses[i]", "after all halvings")):
+    start = f'Diverged("miss of the last throw", {end},'
+    edit("12.10", f"names another thing {value}", start, start.replace("miss of the last throw", "miss"))
+    edit("12.10", f"names the first miss {value}", start, start.replace(end, "misses[0] + 1.0"))
+    edit("12.10", f"raises BadInput {value}", start, start.replace("Diverged", "BadInput"))
+    edit("12.10", f"raises another error {value}", f"raise {start}", f"raise ArithmeticError({end}); ({end},")
+edit("12.10", "names the miss of the throw that missed by more", 'Diverged("miss of the last throw", misses[i],',
+     'Diverged("miss of the last throw", np.sqrt(r @ r),')
+edit("12.10", "names the first miss after all iterations", 'Diverged("miss of the last throw", misses[most],',
+     'Diverged("miss of the last throw", misses[0],')
+edit("12.10", "names the number of iterations", 'Diverged("miss of the last throw", misses[most],',
+     'Diverged("miss of the last throw", most,')
+edit("12.10", "drops the checked numbers", "s, tolerance, most = checked_search(s, tolerance, most)",
+     "checked_search(s, tolerance, most)")
+edit("12.10", "checks no s", "checked_search(s, tolerance, most)",
+     "s, *checked_search(0.0, tolerance, most)[1:]")
+edit("12.10", "checks no tolerance", "checked_search(s, tolerance, most)",
+     "(checked_search(s, 0.0, most)[0], tolerance, int(most))")
+edit("12.10", "checks no number of iterations", "checked_search(s, tolerance, most)",
+     "(*checked_search(s, tolerance, 1)[:2], max(int(most), 0))")
+for least in ("1e-15", "1e-12", "1e-9"):
+    edit("12.10", f"takes a miss below {least} for a hit", "if misses[i] <= tolerance",
+         f"if misses[i] <= max(tolerance, {least})")
+edit("12.10", "returns all misses, with zeros at the end", "misses[:i + 1]", "misses")
+edit("12.10", "stops where a step is small", "step = solve(J, r)",
+     "step = solve(J, r)\n        if np.abs(step).max() < 1e-6: return s, misses[:i + 1]")
+edit("12.10", "limits the step to 10", "step = solve(J, r)",
+     "step = solve(J, r); step = step * min(1.0, 10.0 / np.sqrt(step @ step))")
 
 
 # 12.11 ----------------------------------------------------------------------------------------------------------
@@ -588,6 +669,26 @@ edit("12.11", "returns a negative time where the error is too large", "return 0.
      "return np.log(allowed / error) / rate - 1e-9")
 edit("12.11", "divides by the allowed error, which may be 0", "allowed <= error", "1.0 <= error / allowed")
 edit("12.11", "returns infinity where the error is too large", "return 0.0", "return 1e300")
+ARC, AT_ONCE = "np.arccosh(allowed / error)", "    if allowed <= error:"
+for ratio in ("2", "10", "100", "1e3", "1e4", "1e5"):
+    edit("12.11", f"takes log(2x) for arccosh(x) above {ratio}", ARC,
+         f"(np.log(2.0 * allowed / error) if allowed > {ratio} * error else {ARC})")
+for near in ("1.04", "1.001", "1.0001", "1.000001"):
+    edit("12.11", f"returns 0 below a ratio of {near}", AT_ONCE, f"    if allowed <= {near} * error:")
+edit("12.11", "returns 0 where both errors are close", AT_ONCE,
+     "    if allowed <= error or np.isclose(allowed, error):")
+edit("12.11", "returns 0 where both errors are close, or small", AT_ONCE,
+     "    if allowed - error <= 1e-8:")
+edit("12.11", "takes the first two terms of the cosine near 1", ARC,
+     f"(np.sqrt(2.0 * (allowed / error - 1.0)) if allowed < 1.01 * error else {ARC})")
+edit("12.11", "takes no error below 1e-6", "allowed / error)", "allowed / max(error, 1e-6))")
+edit("12.11", "takes no error above 1e6", "allowed / error)", "allowed / min(error, 1e6))")
+edit("12.11", "takes no rate below 1", " / rate", " / max(rate, 1.0)")
+edit("12.11", "takes no rate below a thousandth", " / rate", " / max(rate, 1e-3)")
+edit("12.11", "takes no rate above 1000", " / rate", " / min(rate, 1e3)")
+edit("12.11", "takes a time of at most 20 s", f"return {ARC} / rate", f"return min({ARC} / rate, 20.0)")
+edit("12.11", "takes no ratio above 1e6", "allowed / error)", "min(allowed / error, 1e6))")
+edit("12.11", "returns the rate where the error is too large", "return 0.0", "return 1e-3 * rate")
 
 
 # 12.12 ----------------------------------------------------------------------------------------------------------
