@@ -68,6 +68,11 @@ def best_step(value, third, round_off):
     return np.exp((np.log(3.0) + np.log(round_off) + np.log(abs(value)) - np.log(abs(third))) / 3.0)
 
 
+@right("12.2", "by a cube root, in another order")
+def step_by_cube_root(value, third, round_off):
+    return float("inf") if third == 0 else float(np.cbrt(abs(3.0 * value * round_off / third)))
+
+
 edit("12.2", "makes both errors equal, not their sum small", "3.0 * round_off", "6.0 * round_off")
 edit("12.2", "takes the square root, as for a forward difference", "(1.0 / 3.0)", "(1.0 / 2.0)")
 edit("12.2", "forgets the factor 3", "3.0 * round_off", "round_off")
@@ -273,6 +278,14 @@ def event_time_sensitivity(gap_x, gap_v, gap_s, v, a, dx, dv):
     if abs(terms.sum()) <= 1e-12 * np.abs(terms).sum():
         raise BadInput("rate of the event", terms.sum(), "it only grazes")
     return np.array([-(gap_x @ dx[:, k] + gap_v @ dv[:, k] + gap_s[k]) / terms.sum() for k in range(gap_s.size)])
+
+
+@right("12.6", "entry by entry, in plain numbers")
+def entry_by_entry(gap_x, gap_v, gap_s, v, a, dx, dv):
+    rate = sum(float(y * z) for y, z in zip((*gap_x, *gap_v), (*v, *a), strict=True))
+    if abs(rate) <= 1e-12 * sum(abs(y * z) for y, z in zip((*gap_x, *gap_v), (*v, *a), strict=True)):
+        raise BadInput("rate of the event", rate, "change the inputs")
+    return list(-1.0 / rate * (np.concatenate((gap_x, gap_v)) @ np.vstack((dx, dv)) + gap_s))
 
 
 edit("12.6", "returns the opposite sign: an event that comes later", "return -(gap_x", "return (gap_x")
@@ -651,6 +664,12 @@ edit("12.10", "limits the step to 10", "step = solve(J, r)",
 def predicted_horizon(rate, error, allowed):
     growth = max(allowed / error, 1.0)
     return np.log(growth + np.sqrt(growth - 1.0) * np.sqrt(growth + 1.0)) / rate
+
+
+@right("12.11", "by the logarithm of x + √(x² − 1)")
+def horizon_by_logarithm(rate, error, allowed):
+    ratio = allowed / error
+    return 0 if ratio <= 1.0 else float(np.log(ratio + np.sqrt(ratio * ratio - 1.0))) / rate
 
 
 edit("12.11", "lets the whole error grow as e^(rate t)", "np.arccosh(allowed / error)", "np.log(allowed / error)")
