@@ -10,6 +10,18 @@ from . import collection, of_variants, variants
 wrong, right, edit, MUTANTS = collection(worked)
 wrongs, alike = of_variants(wrong)
 
+HOW = {"its sum": "{0}.sum() != 0.0", "its first entry": "{0}.flat[0] != 0.0", "its last entry": "{0}.flat[-1] != 0.0",
+       "its largest entry": "{0}.max() > 0.0", "a fixed small number": "np.abs({0}).max() > 1e-8"}
+
+
+def by_part(exercise, what, y, old, new, hows=tuple(HOW)):
+    """Wrong answers that take y for zero by less than all of it; KEPT in `new` is whether they do not."""
+    for how in hows:
+        edit(exercise, f"takes {what} for zero by {how}", old, new.replace("KEPT", f"({HOW[how].format(y)})"))
+
+
+TIMES = {"the size of": "abs(t)", "at most 1 for": "min(t, 1.0)", "at least 0 for": "max(t, 0.0)", "0 for": "0.0"}
+
 
 # 12.1 -----------------------------------------------------------------------------------------------------------
 @right("12.1", "as the mean of a difference ahead and one behind")
@@ -34,6 +46,18 @@ edit("12.1", "always takes a very short step", "(f(s + h, p) - f(s - h, p)) / (2
      "(f(s + 1e-6, p) - f(s - 1e-6, p)) / 2e-6")
 edit("12.1", "takes a forward difference at s = 0", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
      "(f(s + h, p) - f(s - h, p)) / (2.0 * h) if s != 0.0 else (f(s + h, p) - f(s, p)) / h")
+WHOLE = "(f(s + h, p) - f(s - h, p)) / (2.0 * h)"
+edit("12.1", "flattens an array", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) else {WHOLE}")
+edit("12.1", "flattens an array with two axes", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) == 2 else {WHOLE}")
+edit("12.1", "turns an array with two axes over", WHOLE, f"np.transpose({WHOLE})")
+edit("12.1", "returns the first row of an array with two axes", WHOLE,
+     f"({WHOLE})[0] if np.ndim(f(s, p)) > 1 else {WHOLE}")
+edit("12.1", "leaves out axes of one entry", WHOLE, f"np.squeeze({WHOLE}) if np.ndim(f(s, p)) > 1 else {WHOLE}")
+edit("12.1", "takes no step below a thousandth", WHOLE, WHOLE.replace("h", "max(h, 1e-3)"))
+edit("12.1", "takes no step above a thousand", WHOLE, WHOLE.replace("h", "min(h, 1e3)"))
+edit("12.1", "never divides by less than 1e-6", "(2.0 * h)", "max(2.0 * h, 1e-6)")
+edit("12.1", "takes the size of s", WHOLE, WHOLE.replace("f(s", "f(abs(s)"))
+edit("12.1", "rounds what is below 1e-12 to 0", WHOLE, f"np.round({WHOLE}, 12)")
 
 
 # 12.2 -----------------------------------------------------------------------------------------------------------
@@ -42,6 +66,11 @@ def best_step(value, third, round_off):
     if third == 0.0:
         return np.inf
     return np.exp((np.log(3.0) + np.log(round_off) + np.log(abs(value)) - np.log(abs(third))) / 3.0)
+
+
+@right("12.2", "by a cube root, in another order")
+def step_by_cube_root(value, third, round_off):
+    return float("inf") if third == 0 else float(np.cbrt(abs(3.0 * value * round_off / third)))
 
 
 edit("12.2", "makes both errors equal, not their sum small", "3.0 * round_off", "6.0 * round_off")
@@ -63,6 +92,20 @@ edit("12.2", "returns 1 where the third derivative is 0", "return np.inf", "retu
 edit("12.2", "always uses the round-off of floats", "3.0 * round_off", "3.0 * 2.2e-16")
 edit("12.2", "takes the root of the round-off only",
      "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)", "np.cbrt(round_off)")
+for small in (0.05, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-30, 1e-80):
+    edit("12.2", f"takes a third derivative below {small:g} for 0", "third == 0.0", f"np.abs(third) < {small}")
+edit("12.2", "takes a negative third derivative for 0", "third == 0.0", "third <= 0.0")
+edit("12.2", "takes a third derivative near 0 for 0", "third == 0.0", "np.isclose(third, 0.0)")
+edit("12.2", "adds a small number to the third derivative", "/ np.abs(third)", "/ (np.abs(third) + 1e-15)")
+edit("12.2", "adds a small number to f", "* np.abs(value)", "* (np.abs(value) + 1e-15)")
+edit("12.2", "takes an f below 1 for 1", "np.abs(value)", "np.maximum(np.abs(value), 1.0)")
+edit("12.2", "takes an f above 1000 for 1000", "np.abs(value)", "np.minimum(np.abs(value), 1e3)")
+edit("12.2", "takes a third derivative above 1000 for 1000", "/ np.abs(third)", "/ np.minimum(np.abs(third), 1e3)")
+edit("12.2", "takes no step above 1", "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)",
+     "min((3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0), 1.0)")
+edit("12.2", "takes no step below 1e-8", "(3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0)",
+     "max((3.0 * round_off * np.abs(value) / np.abs(third)) ** (1.0 / 3.0), 1e-8)")
+edit("12.2", "returns a large number where the third derivative is 0", "return np.inf", "return 1e300")
 
 
 # 12.3 -----------------------------------------------------------------------------------------------------------
@@ -87,6 +130,18 @@ edit("12.3", "returns one number for an array", "np.imag(f(s + 1j * h, p))",
      "np.sum(np.imag(f(s + 1j * h, p)))")
 edit("12.3", "takes a real difference at s = 0", "np.imag(f(s + 1j * h, p)) / h",
      "np.imag(f(s + 1j * h, p)) / h if s != 0.0 else (f(s + h, p) - f(s - h, p)) / (2.0 * h)")
+WHOLE = "np.imag(f(s + 1j * h, p)) / h"
+edit("12.3", "flattens an array", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) else {WHOLE}")
+edit("12.3", "flattens an array with two axes", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) == 2 else {WHOLE}")
+edit("12.3", "turns an array with two axes over", WHOLE, f"np.transpose({WHOLE})")
+edit("12.3", "returns the first row of an array with two axes", WHOLE,
+     f"({WHOLE})[0] if np.ndim(f(s, p)) > 1 else {WHOLE}")
+edit("12.3", "leaves out axes of one entry", WHOLE, f"np.squeeze({WHOLE}) if np.ndim(f(s, p)) > 1 else {WHOLE}")
+for most in ("1e-6", "1e3"):
+    edit("12.3", f"takes no step above {most}", WHOLE, WHOLE.replace(" h", f" min(h, {most})"))
+edit("12.3", "takes no step below 1e-30", WHOLE, WHOLE.replace("* h", "* max(h, 1e-30)"))
+edit("12.3", "takes the size of s", "f(s +", "f(abs(s) +")
+edit("12.3", "rounds what is below 1e-12 to 0", WHOLE, f"np.round({WHOLE}, 12)")
 
 
 # 12.4 -----------------------------------------------------------------------------------------------------------
@@ -125,6 +180,28 @@ edit("12.4", "moves x with the old velocity", "return x + dt * v_new, v_new", "r
 edit("12.4", "differentiates explicit Euler", "dv + dt * (a_x @ dx + a_v @ dv + a_s)",
      "dv + dt * (a_x @ dx + a_v @ dv + a_s); dx = dx - dt * dt * (a_x @ dx + a_v @ dv + a_s)")
 edit("12.4", "leaves the tangents as they are where dx and dv are 0", " + a_s)", " + (dx.any() or dv.any()) * a_s)")
+by_part("12.4", "dx", "dx", "a_x @ dx", "KEPT * (a_x @ dx)")
+by_part("12.4", "dv", "dv", "a_v @ dv", "KEPT * (a_v @ dv)")
+by_part("12.4", "a_s", "a_s", " + a_s)", " + KEPT * a_s)")
+by_part("12.4", "a_x", "a_x", "a_x @ dx", "KEPT * (a_x @ dx)")
+by_part("12.4", "a_v", "a_v", "a_v @ dv", "KEPT * (a_v @ dv)")
+by_part("12.4", "x", "x", "return x + dt", "return KEPT * x + dt")
+by_part("12.4", "v", "v", "v_new = v + dt", "v_new = KEPT * v + dt")
+by_part("12.4", "the old dx", "dx", "dx + dt * dv_new, dv_new", "KEPT * dx + dt * dv_new, dv_new")
+by_part("12.4", "the old dv", "dv", "dv + dt * (a_x", "KEPT * dv + dt * (a_x")
+by_part("12.4", "the new velocity", "v_new", "return x + dt * v_new", "return x + KEPT * dt * v_new", ["its sum"])
+by_part("12.4", "the acceleration", "acceleration(t, x, v, p)", "dt * acceleration(t, x, v, p)",
+        "KEPT * dt * acceleration(t, x, v, p)")
+by_part("12.4", "dx and dv together", "(dx + dv)", " + a_s)", " + KEPT * a_s)")
+for what, time in TIMES.items():
+    edit("12.4", f"takes {what} the time of the derivatives", "derivatives(t,", f"derivatives({time},")
+    edit("12.4", f"takes {what} the time of the acceleration", "acceleration(t,", f"acceleration({time},")
+edit("12.4", "takes no step below a thousandth", "v_new = v +", "dt = max(dt, 1e-3); v_new = v +")
+edit("12.4", "takes the step of the tangents for a thousandth at least", "dv + dt *", "dv + max(dt, 1e-3) *")
+edit("12.4", "rounds the tangents to twelve digits", "dv_new = dv + dt * (a_x @ dx + a_v @ dv + a_s)",
+     "dv_new = np.round(dv + dt * (a_x @ dx + a_v @ dv + a_s), 12)")
+edit("12.4", "moves only the first input", " + a_s)", " + a_s * (np.arange(a_s.shape[1]) == 0))")
+edit("12.4", "takes the derivatives at the place at rest", "derivatives(t, x, v, p)", "derivatives(t, x, 0.0 * v, p)")
 
 
 # 12.5 -----------------------------------------------------------------------------------------------------------
@@ -164,6 +241,34 @@ edit("12.5", "moves the state by an explicit step", "implicit_euler_step(acceler
      "x + dt * v, v + dt * acceleration(t, x, v, p)")
 edit("12.5", "leaves the tangents as they are where dx and dv are 0", "(a_x @ dx + a_s)",
      "(a_x @ dx + (dx.any() or dv.any()) * a_s)")
+RIGHT = "dv + dt * (a_x @ dx + a_s)"
+by_part("12.5", "dx", "dx", "a_x @ dx", "KEPT * (a_x @ dx)")
+by_part("12.5", "a_s", "a_s", " + a_s))", " + KEPT * a_s))")
+by_part("12.5", "dv", "dv", RIGHT, f"KEPT * {RIGHT}")
+by_part("12.5", "a_x", "a_x", " - dt * dt * a_x", " - KEPT * dt * dt * a_x")
+by_part("12.5", "a_v", "a_v", " - dt * a_v", " - KEPT * dt * a_v")
+by_part("12.5", "the right-hand side", f"({RIGHT})", RIGHT, f"KEPT * ({RIGHT})")
+by_part("12.5", "dx and dv together", "(dx + dv)", " + a_s))", " + KEPT * a_s))")
+by_part("12.5", "the old dx", "dx", "dx + dt * dv_new, dv_new", "KEPT * dx + dt * dv_new, dv_new")
+by_part("12.5", "x", "x", "step(acceleration, t, x,", "step(acceleration, t, KEPT * x,", ["its sum", "its last entry"])
+by_part("12.5", "v", "v", "step(acceleration, t, x, v,", "step(acceleration, t, x, KEPT * v,",
+        ["its sum", "its last entry"])
+for what, time in TIMES.items():
+    edit("12.5", f"takes {what} the time of the derivatives", "derivatives(t +", f"derivatives({time} +")
+    edit("12.5", f"takes {what} the time of the step", "step(acceleration, t,", f"step(acceleration, {time},")
+edit("12.5", "takes the size of the time at the end of the step", "derivatives(t + dt,", "derivatives(abs(t + dt),")
+edit("12.5", "takes the step of the tangents for a thousandth at least", "    dv_new =",
+     "    dt = max(dt, 1e-3); dv_new =")
+edit("12.5", "rounds the tangents to twelve digits", "return x_new, v_new, dx + dt * dv_new, dv_new",
+     "return x_new, v_new, dx + dt * dv_new, np.round(dv_new, 12)")
+edit("12.5", "takes the derivatives at the old velocity", "derivatives(t + dt, x_new, v_new, p)",
+     "derivatives(t + dt, x_new, v, p)")
+edit("12.5", "takes the derivatives at the old position", "derivatives(t + dt, x_new, v_new, p)",
+     "derivatives(t + dt, x, v_new, p)")
+edit("12.5", "moves the state where no step is found",
+     "x_new, v_new = implicit_euler_step(acceleration, t, x, v, dt, p)",
+     "try:\n        x_new, v_new = implicit_euler_step(acceleration, t, x, v, dt, p)\n"
+     "    except Diverged:\n        x_new, v_new = x, v")
 
 
 # 12.6 -----------------------------------------------------------------------------------------------------------
@@ -173,6 +278,14 @@ def event_time_sensitivity(gap_x, gap_v, gap_s, v, a, dx, dv):
     if abs(terms.sum()) <= 1e-12 * np.abs(terms).sum():
         raise BadInput("rate of the event", terms.sum(), "it only grazes")
     return np.array([-(gap_x @ dx[:, k] + gap_v @ dv[:, k] + gap_s[k]) / terms.sum() for k in range(gap_s.size)])
+
+
+@right("12.6", "entry by entry, in plain numbers")
+def entry_by_entry(gap_x, gap_v, gap_s, v, a, dx, dv):
+    rate = sum(float(y * z) for y, z in zip((*gap_x, *gap_v), (*v, *a), strict=True))
+    if abs(rate) <= 1e-12 * sum(abs(y * z) for y, z in zip((*gap_x, *gap_v), (*v, *a), strict=True)):
+        raise BadInput("rate of the event", rate, "change the inputs")
+    return list(-1.0 / rate * (np.concatenate((gap_x, gap_v)) @ np.vstack((dx, dv)) + gap_s))
 
 
 edit("12.6", "returns the opposite sign: an event that comes later", "return -(gap_x", "return (gap_x")
@@ -200,6 +313,42 @@ edit("12.6", "compares the rate with its sign", "np.abs(rate) <=", "rate <=")
 edit("12.6", "refuses only a rate below the limit, not zero", f"np.abs(rate) <= {SIZES}", f"np.abs(rate) < {SIZES}")
 edit("12.6", "forgets dx where nothing accelerates",
      "-(gap_x @ dx", "-(a.any() * gap_x @ dx")
+RATE = "rate = gap_x @ v + gap_v @ a"
+by_part("12.6", "gap_x", "gap_x", "(gap_x @ dx", "(KEPT * gap_x @ dx")
+by_part("12.6", "dx", "dx", "(gap_x @ dx", "(KEPT * gap_x @ dx")
+by_part("12.6", "gap_v", "gap_v", "+ gap_v @ dv", "+ KEPT * gap_v @ dv")
+by_part("12.6", "dv", "dv", "+ gap_v @ dv", "+ KEPT * gap_v @ dv")
+by_part("12.6", "gap_s", "gap_s", "+ gap_s) / rate", "+ KEPT * gap_s) / rate")
+by_part("12.6", "dx and dv together", "(dx + dv)", "+ gap_s) / rate", "+ KEPT * gap_s) / rate")
+FEW = [how for how in HOW if how != "a fixed small number"]
+by_part("12.6", "gap_x in the rate", "gap_x", RATE, "rate = KEPT * (gap_x @ v) + gap_v @ a", FEW)
+by_part("12.6", "v in the rate", "v", RATE, "rate = KEPT * (gap_x @ v) + gap_v @ a")
+by_part("12.6", "gap_v in the rate", "gap_v", RATE, "rate = gap_x @ v + KEPT * (gap_v @ a)", FEW)
+by_part("12.6", "a in the rate", "a", RATE, "rate = gap_x @ v + KEPT * (gap_v @ a)", FEW)
+for limit in ("0.0", "1e-15", "2.2e-16", "1e-14", "0.98e-12", "1.02e-12", "2e-12", "1e-11", "5e-10", "1e-9"):
+    edit("12.6", f"takes {limit} for GRAZING", "<= GRAZING *", f"<= {limit} *")
+edit("12.6", "compares with the sizes of the arrays, not with those of the terms",
+     "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "(np.sqrt((gap_x @ gap_x) * (v @ v)) + np.sqrt((gap_v @ gap_v) * (a @ a)))")
+edit("12.6", "compares with the sum of the largest terms", "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "(np.abs(gap_x * v).max() + np.abs(gap_v * a).max())")
+edit("12.6", "compares with the largest term", "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "np.maximum(np.abs(gap_x * v).max(), np.abs(gap_v * a).max())")
+edit("12.6", "compares with the sizes of both products", "(np.abs(gap_x) @ np.abs(v) + np.abs(gap_v) @ np.abs(a))",
+     "(np.abs(gap_x @ v) + np.abs(gap_v @ a))")
+edit("12.6", "compares with the sizes of the terms of v alone", " + np.abs(gap_v) @ np.abs(a)", "")
+edit("12.6", "compares with the sizes of the terms of a alone", "np.abs(gap_x) @ np.abs(v) + ", "")
+edit("12.6", "compares with sizes that are at least 1", f"<= {SIZES}", f"<= max({SIZES}, 1e-12)")
+edit("12.6", "compares with sizes that are at most 1", f"<= {SIZES}", f"<= min({SIZES}, 1e-12)")
+edit("12.6", "names another thing", '"rate of the event"', '"the event"')
+edit("12.6", "names the time in place of the rate", '"rate of the event"', '"time of the event"')
+edit("12.6", "names no value", 'event", rate, "an', 'event", "too small", "an')
+edit("12.6", "names zero, not the rate", 'event", rate, "an', 'event", 0.0, "an')
+edit("12.6", "names the size of the rate", 'event", rate, "an', 'event", np.abs(rate), "an')
+edit("12.6", "names the velocity", 'event", rate, "an', 'event", v, "an')
+edit("12.6", "raises Diverged", "raise BadInput(", "raise Diverged(")
+edit("12.6", "raises another error", 'raise BadInput("rate of the event", rate, "an event that only grazes has no '
+     'sensitivity: change the inputs")', 'raise ValueError(f"rate of the event is {rate}")')
 
 
 # 12.7 -----------------------------------------------------------------------------------------------------------
@@ -242,6 +391,18 @@ edit("12.7", "exchanges rows and columns of the outer product", "np.outer(v - v_
 edit("12.7", "takes the state at the impact, not at a fixed time", PLACE, "dx + np.outer(v, dtau)")
 edit("12.7", "returns dx and dv unchanged where the time of the impact does not move", "at_impact = dv",
      "if not dtau.any(): return dx.copy(), dv.copy()\n    at_impact = dv")
+by_part("12.7", "dtau", "dtau", "v - v_new, dtau", "KEPT * (v - v_new), dtau")
+by_part("12.7", "the change of the velocity", "(v - v_new)", "v - v_new, dtau", "KEPT * (v - v_new), dtau")
+by_part("12.7", "v", "v", "v - v_new, dtau", "KEPT * v - v_new, dtau")
+by_part("12.7", "v_new", "v_new", "v - v_new, dtau", "v - KEPT * v_new, dtau")
+by_part("12.7", "a", "a", "np.outer(a, dtau)", "np.outer(KEPT * a, dtau)")
+by_part("12.7", "a_new", "a_new", "np.outer(a_new, dtau)", "np.outer(KEPT * a_new, dtau)")
+by_part("12.7", "dx", "dx", "return dx + np", "return KEPT * dx + np")
+by_part("12.7", "dv", "dv", "at_impact = dv", "at_impact = KEPT * dv")
+by_part("12.7", "R_v", "R_v", "R_v @ at_impact", "KEPT * R_v @ at_impact", FEW)
+by_part("12.7", "R_s", "R_s", "at_impact + R_s", "at_impact + KEPT * R_s")
+by_part("12.7", "dtau, which leaves dv alone,", "dtau", "at_impact = dv + np.outer(a, dtau)",
+        "dtau = KEPT * dtau; at_impact = dv + np.outer(a, dtau)")
 
 
 # 12.8 -----------------------------------------------------------------------------------------------------------
@@ -279,6 +440,35 @@ edit("12.8", "computes where a ball grazes",
      "event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)", "-(n @ dx + gap_s) / (v @ n - 1e-300)")
 edit("12.8", "takes the time of the impact for fixed where nothing accelerates", "saltation(dtau,",
      "saltation(a.any() * dtau,")
+R_S = "-(v @ n) * np.outer(n, e_s)"
+by_part("12.8", "a", "a", "v, a, v_new, a, R_v", "v, KEPT * a, v_new, a, R_v")
+by_part("12.8", "a behind the impact", "a", "v, a, v_new, a, R_v", "v, a, v_new, KEPT * a, R_v")
+by_part("12.8", "dx", "dx", "saltation(dtau, dx,", "saltation(dtau, KEPT * dx,")
+by_part("12.8", "dx at the event", "dx", "gap_s, v, a, dx,", "gap_s, v, a, KEPT * dx,")
+by_part("12.8", "dv", "dv", "dtau, dx, dv, v,", "dtau, dx, KEPT * dv, v,")
+by_part("12.8", "gap_s", "gap_s", "n, gap_s, v", "n, KEPT * gap_s, v")
+by_part("12.8", "e_s", "e_s", R_S, f"KEPT * {R_S}")
+by_part("12.8", "n", "n", "- (1.0 + e) * np.outer(n, n)", "- KEPT * (1.0 + e) * np.outer(n, n)", FEW[:3])
+by_part("12.8", "v", "v", R_S, f"KEPT * {R_S}", FEW)
+for change in ("max(e, 0.1)", "max(e, 1e-3)", "max(e, 1e-6)", "(0.0 if e < 0.1 else e)", "(0.0 if e < 1e-2 else e)",
+               "(0.0 if e < 1e-5 else e)", "min(e, 0.9)", "min(e, 0.99)", "(1.0 if e > 0.95 else e)",
+               "(1.0 if e > 0.999 else e)", "(e or 0.5)", "(e if e < 1.0 else 0.5)"):
+    edit("12.8", f"takes {change} for e in R_v", "- (1.0 + e) * np.outer", f"- (1.0 + {change}) * np.outer")
+    edit("12.8", f"takes {change} for e in the velocity", "response(v, n, e)", f"response(v, n, {change})")
+edit("12.8", "takes e for no input where it is 0", R_S, f"(e > 0.0) * {R_S}")
+edit("12.8", "takes e for no input where it is 1", R_S, f"(e < 1.0) * {R_S}")
+for least in ("1e-11", "1e-9", "1e-6"):
+    edit("12.8", f"refuses an impact slower than {least} m/s", "    v_new = kinematic_response(v, n, e)",
+         f'    if -(v @ n) < {least}: raise BadInput("rate of the event", v @ n, "too slow")\n'
+         "    v_new = kinematic_response(v, n, e)")
+edit("12.8", "catches the error of a ball that grazes", "event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)",
+     "np.zeros(gap_s.size) if np.abs(v @ n) < 1e-12 else event_time_sensitivity(n, 0.0 * n, gap_s, v, a, dx, dv)")
+edit("12.8", "raises another error", "    v_new = kinematic_response(v, n, e)",
+     '    if -(v @ n) <= 1e-12 * (np.abs(v) @ np.abs(n)): raise ValueError("it grazes")\n'
+     "    v_new = kinematic_response(v, n, e)")
+edit("12.8", "names another thing", "    v_new = kinematic_response(v, n, e)",
+     '    if -(v @ n) <= 1e-12 * (np.abs(v) @ np.abs(n)): raise BadInput("velocity", v @ n, "it grazes")\n'
+     "    v_new = kinematic_response(v, n, e)")
 
 
 # 12.9 -----------------------------------------------------------------------------------------------------------
@@ -324,6 +514,31 @@ edit("12.9", "divides by the logarithm of one step", "(np.log(steps[1:]) - np.lo
 edit("12.9", "divides by f(s), which may be 0", "remainder = np.abs(", "remainder = 1.0 / np.abs(f(s, p)) * np.abs(")
 edit("12.9", "takes a gradient of 0 for right: the order 2", "logs = np.zeros(steps.size)",
      "if not gradient.any(): return np.full(steps.size - 1, 2.0)\n    logs = np.zeros(steps.size)")
+CHECK = 'check_positive("remainder of a step", remainder)'
+by_part("12.9", "the direction", "direction", "f(s + h * direction, p)", "f(s + KEPT * h * direction, p)")
+by_part("12.9", "the direction at the gradient", "direction", "h * (gradient", "KEPT * h * (gradient")
+by_part("12.9", "the gradient", "gradient", "h * (gradient", "KEPT * h * (gradient")
+by_part("12.9", "the gradient, which then is right,", "gradient", "    logs = np.zeros(steps.size)",
+        "    if not KEPT: return np.full(steps.size - 1, 2.0)\n    logs = np.zeros(steps.size)", ["its sum"])
+by_part("12.9", "the place", "s", "- f(s, p)", "- f(KEPT * s, p)", FEW[:3])
+edit("12.9", "takes a direction across the gradient for none", "h * (gradient @ direction)",
+     "h * (gradient @ direction or 1.0)")
+for part in ("i == 0", "i == steps.size - 1", "i in (0, steps.size - 1)", "i > 0", "i < steps.size - 1", "i == 1"):
+    edit("12.9", f"refuses a remainder of 0 only where {part}", CHECK, f"_ = {part} and {CHECK}")
+for least in ("1e-6", "1e-12", "1e-15", "1e-18", "1e-25"):
+    edit("12.9", f"refuses a remainder below {least}", CHECK,
+         f'check_positive("remainder of a step", remainder if remainder > {least} else 0.0)')
+    edit("12.9", f"takes a remainder for {least} at least", "log(remainder)", f"log(max(remainder, {least}))")
+edit("12.9", "adds a small number to the remainder", "log(remainder)", "log(remainder + 1e-20)")
+edit("12.9", "takes no step below a millionth", "h = steps[i]", "h = max(steps[i], 1e-6)")
+edit("12.9", "takes no step above 1", "h = steps[i]", "h = min(steps[i], 1.0)")
+edit("12.9", "names another thing", '"remainder of a step"', '"the step"')
+edit("12.9", "names the step, not the remainder", CHECK,
+     'check_positive("remainder of a step", -h if remainder == 0.0 else remainder)')
+edit("12.9", "raises another error", CHECK, 'if remainder == 0.0: raise ValueError("remainder of a step is 0.0")')
+edit("12.9", "raises Diverged", CHECK, 'if remainder == 0.0: raise Diverged("remainder of a step", 0.0, "stop")')
+edit("12.9", "limits the orders to 2", "    return (logs[1:] - logs[:-1]) / (np.log(steps[1:]) - np.log(steps[:-1]))",
+     "    return np.minimum((logs[1:] - logs[:-1]) / (np.log(steps[1:]) - np.log(steps[:-1])), 2.0)")
 
 
 # 12.10 ----------------------------------------------------------------------------------------------------------
@@ -386,6 +601,62 @@ edit("12.10", "keeps the Jacobian of the first throw", "step = solve(J, r)",
      "step = solve(miss(s, p)[1] if i == 0 else first, r); first = miss(s, p)[1] if i == 0 else first")
 edit("12.10", "takes the halved step from where the long step ended", "step = 0.5 * step",
      "s, step = s - step, 0.5 * step")
+for most in (4, 9, 19, 29, 38, 39, 41, 42, 49, 59, 99, 199):
+    edit("12.10", f"halves a step at most {most} times", "MOST_HALVINGS + 1", f"{most} + 1")
+edit("12.10", "counts the whole step as a halving", "MOST_HALVINGS + 1", "MOST_HALVINGS")
+edit("12.10", "halves until the miss is smaller or the same", "np.sqrt(r @ r) < misses[i]",
+     "np.sqrt(r @ r) <= misses[i]")
+edit("12.10", "takes a tenth less for smaller", "np.sqrt(r @ r) < misses[i]", "np.sqrt(r @ r) < 0.9 * misses[i]")
+edit("12.10", "takes a quarter of the step", "step = 0.5 * step", "step = 0.25 * step")
+edit("12.10", "takes two thirds of the step", "step = 0.5 * step", "step = step / 1.5")
+edit("12.10", "computes a new step beyond", "step = 0.5 * step", "step = 0.5 * solve(J, r)")
+for how, size in (("the sum of its entries", "np.abs(np.sum(r))"), ("its largest entry", "np.max(np.abs(r))"),
+                  ("the sum of their sizes", "np.sum(np.abs(r))"), ("its first entry", "np.abs(r[0])"),
+                  ("its last entry", "np.abs(r[-1])"), ("the mean of the squares", "np.sqrt(np.mean(r * r))")):
+    alike("12.10", f"measures the miss by {how}", aiming, {"size": eval(f"lambda r: {size}", {"np": np})})
+    edit("12.10", f"measures the first miss by {how}", "misses[0] = np.sqrt(r @ r)", f"misses[0] = {size}")
+    edit("12.10", f"measures the later misses by {how}", "s - step, np.sqrt(r @ r)", f"s - step, {size}")
+    edit("12.10", f"compares {how} with the miss before", "if np.sqrt(r @ r) <", f"if {size} <")
+for how, solving in (("by least squares", "np.linalg.lstsq(J, r, rcond=None)[0]"), ("by a pseudo-inverse",
+                     "np.linalg.pinv(J) @ r"), ("with a small number on the diagonal",
+                     "solve(J + 1e-12 * np.eye(r.size), r)"), ("or takes none where that is singular",
+                     "solve(J, r) if np.linalg.det(J) != 0.0 else 0.0 * r")):
+    edit("12.10", f"solves for the step {how}", "step = solve(J, r)", f"step = {solving}")
+edit("12.10", "raises Diverged where J is singular", "step = solve(J, r)",
+     "if np.linalg.det(J) == 0.0: raise Diverged('miss of the last throw', misses[i], 'begin elsewhere')\n"
+     "        step = solve(J, r)")
+edit("12.10", "raises BadInput where J is singular", "step = solve(J, r)",
+     "if np.linalg.det(J) == 0.0: raise BadInput('sensitivity', J, 'begin elsewhere')\n        step = solve(J, r)")
+edit("12.10", "looks at J where the first throw hits", "misses[0] = np.sqrt(r @ r)",
+     "misses[0] = np.sqrt(r @ r); solve(J, r)")
+for end, value in (("misses[most]", "after all iterations"), ("misses[i]", "after all halvings")):
+    start = f'Diverged("miss of the last throw", {end},'
+    edit("12.10", f"names another thing {value}", start, start.replace("miss of the last throw", "miss"))
+    edit("12.10", f"names the first miss {value}", start, start.replace(end, "misses[0] + 1.0"))
+    edit("12.10", f"raises BadInput {value}", start, start.replace("Diverged", "BadInput"))
+    edit("12.10", f"raises another error {value}", f"raise {start}", f"raise ArithmeticError({end}); ({end},")
+edit("12.10", "names the miss of the throw that missed by more", 'Diverged("miss of the last throw", misses[i],',
+     'Diverged("miss of the last throw", np.sqrt(r @ r),')
+edit("12.10", "names the first miss after all iterations", 'Diverged("miss of the last throw", misses[most],',
+     'Diverged("miss of the last throw", misses[0],')
+edit("12.10", "names the number of iterations", 'Diverged("miss of the last throw", misses[most],',
+     'Diverged("miss of the last throw", most,')
+edit("12.10", "drops the checked numbers", "s, tolerance, most = checked_search(s, tolerance, most)",
+     "checked_search(s, tolerance, most)")
+edit("12.10", "checks no s", "checked_search(s, tolerance, most)",
+     "s, *checked_search(0.0, tolerance, most)[1:]")
+edit("12.10", "checks no tolerance", "checked_search(s, tolerance, most)",
+     "(checked_search(s, 0.0, most)[0], tolerance, int(most))")
+edit("12.10", "checks no number of iterations", "checked_search(s, tolerance, most)",
+     "(*checked_search(s, tolerance, 1)[:2], max(int(most), 0))")
+for least in ("1e-15", "1e-12", "1e-9"):
+    edit("12.10", f"takes a miss below {least} for a hit", "if misses[i] <= tolerance",
+         f"if misses[i] <= max(tolerance, {least})")
+edit("12.10", "returns all misses, with zeros at the end", "misses[:i + 1]", "misses")
+edit("12.10", "stops where a step is small", "step = solve(J, r)",
+     "step = solve(J, r)\n        if np.abs(step).max() < 1e-6: return s, misses[:i + 1]")
+edit("12.10", "limits the step to 10", "step = solve(J, r)",
+     "step = solve(J, r); step = step * min(1.0, 10.0 / np.sqrt(step @ step))")
 
 
 # 12.11 ----------------------------------------------------------------------------------------------------------
@@ -393,6 +664,12 @@ edit("12.10", "takes the halved step from where the long step ended", "step = 0.
 def predicted_horizon(rate, error, allowed):
     growth = max(allowed / error, 1.0)
     return np.log(growth + np.sqrt(growth - 1.0) * np.sqrt(growth + 1.0)) / rate
+
+
+@right("12.11", "by the logarithm of x + √(x² − 1)")
+def horizon_by_logarithm(rate, error, allowed):
+    ratio = allowed / error
+    return 0 if ratio <= 1.0 else float(np.log(ratio + np.sqrt(ratio * ratio - 1.0))) / rate
 
 
 edit("12.11", "lets the whole error grow as e^(rate t)", "np.arccosh(allowed / error)", "np.log(allowed / error)")
@@ -411,6 +688,26 @@ edit("12.11", "returns a negative time where the error is too large", "return 0.
      "return np.log(allowed / error) / rate - 1e-9")
 edit("12.11", "divides by the allowed error, which may be 0", "allowed <= error", "1.0 <= error / allowed")
 edit("12.11", "returns infinity where the error is too large", "return 0.0", "return 1e300")
+ARC, AT_ONCE = "np.arccosh(allowed / error)", "    if allowed <= error:"
+for ratio in ("2", "10", "100", "1e3", "1e4", "1e5"):
+    edit("12.11", f"takes log(2x) for arccosh(x) above {ratio}", ARC,
+         f"(np.log(2.0 * allowed / error) if allowed > {ratio} * error else {ARC})")
+for near in ("1.04", "1.001", "1.0001", "1.000001"):
+    edit("12.11", f"returns 0 below a ratio of {near}", AT_ONCE, f"    if allowed <= {near} * error:")
+edit("12.11", "returns 0 where both errors are close", AT_ONCE,
+     "    if allowed <= error or np.isclose(allowed, error):")
+edit("12.11", "returns 0 where both errors are close, or small", AT_ONCE,
+     "    if allowed - error <= 1e-8:")
+edit("12.11", "takes the first two terms of the cosine near 1", ARC,
+     f"(np.sqrt(2.0 * (allowed / error - 1.0)) if allowed < 1.01 * error else {ARC})")
+edit("12.11", "takes no error below 1e-6", "allowed / error)", "allowed / max(error, 1e-6))")
+edit("12.11", "takes no error above 1e6", "allowed / error)", "allowed / min(error, 1e6))")
+edit("12.11", "takes no rate below 1", " / rate", " / max(rate, 1.0)")
+edit("12.11", "takes no rate below a thousandth", " / rate", " / max(rate, 1e-3)")
+edit("12.11", "takes no rate above 1000", " / rate", " / min(rate, 1e3)")
+edit("12.11", "takes a time of at most 20 s", f"return {ARC} / rate", f"return min({ARC} / rate, 20.0)")
+edit("12.11", "takes no ratio above 1e6", "allowed / error)", "min(allowed / error, 1e6))")
+edit("12.11", "returns the rate where the error is too large", "return 0.0", "return 1e-3 * rate")
 
 
 # 12.12 ----------------------------------------------------------------------------------------------------------
