@@ -129,14 +129,14 @@ def event_time_sensitivity(gap_x, gap_v, gap_s, v, a, dx, dv):
 
 
 def saltation(dtau, dx, dv, v, a, v_new, a_new, R_v, R_s):
-    """Return (dx, dv) just behind an impact, at which the velocity jumps to  v⁺ = R(v⁻; s)  while x stays.
+    """Return (dx, dv) just after an impact, at which the velocity jumps to  v⁺ = R(v⁻; s)  while x stays.
 
-    *Find* both at a fixed time behind the impact.  A change of the inputs moves the impact by dtau: until then the
+    *Find* both at a fixed time after the impact.  A change of the inputs moves the impact by dtau: until then the
     point has v⁻ and a⁻, and from then on v⁺ and a⁺.
 
-    dtau (m,) from event_time_sensitivity; dx, dv (d, m), v and a (d,) before the impact; v_new, a_new (d,) behind it;
+    dtau (m,) from event_time_sensitivity; dx, dv (d, m), v and a (d,) before the impact; v_new, a_new (d,) after it;
     R_v (d, d) and R_s (d, m) the derivatives of R.
-    A ball that is dropped from h on a floor with e has ∂x/∂h = −e just behind the impact: −1 for e = 1, because a ball
+    A ball that is dropped from h on a floor with e has ∂x/∂h = −e just after the impact: −1 for e = 1, because a ball
     that is dropped from higher comes later, and is lower at the same time.
     *Source:* Aizerman and Gantmakher 1958; Leine and Nijmeijer 2004.
     """
@@ -145,7 +145,7 @@ def saltation(dtau, dx, dv, v, a, v_new, a_new, R_v, R_s):
 
 
 def bounce(v, a, dx, dv, n, e, gap_s, e_s):
-    """Return (v, dx, dv) of a point just behind its impact on a plane without friction.
+    """Return (v, dx, dv) of a point just after its impact on a plane without friction.
 
     v⁺ = kinematic_response(v, n, e) = v − (1 + e) (v · n) n        of lesson 7
     dtau = event_time_sensitivity(…)     of the gap  φ = n · (x − point),  with φ_x = n, φ_v = 0, φ_s = gap_s

@@ -20,7 +20,7 @@ fault("event_time_sensitivity", "+ gap_s) / rate", ") / rate", "an event does no
 fault("event_time_sensitivity", "return -(gap_x", "return (gap_x", "a later event is an earlier one")
 fault("event_time_sensitivity", "+ gap_v @ dv", "", "an event in the velocity does not move with it")
 fault("saltation", "dx + np.outer(v - v_new, dtau)", "dx", "the time of the impact does not move the place")
-fault("saltation", "- np.outer(a_new, dtau)", "", "the fall behind the impact is forgotten")
+fault("saltation", "- np.outer(a_new, dtau)", "", "the fall after the impact is forgotten")
 fault("saltation", "+ R_s", "", "the jump does not depend on the inputs itself")
 fault("bounce", "-(v @ n) * np.outer(n, e_s)", "0.0 * np.outer(n, e_s)", "restitution is never an input")
 fault("bounce", "(1.0 + e) * np.outer(n, n)", "2.0 * np.outer(n, n)", "every bounce is elastic for the sensitivities")

@@ -628,7 +628,7 @@ def jumps(draw):
 
 @exercise("12.7", points=1,
           hint="dx⁺ = dx⁻ + (v⁻ − v⁺) dtauᵀ;  dv⁺ = R_v (dv⁻ + a⁻ dtauᵀ) + R_s − a⁺ dtauᵀ, with np.outer for y dtauᵀ")
-def test_behind_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw):
+def test_after_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw):
     """The jump v⁺ = R v⁻ is any matrix that depends on the inputs, and the acceleration changes at the impact, too."""
     for numbers, (n, x, v, a, c, X, V, c_s), tau in drops(draw):
         d, m = X.shape
@@ -639,20 +639,20 @@ def test_behind_a_jump_the_sensitivities_are_those_at_a_fixed_time(lesson, draw)
         R_s = np.einsum("ijk,j->ik", R_by, v_old)
         dx, dv = lesson.saltation(dtau, X + tau * V, V, v_old, a, R @ v_old, a_new, R, R_s)
         given = f"coordinates: {d}, inputs: {m}, dtau = {dtau}"
-        close("dx behind the impact", dx, expected[0], 1e-10, given=given)
-        close("dv behind the impact", dv, expected[1], 1e-10, given=given)
+        close("dx after the impact", dx, expected[0], 1e-10, given=given)
+        close("dv after the impact", dv, expected[1], 1e-10, given=given)
     for dtau, dx, dv, v, a, v_new, a_new, R_v, R_s, metre, unit_of_s in jumps(draw):
         expected = slopes(after_jump, 0.0, (0.0, dtau), (0.0 * v, dx), (v, dv), a, a_new, R_v, (v_new - R_v @ v, R_s))
         got = lesson.saltation(dtau, dx, dv, v, a, v_new, a_new, R_v, R_s)
         for name, by, right in zip(("dx", "dv"), got, expected, strict=True):
             unit_of_by = metre * unit_of_s
-            close(f"{name} behind an impact, per unit of the inputs", np.asarray(by) / unit_of_by, right / unit_of_by,
+            close(f"{name} after an impact, per unit of the inputs", np.asarray(by) / unit_of_by, right / unit_of_by,
                   1e-10, given=f"dtau = {dtau}, v = {v} m/s, a = {a} m/s², v_new = {v_new} m/s, a_new = {a_new} m/s²")
 
 
 @exercise("12.7", points=1,
           hint="a ball from higher meets the floor later: dx⁺ gains (v⁻ − v⁺) dtau, which makes −e of 1")
-def test_a_ball_that_is_dropped_from_higher_is_lower_just_behind_its_bounce(lesson, draw):
+def test_a_ball_that_is_dropped_from_higher_is_lower_just_after_its_bounce(lesson, draw):
     """With τ = √(2h/g):  x(t) = e g τ (t − τ) − ½ g (t − τ)²;  inputs are h and e."""
     for e in (0.0, 1.0, draw(0.3, 0.9)):
         h, g = draw(0.5, 2.0), 9.81
@@ -661,8 +661,8 @@ def test_a_ball_that_is_dropped_from_higher_is_lower_just_behind_its_bounce(less
         dx, dv = lesson.saltation(np.array([1.0 / (g * tau), 0.0]), np.array([[1.0, 0.0]]), np.zeros((1, 2)), v, a,
                                   -e * v, a, np.array([[-e]]), np.array([[0.0, g * tau]]))
         given = f"h = {h} m, e = {e}"
-        close("∂x/∂h and ∂x/∂e just behind the bounce", dx, [[-e, 0.0]], ROUND_OFF, given=given)
-        close("∂v/∂h and ∂v/∂e just behind the bounce", dv, [[(1.0 + e) / tau, g * tau]], ROUND_OFF, given=given)
+        close("∂x/∂h and ∂x/∂e just after the bounce", dx, [[-e, 0.0]], ROUND_OFF, given=given)
+        close("∂v/∂h and ∂v/∂e just after the bounce", dv, [[(1.0 + e) / tau, g * tau]], ROUND_OFF, given=given)
 
 
 def reflected(n, e):
@@ -681,9 +681,9 @@ def test_a_bounce_has_the_sensitivities_of_a_flight_and_its_reflection(lesson, d
         v_old = v + tau * a
         got_v, dx, dv = lesson.bounce(v_old, a, X + tau * V, V, n, e, -c_s, e_s)
         given = f"coordinates: {d}, inputs: {m}, n = {n}, e = {e}"
-        close("velocity behind the bounce [m/s]", got_v, reflected(n, e) @ v_old, ROUND_OFF, given=given)
-        close("dx behind the bounce", dx, expected[0], 1e-10, given=given)
-        close("dv behind the bounce", dv, expected[1], 1e-10, given=given)
+        close("velocity after the bounce [m/s]", got_v, reflected(n, e) @ v_old, ROUND_OFF, given=given)
+        close("dx after the bounce", dx, expected[0], 1e-10, given=given)
+        close("dv after the bounce", dv, expected[1], 1e-10, given=given)
 
 
 def impacts(draw):
@@ -721,8 +721,8 @@ def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
             still, e_s = np.zeros((d, 2)), np.array([0.0, draw(0.5, 2.0)])
             _, dx, dv = lesson.bounce(v, a, still, still, n, e, np.zeros(2), e_s)
             given = f"v = {v} m/s, n = {n}, e = {e}"
-            close("dx behind the bounce, for the input e", dx, still, 0.0, given=given)
-            close("dv behind the bounce, for the input e", dv, -(v @ n) * np.outer(n, e_s), ROUND_OFF, given=given)
+            close("dx after the bounce, for the input e", dx, still, 0.0, given=given)
+            close("dv after the bounce, for the input e", dv, -(v @ n) * np.outer(n, e_s), ROUND_OFF, given=given)
     for v, a, dx, dv, n, e, gap_s, e_s, metre, unit_of_s in impacts(draw):
         R = reflected(n, e), -np.multiply.outer(np.outer(n, n), e_s)
         expected = slopes(behind, 0.0, n, (0.0 * v, dx), (v, dv), a, (0.0, -gap_s), a, R)
@@ -730,7 +730,7 @@ def test_restitution_alone_changes_the_velocity_and_not_the_place(lesson, draw):
         given = f"v = {v} m/s, a = {a} m/s², n = {n}, e = {e}"
         for name, y, right, size in zip(("velocity", "dx", "dv"), got, (reflected(n, e) @ v, *expected),
                                         (metre, metre * unit_of_s, metre * unit_of_s), strict=True):
-            close(f"{name} behind a bounce, over its unit", np.asarray(y) / size, right / size, ROUND_OFF, given=given)
+            close(f"{name} after a bounce, over its unit", np.asarray(y) / size, right / size, ROUND_OFF, given=given)
 
 
 @exercise("12.8", points=0.5, hint="call event_time_sensitivity: it refuses a ball that only slides along the plane")
@@ -743,7 +743,7 @@ def test_a_ball_that_grazes_a_plane_has_no_sensitivities(lesson, draw):
         raises("a ball that moves along the plane", BadInput, lesson.bounce, v, a, dx, dx, n, draw(0.2, 0.9),
                np.zeros(2), np.zeros(2), thing=thing)
         v_new, _, _ = lesson.bounce(v - n, a, dx, dx, n, 1.0, np.zeros(2), np.zeros(2))
-        close("velocity behind the bounce of a ball that comes down [m/s]", v_new, v + n, ROUND_OFF, given=f"n = {n}")
+        close("velocity after the bounce of a ball that comes down [m/s]", v_new, v + n, ROUND_OFF, given=f"n = {n}")
     n, e = 0.5 * np.where(draw(-1.0, 1.0, 4) < 0.0, -1.0, 1.0), draw(0.2, 0.9)
     for share in (*draw.within(), *draw.beyond(3.0), 1e3):
         a, dx, v = draw(-9.0, 9.0, 4), full(draw, (4, 2)), np.zeros(4)
@@ -753,7 +753,7 @@ def test_a_ball_that_grazes_a_plane_has_no_sensitivities(lesson, draw):
             raises("a ball that comes down with less than 1e-12 of the sizes of the terms", BadInput, lesson.bounce,
                    *ball, naming=[n @ v], thing=thing)
         else:                                            # v⁺ − v⁻ has a relative error of 1e-4
-            close("dx behind the bounce of a ball that comes down very slowly", lesson.bounce(*ball)[1],
+            close("dx after the bounce of a ball that comes down very slowly", lesson.bounce(*ball)[1],
                   dx - (1.0 + e) * np.outer(n, n @ dx), 5e-3, given=f"v = {v} m/s, n = {n}")
 
 
@@ -1087,7 +1087,7 @@ def bounced_once(heights, x):
     return np.abs(x - (right - right[0])).max() < ROUND_OFF
 
 
-@exercise("12.12", points=1, hint="just behind the bounce, ∂x/∂h is −e: see 12.7")
+@exercise("12.12", points=1, hint="just after the bounce, ∂x/∂h is −e: see 12.7")
 def test_the_curve_is_that_of_balls_that_bounce_once(lesson):
     choice("letter of the curve of balls that bounce once", lesson.bounced_curve_is(),
            choices.where("sensitivities", "bounced_curve_is", bounced_once))

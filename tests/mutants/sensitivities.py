@@ -368,7 +368,7 @@ edit("12.7", "forgets that the time of the impact moves", "at_impact = dv + np.o
 edit("12.7", "applies the jump to dx, too", PLACE, "R_v @ dx")
 edit("12.7", "takes v⁺ − v⁻", "v - v_new", "v_new - v")
 edit("12.7", "takes the sum of both velocities", "v - v_new", "v + v_new")
-edit("12.7", "forgets the velocity behind the impact", "v - v_new", "v")
+edit("12.7", "forgets the velocity after the impact", "v - v_new", "v")
 edit("12.7", "forgets the velocity before the impact", "v - v_new", "-v_new")
 edit("12.7", "returns dx = 0, as if every ball began at the floor", PLACE, "0.0 * dx")
 edit("12.7", "returns dv = R_v dv, as if the time of the impact were fixed",
@@ -376,10 +376,10 @@ edit("12.7", "returns dv = R_v dv, as if the time of the impact were fixed",
 edit("12.7", "leaves out the inputs on which the jump itself depends", "at_impact + R_s", "at_impact")
 edit("12.7", "subtracts the dependence of the jump on the inputs", "at_impact + R_s", "at_impact - R_s")
 edit("12.7", "forgets the acceleration before the impact", "dv + np.outer(a, dtau)", "dv")
-edit("12.7", "forgets the acceleration behind the impact", " - np.outer(a_new, dtau)", "")
+edit("12.7", "forgets the acceleration after the impact", " - np.outer(a_new, dtau)", "")
 edit("12.7", "takes the acceleration before the impact on both sides", "np.outer(a_new, dtau)", "np.outer(a, dtau)")
-edit("12.7", "takes the acceleration behind the impact on both sides", "np.outer(a, dtau)", "np.outer(a_new, dtau)")
-edit("12.7", "adds the acceleration behind the impact", " - np.outer(a_new, dtau)", " + np.outer(a_new, dtau)")
+edit("12.7", "takes the acceleration after the impact on both sides", "np.outer(a, dtau)", "np.outer(a_new, dtau)")
+edit("12.7", "adds the acceleration after the impact", " - np.outer(a_new, dtau)", " + np.outer(a_new, dtau)")
 edit("12.7", "does not apply the jump to the velocity at the impact", "R_v @ at_impact", "at_impact")
 edit("12.7", "applies the jump to dv only, not to the change at the impact", "R_v @ at_impact",
      "R_v @ dv + np.outer(a, dtau)")
@@ -425,13 +425,13 @@ edit("12.8", "forgets that e may be an input", "-(v @ n) * np.outer(n, e_s)", "0
 edit("12.8", "takes R_s with the wrong sign", "-(v @ n) * np.outer(n, e_s)", "(v @ n) * np.outer(n, e_s)")
 edit("12.8", "moves the whole velocity with e, not only its normal part", "-(v @ n) * np.outer(n, e_s)",
      "-np.outer(v, e_s)")
-edit("12.8", "takes R_s with the velocity behind the impact", "-(v @ n)", "-(v_new @ n)")
+edit("12.8", "takes R_s with the velocity after the impact", "-(v @ n)", "-(v_new @ n)")
 edit("12.8", "forgets that the plane may move with an input", "0.0 * n, gap_s, v, a", "0.0 * n, 0.0 * gap_s, v, a")
-edit("12.8", "takes the time of the event from the velocity behind it", "gap_s, v, a, dx, dv)",
+edit("12.8", "takes the time of the event from the velocity after it", "gap_s, v, a, dx, dv)",
      "gap_s, v_new, a, dx, dv)")
 edit("12.8", "forgets that the time of the impact moves", "saltation(dtau,", "saltation(0.0 * dtau,")
 edit("12.8", "exchanges both velocities", "dx, dv, v, a, v_new, a, R_v", "dx, dv, v_new, a, v, a, R_v")
-edit("12.8", "forgets the acceleration behind the impact", "v_new, a, R_v, R_s)", "v_new, 0.0 * a, R_v, R_s)")
+edit("12.8", "forgets the acceleration after the impact", "v_new, a, R_v, R_s)", "v_new, 0.0 * a, R_v, R_s)")
 edit("12.8", "reflects the acceleration, too", "v_new, a, R_v, R_s)", "v_new, R_v @ a, R_v, R_s)")
 edit("12.8", "returns the velocity before the impact", "return v_new, dx, dv", "return v, dx, dv")
 edit("12.8", "bounces without loss", "kinematic_response(v, n, e)", "kinematic_response(v, n, 1.0)")
@@ -442,7 +442,7 @@ edit("12.8", "takes the time of the impact for fixed where nothing accelerates",
      "saltation(a.any() * dtau,")
 R_S = "-(v @ n) * np.outer(n, e_s)"
 by_part("12.8", "a", "a", "v, a, v_new, a, R_v", "v, KEPT * a, v_new, a, R_v")
-by_part("12.8", "a behind the impact", "a", "v, a, v_new, a, R_v", "v, a, v_new, KEPT * a, R_v")
+by_part("12.8", "a after the impact", "a", "v, a, v_new, a, R_v", "v, a, v_new, KEPT * a, R_v")
 by_part("12.8", "dx", "dx", "saltation(dtau, dx,", "saltation(dtau, KEPT * dx,")
 by_part("12.8", "dx at the event", "dx", "gap_s, v, a, dx,", "gap_s, v, a, KEPT * dx,")
 by_part("12.8", "dv", "dv", "dtau, dx, dv, v,", "dtau, dx, KEPT * dv, v,")

@@ -57,7 +57,7 @@ def power_series(f, centre, radius, points=POINTS):
 # ---------------------------------------------------------------------------------------------- a ball over a floor
 
 def bounces_until(h, e, g, t):
-    """Return (number of bounces, time of the last one, speed behind it) of a ball that is dropped from h at 0."""
+    """Return (number of bounces, time of the last one, speed after it) of a ball that is dropped from h at 0."""
     bounces, moment, speed = 0, np.sqrt(2.0 * h / g), np.sqrt(2.0 * g * h)
     last, left = 0.0, 0.0
     while moment <= t:

@@ -116,21 +116,21 @@ def grazing_event(lesson, check):
                    "Nearer to grazing, a change of the throw moves the time of the impact more and more.")
 
 
-@case("behind-a-bounce", "The height just behind a bounce", compiled=False)
+@case("behind-a-bounce", "The height just after a bounce", compiled=False)
 def behind_a_bounce(lesson, check):
-    """Compare ∂y/∂h of a ball that was dropped from h with a closed form after its bounce, and with −e just behind it.
+    """Compare ∂y/∂h of a ball that was dropped from h with a closed form after its bounce, and with −e just after it.
     """
     es = np.array([0.3, 0.5, 0.7, 0.9])
-    T = np.sqrt(2.0 / G) * 1.05                      # a little behind the first impact of a fall from 1 m
+    T = np.sqrt(2.0 / G) * 1.05                      # a little after the first impact of a fall from 1 m
     found = [flown(lesson, 1.0, e, T)[2][1, 0] for e in es]
     law = np.array([bounced_sensitivities(1.0, e, G, T)[2] for e in es])
-    check.agree("Saltation gives the sensitivity of the height behind a bounce.", "largest error of ∂y/∂h [-]",
+    check.agree("Saltation gives the sensitivity of the height after a bounce.", "largest error of ∂y/∂h [-]",
                 np.max(np.abs(found - law)), 1e-12)
     just_behind = np.sqrt(2.0 / G) * (1.0 + 1e-9)
     at = [flown(lesson, 1.0, e, just_behind)[2][1, 0] for e in es]
-    check.agree("Just behind a bounce the height falls by e where the ball was dropped from 1 higher up.",
+    check.agree("Just after a bounce the height falls by e where the ball was dropped from 1 higher up.",
                 "largest error of ∂y/∂h = −e [-]", np.max(np.abs(at + es)), 1e-7)
-    return Picture("How the height behind a bounce depends on the first height", "restitution e [-]", "∂y/∂h [-]",
+    return Picture("How the height after a bounce depends on the first height", "restitution e [-]", "∂y/∂h [-]",
                    [series("saltation", es, found, DOTS), series("theory", es, law, LINE)],
                    "A ball from higher up comes later, so it is lower.")
 
@@ -286,7 +286,7 @@ def drawn_impact(rng):
 
 
 def around_impact(rng, before=0.01, behind=0.01):
-    """Return (arguments of bounce, (v, dx, dv) just behind it) by imaginary parts of a flight from before to behind."""
+    """Return (arguments of bounce, (v, dx, dv) just after it) by imaginary parts of a flight from before to behind."""
     n, e, place, v, g, dx, dv, e_s, gap_s = drawn_impact(rng)
 
     def tau_of(s):
@@ -295,7 +295,7 @@ def around_impact(rng, before=0.01, behind=0.01):
         return -2.0 * gap / (rate - np.sqrt(rate * rate - 2.0 * curve * gap))
 
     def end(s):
-        """x and v at the time 0, as the flight behind the impact says."""
+        """x and v at the time 0, as the flight after the impact says."""
         tau = tau_of(s)
         x_hit, v_hit = place + dx @ s + tau * (v + dv @ s) + 0.5 * tau**2 * g, v + dv @ s + tau * g
         new = v_hit - (1.0 + e + e_s @ s) * (v_hit @ n) * n

@@ -2,7 +2,7 @@
 
 A ball from higher up reaches the floor later.  Its bounce moves in time, and the sensitivities jump: this is saltation.
 A method that finds a bounce at the end of a step does not move it when the height changes a little.  Its
-differences say that the height behind a bounce does not depend on the first height at all (where the ball is
+differences say that the height after a bounce does not depend on the first height at all (where the ball is
 set on the floor), or that it grows with it (where the ball is left below the floor, as engines do).  In truth it falls.
 """
 
@@ -109,7 +109,7 @@ def observe(state, p):
 def truth(p, t):
     """Parabolas from impact to impact, differentiated on paper.
 
-    Behind the k-th impact  y = v_k (t − t_k) − ½ g (t − t_k)²  with  v_k = eᵏ √(2gh),
+    After the k-th impact  y = v_k (t − t_k) − ½ g (t − t_k)²  with  v_k = eᵏ √(2gh),
     t_k = √(2h/g) (1 + 2 (e + … + eᵏ⁻¹)).   Source: the geometric series, and the chain rule.
     """
     return np.array([p.slip * t, *bounced_sensitivities(p.h, p.e, p.g, t)])
@@ -147,7 +147,7 @@ def difference_limit(p, dt):
     """A step that goes back to the impact is exact, so its difference has only truncation, h² f‴/6 with h = 10⁻⁶,
     and round-off.
 
-    The speed behind k bounces is v_k = eᵏ √(2gh), and each derivative brings a factor of at most k/e or 1/2h.
+    The speed after k bounces is v_k = eᵏ √(2gh), and each derivative brings a factor of at most k/e or 1/2h.
     """
     k = bounces_until(p.h, p.e, p.g, T)[0]
     third = (k / p.e + 0.5 / p.h) ** 3 * np.sqrt(2.0 * p.g * p.h) * (1.0 + p.g * T)
@@ -211,8 +211,8 @@ def departure(why, kept, whose=Whose.LAW):
 
 
 SAME_STEP = "its bounce stays in the same step when the first height changes a little, and there it "
-SET_DOWN = SAME_STEP + "sets the ball on the floor: the height behind the bounce no longer depends on the first one"
-LEFT_BELOW = SAME_STEP + "hardly moves the ball: the height behind the bounce grows with the first one"
+SET_DOWN = SAME_STEP + "sets the ball on the floor: the height after the bounce no longer depends on the first one"
+LEFT_BELOW = SAME_STEP + "hardly moves the ball: the height after the bounce grows with the first one"
 
 
 def late(kept, rule, **about):
@@ -249,7 +249,7 @@ def sanity_checks():
     return (
         states("the sensitivities by complex numbers through the whole flight", np.ravel(found), np.ravel(expected),
                1e-11),
-        states("∂y/∂h just behind the first impact: −e [-]", behind[2], -p.e, 1e-10),
+        states("∂y/∂h just after the first impact: −e [-]", behind[2], -p.e, 1e-10),
     )
 
 
