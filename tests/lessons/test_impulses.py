@@ -763,10 +763,11 @@ def nearly_grazing(lesson, draw, phi, speed):
         a_n = 0.5 * speed**2 / phi * (1.0 - 2.0 ** (-2 * k))             # s is speed/2ᵏ
         close("time of an almost grazing impact [s]", lesson.impact_time(phi, -speed, a_n, 1e3),
               2.0 * phi / speed / (1.0 + 2.0**-k), 1e-10, given=f"φ = {phi}, v_n = {-speed}, a_n = {a_n}")
-    for k in (6, 9, 12):                                                 # φ/v (1 − |a| φ/2v² …)
+    for k in (6, 9, 12):                                 # τ v/φ = 1 − x/2 + x²/2 − …  with  x = |a| φ/v² < 2e-4
         small, pull = 10.0**-k * draw(0.1, 0.9), draw(1.0, 9.0)
+        x = pull * small / speed**2
         close("time of impact from a very small height, over φ/v [-]",
-              lesson.impact_time(small, -speed, -pull, 1e3) / (small / speed), 1.0 - 0.5 * pull * small / speed**2,
+              lesson.impact_time(small, -speed, -pull, 1e3) / (small / speed), 1.0 - 0.5 * x + 0.5 * x * x,
               1e-9 if k == 6 else ROUND_OFF, given=f"φ = {small}, v_n = {-speed}, a_n = {-pull}")
 
 
