@@ -28,6 +28,7 @@ RELAXED_SWEEPS = 500         # [-]; where they settle, 56 to 257 have been neede
 HOLDING_ROUNDS = 200         # of holding_impulses [-]; most cones contain the first ones
 SOLVED = 1e-10               # residual of an answer over the largest initial |v| + |ω||r| [-]: four digits are lost
 ROUND_OFF = 1e-12            # of the velocity at which an open point separates, over the largest initial one [-]
+LAST_DIGIT = 2.2e-16         # of a number, over it [-]
 DEPENDENT = 1e-11            # singular value of rows that depend on others, over the largest [-]
 ANGLE = 1e-7                 # for differences of the slip over the angle [rad]: half the digits
 TURN = 0.5                   # longest Newton step [rad]
@@ -203,6 +204,8 @@ def impulses_of_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, i
     """Return (BodyState3D, residual [m/s]) after the impulses J (3 points,) of these modes.
 
     An open point that just separates at u_sep may do so less ROUND_OFF: the law jumps there if the point could stick.
+    The residual is at least the round-off of what the impulses change: points that hardly depend on each other may ask
+    for impulses so large that nothing of the velocities is left.
     """
     Js, after, u_sep = np.zeros((len(r), 3)), body, impact.u_sep.copy()
     for i in range(len(r)):
@@ -211,7 +214,8 @@ def impulses_of_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, i
         after = apply_impulse(after, r[i], Js[i])
         if modes[i] == OPEN:
             u_sep[i] -= ROUND_OFF * largest_speed(body, r)
-    return after, impact_residual(contact_matrix, cone_impulse, after, r, n, Js, u_sep, impact.mu)
+    residual = impact_residual(contact_matrix, cone_impulse, after, r, n, Js, u_sep, impact.mu)
+    return after, np.maximum(residual, LAST_DIGIT * np.abs(impact.A).max() * np.abs(J).max())
 
 
 def directions_of_pull(after, r, impact):

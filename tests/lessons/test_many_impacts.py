@@ -186,6 +186,23 @@ def test_an_impact_that_slides_at_four_points_is_solved(seed, N):
     assert judge(impulses.solve_impacts, args, np.random.default_rng(0))
 
 
+def test_a_body_between_two_smooth_walls_stops_along_their_normal():
+    """It can rebound from neither.  In two of a hundred draws, a choice of modes had asked for impulses of 1e15 N s.
+
+    Nothing was left of the velocities then, not even a residual.
+    """
+    rng = np.random.default_rng(4)
+    for draw in range(97):
+        n, radius, e = rng.normal(size=3), rng.uniform(0.05, 0.5), rng.uniform(0.2, 0.8)
+        n, (v, omega) = n / np.linalg.norm(n), 3.0 * rng.normal(size=(2, 3))
+        if draw in (76, 96):
+            body = impulses.BodyState3D(v, omega, 1.0, np.eye(3) / (0.4 * radius**2))
+            after, residual = impulses.solve_impacts(body, radius * np.stack((-n, n)), np.stack((n, -n)), e, 0.0)
+            assert after.v == pytest.approx(v - (n @ v) * n, abs=1e-9)
+            assert after.omega == pytest.approx(omega, abs=1e-9)
+            assert residual == pytest.approx(e * abs(n @ v) * np.abs(n).max(), abs=1e-9)
+
+
 def test_the_judge_sees_a_wrong_answer_and_finds_a_right_one():
     rng, seen = np.random.default_rng(1), 0
     for N in range(40):
