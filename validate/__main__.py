@@ -278,7 +278,7 @@ def piles(
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""
     from .speed.piles import measure
     if figure:
-        writable(figure.absolute().parent)
+        writable(figure.absolute().parent, "--figure")
     measure(kinds or [], bodies, rounds, growth, memory, figure, most)
 
 
@@ -296,10 +296,9 @@ def targets(
 # ---------------------------------------------------------------------------------------------- what was asked for
 
 def apart_from_files(out):
-    """Raise BadInput for an output folder that holds the working folder, or Python files: some 500 files would lie
-    among them.
+    """Raise BadInput for an output folder in which the 500 files of a report would lie among others.
 
-    An empty name means the working folder, too.
+    It holds the working folder, which an empty name means, too; or it holds Python files.
     """
     if Path.cwd().is_relative_to(out.resolve()):
         raise BadInput(f"--out {str(out)!r}", "the folder in which you work, or one around it",

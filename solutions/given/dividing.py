@@ -14,16 +14,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checks import Diverged, finite_number, positive_number
-from ..rotation import body_angular_momentum, quaternion_product, splitting_free_rotation
-from ..support.quaternions import exponential
+from ..rotation import body_angular_momentum
+from ..support.quaternions import rotate, unrotate
 from ..support.records import check_record
 from ..support.scenes import TOO_DEEP
-from .joints import Joints
+from .joints import Joints, turn_on
 from .passing import both_sides, find_suspects, may_pass
 
-MOST_PARTS = 30              # of one step: bodies that bounce between two others may meet ever sooner [-]
+MOST_CUTS = 30               # of one step: bodies that bounce between two others may meet ever sooner [-]
 SUNK = 0.5                   # of what is too deep, at which bodies are parted anew that touched at the beginning [-]
-TOUCHING = 1e-9              # of the smallest half size: the gap of bodies that touch; closed ones have round-off [-]
+TOUCHING = 1e-9              # gap up to which bodies touch, over the smallest half size [-]: closing leaves round-off
 SHORTEST = 1e-9              # part of a step that is left out [-]
 CLOSING = 1e-8               # part of a step that closes what SHORTEST has left open [-]: forces make parts end short
 HALVINGS = 40                # of the time between two poses, until it is known to round-off [-]
@@ -42,26 +42,21 @@ class Rough(NamedTuple):
 # ---------------------------------------------------------------------------------------------- where they touch
 
 def pose_within(before, after, share, dt, inv_inertia):
-    """Return (x, q) of all bodies when this share of a step is over: where a step that is so much shorter would end."""
+    """Return (x, q) of all bodies after this share of a step: the poses at which a step of that length would end."""
     x = before.x + share * (after.x - before.x)
     if inv_inertia.ndim == 1:
         return x, before.q + share * (after.q - before.q)
-    return x, turned_freely(before.q, after.q, after.omega, share * dt, inv_inertia)
+    return x, turn_on(before.q, spins_before(before.q, after, inv_inertia), share * dt, inv_inertia)[0]
 
 
-def turned_freely(q, q_new, omega, dt, inv_inertia):
-    """Return the orientations after dt, as the composed loop turns bodies: with the angular momenta of the end.
-
-    (pose_at of passing.py turns them by 2 atan(½ ω dt), as quaternion_update does.)
-    """
-    now = np.empty(q.shape)
+def spins_before(q, after, inv_inertia):
+    """Return the angular velocities (n, 3) with which bodies at q begin to turn freely, so that they end as `after`."""
+    omega = after.omega.copy()
     for i in range(q.shape[0]):
         if inv_inertia[i, 0] > 0.0:
-            L = body_angular_momentum(q_new[i], omega[i], 1.0 / inv_inertia[i])
-            now[i] = splitting_free_rotation(q[i], L, 1.0 / inv_inertia[i], dt)
-        else:
-            now[i] = quaternion_product(exponential(dt * omega[i]), q[i])
-    return now
+            L = body_angular_momentum(after.q[i], after.omega[i], 1.0 / inv_inertia[i])       # it stays
+            omega[i] = rotate(q[i], inv_inertia[i] * unrotate(q[i], L))
+    return omega
 
 
 def overlaps_at(bounds, narrow, before, after, share, dt, suspects, sides, p):
@@ -85,7 +80,7 @@ def first_touch(bounds, narrow, before, after, dt, p):
     """Return the share of a step at which two bodies first touch that go too deep into each other in it; 1 if none do.
 
     Too deep is more than half of the smallest half size beyond the overlap at the beginning.  Bodies that touch at the
-    beginning are parted anew where they have sunk in by half of that.
+    beginning may sink in by half of that: the step then ends there, and they are parted anew.
     """
     shapes = p.half
     boxes, boxes_new = bounds(before.x, before.q, shapes), bounds(after.x, after.q, shapes)
@@ -144,9 +139,10 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
     """Return the same, but divided where bodies touch that would go too deep into each other or pass each other.
 
     touch: first_touch, of which only fast bodies have need
-    Raises Diverged where bodies still pass each other when the step has MOST_PARTS parts.
+    A part that would go too far is done anew and ends where they touch; each part is looked at.
+    Raises Diverged where bodies still pass each other after MOST_CUTS of this kind.
     """
-    left, part, divisions, closed = dt, dt, 0, False
+    left, part, cuts, closed = dt, dt, 0, False
     while left >= SHORTEST * dt:
         after = whole_step(first, second, third, fourth, fifth, sixth, touch, load, bounds, narrow, t + dt - left,
                            state, part, p)
@@ -154,10 +150,10 @@ def divided_step(first, second, third, fourth, fifth, sixth, touch, load, bounds
         if share == 1.0:
             state, left = after, left - part
             part = left
-        else:                                                            # anew, until they touch
-            if divisions == MOST_PARTS or (closed and share * part < SHORTEST * dt):
+        else:
+            if cuts == MOST_CUTS or (closed and share * part < SHORTEST * dt):
                 raise Diverged("the share of a step that its most parts reach [-]", 1.0 - left / dt, TOO_LONG)
-            divisions, closed = divisions + 1, share * part < SHORTEST * dt
+            cuts, closed = cuts + 1, share * part < SHORTEST * dt
             part = min(CLOSING * dt, left) if closed else share * part   # closed: what is open does not bounce
     return state
 

@@ -204,8 +204,8 @@ def impulses_of_modes(contact_matrix, cone_impulse, apply_impulse, body, r, n, i
     """Return (BodyState3D, residual [m/s]) after the impulses J (3 points,) of these modes.
 
     An open point that just separates at u_sep may do so less ROUND_OFF: the law jumps there if the point could stick.
-    The residual is at least the round-off of what the impulses change: points that hardly depend on each other may ask
-    for impulses so large that nothing of the velocities is left.
+    The residual is at least the round-off of what the impulses change.  Where the equations of two points are nearly
+    the same, impulses may become so large that the velocities are lost in this round-off.
     """
     Js, after, u_sep = np.zeros((len(r), 3)), body, impact.u_sep.copy()
     for i in range(len(r)):

@@ -16,7 +16,7 @@ from ..support.scenes import TOO_DEEP
 from .bodies import TooFast
 
 POSES_PER_HALF = 2.0         # poses on a way of the smallest half size [-]: they miss a quarter of it at most
-MOST_POSES = 10_000          # within a step [-]: a body may turn any number of times, and shows the same again
+MOST_POSES = 10_000          # within a step [-]: enough for any number of turns, after which poses repeat
 FAR = "take a smaller step: a body moves by some thousand times its size towards another one"
 
 
@@ -185,7 +185,7 @@ def find_suspects(before, after, boxes, boxes_new, dt, p):
     """Return the Suspects of a step from the boxes around all bodies at its beginning and at its end.
 
     A turn about a contact lets it dip in by the sagitta, because the centre moves straight: so much more is allowed.
-    Raises Diverged where a body moves so far, not counting its turn, that MOST_POSES would not see whether it passes.
+    Raises Diverged where MOST_POSES are too few to see whether a body passes another one on its way, without its turn.
     """
     low, high, arc, bulge = swept_boxes(before, after, boxes, boxes_new, dt, p.half)
     n, backs, joints = p.half.shape[0], p.planes.shape[0], getattr(p, "joints", None)      # a Bodies has no joints

@@ -186,7 +186,8 @@ def segment_on_box(x, turn, shapes, i, j, sign, reach, c, m):
     if dot(out, out) <= (SAME * max(half[0], half[1], half[2])) ** 2:
         return way_out(x, turn, shapes, i, j, y, e, sign, reach, c, m)
     m = above_box(x, turn, shapes, i, j, plus(y, s, e), sign, reach, c, m)
-    same, face = part_over(y, e, h, half, out, True), part_over(y, e, h, half, out, False)
+    far = max(abs(out[0]), abs(out[1]), abs(out[2]))
+    same, face = part_over(y, e, h, half, out, 0.0), part_over(y, e, h, half, out, far)
     places = (s, same[0], same[1], face[0], face[1])
     for k in range(1, 5):
         there = same[0] <= same[1] if k < 3 else face[0] <= face[1]
@@ -197,15 +198,16 @@ def segment_on_box(x, turn, shapes, i, j, sign, reach, c, m):
     return m
 
 
-def part_over(y, e, h, half, out, same):
-    """Return (low, high): the part of a segment that lies over a face or edge of a box; low > high: none.
+def part_over(y, e, h, half, out, far):
+    """Return (low, high): the part of a segment that lies over a face or an edge of a box; low > high: none.
 
-    out: from the nearest point of the box to the segment;    same: over what this point lies on; else over the face
-    that is nearest to it.  A tilted segment that bears on an edge has another end over the face.
+    out: the way to the segment from the nearest point of the box.  Along axes in which it is 0 or shorter than `far`
+    [m], the part ends at the sides of the box: with far = 0 it is over the face or edge on which that point lies.  With
+    far = the largest entry it is over a face, even if a tilted segment bears on an edge.
     """
-    low, high, far = -h, h, max(abs(out[0]), abs(out[1]), abs(out[2]))
+    low, high = -h, h
     for k in range(3):
-        if out[k] == 0.0 or (not same and abs(out[k]) < far):
+        if out[k] == 0.0 or abs(out[k]) < far:
             low, high = part_between(y[k], e[k], -half[k], half[k], low, high)
     return low, high
 

@@ -288,19 +288,29 @@ def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
         cases += [(a, b, n + 10.0**-k * np.array([-n[1], n[0]]), -n - 10.0**-k * np.array([-n[1], n[0]]), n)]
     for one, other, r_a, r_b, n in cases:
         given = f"{inert(one, '_a')}, {inert(other, '_b')}, r_a = {r_a} m, r_b = {r_b} m, n = {n}"
-        expected = n @ (answer_2d(one, r_a, n) + answer_2d(other, r_b, n))
-        close("k_n [1/kg]", lesson.effective_inverse_mass_2d(one, other, r_a, r_b, n), expected, ROUND_OFF, given=given)
+        close("k_n [1/kg]", lesson.effective_inverse_mass_2d(one, other, r_a, r_b, n),
+              k_between_2d(one, other, r_a, r_b, n), ROUND_OFF, given=given)
+    check_k_of_any_size(draw, lesson.effective_inverse_mass_2d, k_between_2d, a, b, n)
+
+
+def check_k_of_any_size(draw, effective_inverse_mass, k_between, a, b, n):
+    """In other units of length or mass the same two bodies have the same k_n, in those units."""
     for size in SIZES[1:]:
-        r_a, r_b = draw(-1.0, 1.0, (2, 2))
-        expected = n @ (answer_2d(a, r_a, n) + answer_2d(b, r_b, n))
+        r_a, r_b = draw(-1.0, 1.0, (2, n.size))
+        expected = k_between(a, b, r_a, r_b, n)
         small = (one._replace(inv_inertia=one.inv_inertia / size**1.5) for one in (a, b))
         close("k_n of a very small or large body [1/kg]",
-              lesson.effective_inverse_mass_2d(*small, size**0.75 * r_a, size**0.75 * r_b, n), expected, ROUND_OFF,
+              effective_inverse_mass(*small, size**0.75 * r_a, size**0.75 * r_b, n), expected, ROUND_OFF,
               given=f"lengths times {size**0.75}")
         light = (one._replace(inv_mass=size * one.inv_mass, inv_inertia=size * one.inv_inertia) for one in (a, b))
         close("k_n of a very heavy or light body, over its size [-]",
-              lesson.effective_inverse_mass_2d(*light, r_a, r_b, n) / size, expected, ROUND_OFF,
+              effective_inverse_mass(*light, r_a, r_b, n) / size, expected, ROUND_OFF,
               given=f"inverse masses and inertias times {size}")
+
+
+def k_between_2d(a, b, r_a, r_b, n):
+    """k_n [1/kg] of two bodies in the plane."""
+    return n @ (answer_2d(a, r_a, n) + answer_2d(b, r_b, n))
 
 
 def inert(body, name=""):
@@ -363,17 +373,7 @@ def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
     for one, other, r_a, r_b, n in cases:
         close("k_n [1/kg]", lesson.effective_inverse_mass(one, other, r_a, r_b, n), k_between(one, other, r_a, r_b, n),
               ROUND_OFF, given=arms(one, other, r_a, r_b, n))
-    for size in SIZES[1:]:
-        r_a, r_b = draw(-1.0, 1.0, (2, 3))
-        expected = k_between(a, b, r_a, r_b, n)
-        small = (one._replace(inv_inertia=one.inv_inertia / size**1.5) for one in (a, b))
-        close("k_n of a very small or large body [1/kg]",
-              lesson.effective_inverse_mass(*small, size**0.75 * r_a, size**0.75 * r_b, n), expected, ROUND_OFF,
-              given=f"lengths times {size**0.75}")
-        light = (one._replace(inv_mass=size * one.inv_mass, inv_inertia=size * one.inv_inertia) for one in (a, b))
-        close("k_n of a very heavy or light body, over its size [-]",
-              lesson.effective_inverse_mass(*light, r_a, r_b, n) / size, expected, ROUND_OFF,
-              given=f"inverse masses and inertias times {size}")
+    check_k_of_any_size(draw, lesson.effective_inverse_mass, k_between, a, b, n)
 
 
 def k_between(a, b, r_a, r_b, n):

@@ -1,4 +1,4 @@
-"""Vectors that are not zero, though one entry, the sum, the product or the largest says so."""
+"""Vectors that are not zero, although an entry, their sum, their product or their largest entry is."""
 
 import numpy as np
 

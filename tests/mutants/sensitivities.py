@@ -20,6 +20,17 @@ def by_part(exercise, what, y, old, new, hows=tuple(HOW)):
         edit(exercise, f"takes {what} for zero by {how}", old, new.replace("KEPT", f"({HOW[how].format(y)})"))
 
 
+def of_another_shape(exercise, whole):
+    """Wrong answers that return the derivative `whole` of an array with other axes."""
+    for story, other in (("flattens an array", "np.ravel({0}) if np.ndim(f(s, p)) else {0}"),
+                         ("flattens an array with two axes", "np.ravel({0}) if np.ndim(f(s, p)) == 2 else {0}"),
+                         ("turns an array with two axes over", "np.transpose({0})"),
+                         ("returns the first row of an array with two axes",
+                          "({0})[0] if np.ndim(f(s, p)) > 1 else {0}"),
+                         ("leaves out axes of one entry", "np.squeeze({0}) if np.ndim(f(s, p)) > 1 else {0}")):
+        edit(exercise, story, whole, other.format(whole))
+
+
 TIMES = {"the size of": "abs(t)", "at most 1 for": "min(t, 1.0)", "at least 0 for": "max(t, 0.0)", "0 for": "0.0"}
 
 
@@ -47,12 +58,7 @@ edit("12.1", "always takes a very short step", "(f(s + h, p) - f(s - h, p)) / (2
 edit("12.1", "takes a forward difference at s = 0", "(f(s + h, p) - f(s - h, p)) / (2.0 * h)",
      "(f(s + h, p) - f(s - h, p)) / (2.0 * h) if s != 0.0 else (f(s + h, p) - f(s, p)) / h")
 WHOLE = "(f(s + h, p) - f(s - h, p)) / (2.0 * h)"
-edit("12.1", "flattens an array", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) else {WHOLE}")
-edit("12.1", "flattens an array with two axes", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) == 2 else {WHOLE}")
-edit("12.1", "turns an array with two axes over", WHOLE, f"np.transpose({WHOLE})")
-edit("12.1", "returns the first row of an array with two axes", WHOLE,
-     f"({WHOLE})[0] if np.ndim(f(s, p)) > 1 else {WHOLE}")
-edit("12.1", "leaves out axes of one entry", WHOLE, f"np.squeeze({WHOLE}) if np.ndim(f(s, p)) > 1 else {WHOLE}")
+of_another_shape("12.1", WHOLE)
 edit("12.1", "takes no step below a thousandth", WHOLE, WHOLE.replace("h", "max(h, 1e-3)"))
 edit("12.1", "takes no step above a thousand", WHOLE, WHOLE.replace("h", "min(h, 1e3)"))
 edit("12.1", "never divides by less than 1e-6", "(2.0 * h)", "max(2.0 * h, 1e-6)")
@@ -131,12 +137,7 @@ edit("12.3", "returns one number for an array", "np.imag(f(s + 1j * h, p))",
 edit("12.3", "takes a real difference at s = 0", "np.imag(f(s + 1j * h, p)) / h",
      "np.imag(f(s + 1j * h, p)) / h if s != 0.0 else (f(s + h, p) - f(s - h, p)) / (2.0 * h)")
 WHOLE = "np.imag(f(s + 1j * h, p)) / h"
-edit("12.3", "flattens an array", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) else {WHOLE}")
-edit("12.3", "flattens an array with two axes", WHOLE, f"np.ravel({WHOLE}) if np.ndim(f(s, p)) == 2 else {WHOLE}")
-edit("12.3", "turns an array with two axes over", WHOLE, f"np.transpose({WHOLE})")
-edit("12.3", "returns the first row of an array with two axes", WHOLE,
-     f"({WHOLE})[0] if np.ndim(f(s, p)) > 1 else {WHOLE}")
-edit("12.3", "leaves out axes of one entry", WHOLE, f"np.squeeze({WHOLE}) if np.ndim(f(s, p)) > 1 else {WHOLE}")
+of_another_shape("12.3", WHOLE)
 for most in ("1e-6", "1e3"):
     edit("12.3", f"takes no step above {most}", WHOLE, WHOLE.replace(" h", f" min(h, {most})"))
 edit("12.3", "takes no step below 1e-30", WHOLE, WHOLE.replace("* h", "* max(h, 1e-30)"))

@@ -170,10 +170,11 @@ def test_a_report_is_not_written_among_the_files_of_a_program(capsys, tmp_path):
     assert [path.name for path in tmp_path.rglob("*")] == ["program.py"]
 
 
-def test_a_parameter_that_is_given_twice_and_a_pile_that_is_too_large_are_refused(capsys, tmp_path):
+def test_what_a_command_cannot_do_is_refused_before_it_begins(capsys, tmp_path):
+    (tmp_path / "file").write_text("")
     for arguments, says in ((("--scene", "oscillator", "--set", "k=1", "--set", "k=2"), "given twice"),
                             (("piles", "--growth", "--most", "1000000"), "100000"),
-                            (("piles", "discs", "--figure", str(tmp_path / "none" / "file" / "\0")), "")):
+                            (("piles", "discs", "--figure", str(tmp_path / "file" / "x")), "another with --figure")):
         code, _, error = run(capsys, *arguments)
         assert code == 2 and says in error and "Traceback" not in error
 

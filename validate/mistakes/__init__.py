@@ -29,7 +29,7 @@ GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and 
 MOST = 2                     # number of ideas that are named if several give the same numbers
 NOTHING = object()           # the last result where there is none
 CHANGED = "has changed its input"
-ONE, TWO, MORE = "a one-dimensional array", "a two-dimensional array", "an array of N dimensions"
+ONE, TWO = "a one-dimensional array", "a two-dimensional array"
 FOLDER = Path(__file__).parent
 
 
@@ -172,7 +172,7 @@ def kind(value):
     if isinstance(value, (bool, np.bool_)):
         return "True or False"
     if isinstance(value, np.ndarray) and value.ndim:
-        return {1: ONE, 2: TWO}.get(value.ndim, MORE.replace("N", str(value.ndim)))
+        return {1: ONE, 2: TWO}.get(value.ndim, f"an array of {value.ndim} dimensions")
     if isinstance(value, (int, float, np.number, np.ndarray)):
         return "a number"
     if isinstance(value, tuple) and not hasattr(value, "_fields"):
@@ -183,13 +183,13 @@ def kind(value):
 
 def any_array(kind):
     """Return a kind without the numbers of dimensions of its arrays."""
-    return re.sub(f"{ONE}|{TWO}|{MORE.replace('N', '[0-9]+')}", "an array", kind)
+    return re.sub(rf"{ONE}|{TWO}|an array of \d+ dimensions", "an array", kind)
 
 
 def common(kinds):
-    """Return the kind that all these results have, or "".  Where only dimensions of arrays differ, it names none."""
+    """Return the kind that all these results have, or "".  It tells no dimensions of arrays where these differ."""
     kinds = kinds if len(kinds) < 2 else set(map(any_array, kinds))
-    return kinds.pop() if len(kinds) == 1 else ""
+    return next(iter(kinds)) if len(kinds) == 1 else ""
 
 
 def leaves(value):

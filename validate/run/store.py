@@ -182,7 +182,7 @@ def full_run():
     return read_whole(FULL_RUN, dict, "remove it, or give: validate summary --keep") if FULL_RUN.is_file() else None
 
 
-def writable(out):
+def writable(out, option="--out"):
     """Return the output folder, made if need be.  Raises BadInput when nothing can be written there."""
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -190,5 +190,5 @@ def writable(out):
             pass
     except OSError as e:
         raise BadInput(f"output folder {str(out)!r}", f"not writable ({e.strerror})",
-                       "name another with --out") from None
+                       f"name another with {option}") from None
     return out

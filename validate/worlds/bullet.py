@@ -36,6 +36,7 @@ from .derived import (
     bounces,
     carries,
     checked_step,
+    cuts_moments,
     fastest,
     forces_of,
     grip,
@@ -45,7 +46,6 @@ from .derived import (
     pressed_in,
     round_only,
     smallest,
-    too_stout,
     touches,
     tree,
     weld_place,
@@ -99,10 +99,10 @@ def refuses(model):
         return "in maximal coordinates it ignores the velocity of a body without mass"
     return (unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
                         Weld)
-            or ("" if round_only(model) else beyond(model, SLAB)) or too_stout(model, WIDE) or too_rough(model))
+            or ("" if round_only(model) else beyond(model, SLAB)) or cuts_moments(model, WIDE) or cuts_friction(model))
 
 
-def too_rough(model):
+def cuts_friction(model):
     """Return why it refuses a model with a friction that it would cut off, or "".  An infinite friction is ROUGHEST."""
     cut = any(ROUGHEST < friction_of(model, *pair) < np.inf for pair in touching_pairs(model))
     return f"it cuts the friction of a pair off at {ROUGHEST:g}" if cut else ""

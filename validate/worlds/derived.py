@@ -85,7 +85,9 @@ def opens(model):
 
 
 def held_spin(joint, omega):
-    """Return what of a relative angular velocity [rad/s] a joint lets no body have; a hinge leaves that about its axis.
+    """Return the part of a relative angular velocity [rad/s] that a joint forbids.
+
+    A weld forbids all of it, a hinge in space all but that about its axis, and any other joint nothing.
     """
     if isinstance(joint, Weld):
         return omega
@@ -286,8 +288,9 @@ def checked_step(model, dt, refuses):
     return positive_number("step dt [s]", dt)
 
 
-def too_stout(model, most):
-    """Return why an engine refuses a model that has a finite moment of inertia above its infinite one, or ""."""
+def cuts_moments(model, most):
+    """Return why an engine refuses a model with a finite moment of inertia above `most`, which is its ∞ [kg m²]; or "".
+    """
     moments = [I for body in model.bodies for I in np.atleast_1d(body.inertia) if most < I < np.inf]
     return f"a moment of inertia of {moments[0]:.3g} kg m² counts as infinite in it" if moments else ""
 
@@ -298,8 +301,7 @@ def stiff_joints(model):
 
 
 def as_numbered(pushes, model):
-    """Return the function `pushes` of a world without the joints that with_plain_springs takes away, with all numbers.
-    """
+    """Return the function `pushes` of a world that was built with_plain_springs, with the Model's numbers of joints."""
     numbers = stiff_joints(model)
     return lambda: [push if push.joint is None else push._replace(joint=numbers[push.joint]) for push in pushes()]
 
@@ -307,12 +309,12 @@ def as_numbered(pushes, model):
 def with_plain_springs(model):
     """Return the model with a spring, of stiffness 1/α, for each Distance that has a compliance."""
     start, springs = start_of(model), []
-    soft = [joint for joint in model.joints if isinstance(joint, Distance) and joint.compliance > 0.0]
-    for joint in soft:
+    stiff = stiff_joints(model)
+    for joint in (joint for n, joint in enumerate(model.joints) if n not in stiff):
         length = np.linalg.norm(world_place(start, joint.a, joint.place_a) - world_place(start, joint.b, joint.place_b))
         springs.append(Spring(*joint[:4], float(length), 1.0 / joint.compliance))
     return model._replace(springs=model.springs + tuple(springs),
-                          joints=tuple(joint for joint in model.joints if joint not in soft))
+                          joints=tuple(model.joints[n] for n in stiff))
 
 
 def only_holds(model, k):

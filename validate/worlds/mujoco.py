@@ -39,12 +39,12 @@ from .derived import (
     bounces,
     carries,
     checked_step,
+    cuts_moments,
     forces_of,
     only_holds,
     opens,
     rubs,
     spins_on,
-    too_stout,
     touches,
     tree,
     with_plain_springs,
@@ -78,7 +78,7 @@ def refuses(model):
     if any(can_move(body) and min(body.m, *np.atleast_1d(body.inertia)) <= LEAST for body in model.bodies):
         return f"its masses and moments must be above {LEAST:g}"
     return (unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
-            or too_stout(model, WIDE))
+            or cuts_moments(model, WIDE))
 
 
 def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
@@ -103,16 +103,16 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     advance, take = mujoco.mj_step, mujoco.set_mjcb_passive
     load = forced_by(parts, world, data, order) or pushed_by(parts, world, order)
 
-    def loaded(call, *arguments):                            # the engine has one callback for all worlds
+    def loaded(call):                                        # the engine has one callback for all worlds
         take(load)
         try:
-            return call(*arguments)
+            return call()
         finally:
             take(None)
-    if not model.loads:
-        loaded = lambda call, *arguments: call(*arguments)
-    found = as_numbered(lambda: loaded(pushes, parts, world, data, order), whole)
-    return World(partial(loaded, advance, world, data), state, found, data=data)
+    step, tell = partial(advance, world, data), partial(pushes, parts, world, data, order)
+    if model.loads:
+        step, tell = partial(loaded, step), partial(loaded, tell)
+    return World(step, state, as_numbered(tell, whole), data=data)
 
 
 def is_free(parts, k):
