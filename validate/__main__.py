@@ -20,7 +20,7 @@ from rich.table import Table
 
 from solutions.checks import BadInput
 
-from .products import BUILDERS, PRODUCTS, PYBULLET, product_named
+from .engines.products import BUILDERS, PRODUCTS, PYBULLET, product_named
 from .run.command import start
 from .run.processes import Ended, alone_in, workers
 from .run.store import FULL_RUN, SUBSET, lessons_of, report_of_this_version, stored_report, writable, write_text

@@ -13,7 +13,7 @@ import numpy as np
 from solutions.checks import BadInput
 
 from .check import Allowed, JointsAllowed, Whose
-from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
+from .engines.products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
 
 EXACT = "exact"              # an order: no error but round-off
 LATE_LEAPFROG = "1 to 2"     # an order: leapfrog whose first velocity belongs to half a step before or after

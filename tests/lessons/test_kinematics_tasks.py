@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate.products import PYBULLET
+from validate.engines.products import PYBULLET
 from validate.speed import targets
 from validate.subject import modules
 

@@ -256,9 +256,9 @@ def test_a_cell_that_runs_pymunk_first_asks_whether_it_is_there(path):
 def test_where_pymunk_is_missing_a_sentence_leads_to_its_stored_results(monkeypatch):
     shown = []
     monkeypatch.setattr("validate.notebook.display", lambda html: shown.append(html.data))
-    monkeypatch.setattr("validate.products.version", lambda name: "1.0")
+    monkeypatch.setattr("validate.engines.products.version", lambda name: "1.0")
     assert has_pymunk("09_contact") and not shown
-    monkeypatch.setattr("validate.products.Product.installed", lambda product: None)
+    monkeypatch.setattr("validate.engines.products.Product.installed", lambda product: None)
     monkeypatch.setenv("WORKBOOK_PAGES", "https://example.org/book/notebooks/")
     assert not has_pymunk("09_contact")
     assert shown == ['<p>pymunk is not installed here. Its stored results are on <a href="https://example.org/book/'

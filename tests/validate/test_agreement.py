@@ -5,9 +5,9 @@ import sys
 import numpy as np
 import pytest
 
+from validate.engines.products import PYMUNK
 from validate.measure import agreement
 from validate.measure.accuracy import relative, run_engine_to_end
-from validate.products import PYMUNK
 from validate.reference.stored import agreed
 from validate.scenes.simulator import dominoes, machine
 from validate.subject import modules

@@ -16,9 +16,9 @@ import pytest
 from solutions.checks import Diverged
 from validate import __main__ as cli
 from validate import measure, report
+from validate.engines.products import PYMUNK, Product
 from validate.measure import record, traces
 from validate.notebook.pytest_process import quiet
-from validate.products import PYMUNK, Product
 from validate.report import plots, summary
 from validate.run import processes, store
 from validate.run import run as validation

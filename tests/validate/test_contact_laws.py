@@ -9,9 +9,9 @@ import pytest
 from validate.check import Verdict
 from validate.engines import watched
 from validate.engines.bullet import Rigid
+from validate.engines.products import PYBULLET, PYMUNK
 from validate.engines.switches import worlds_made
 from validate.measure.accuracy import run_ours
-from validate.products import PYBULLET, PYMUNK
 from validate.reference import contact_laws
 from validate.reference.contact_laws import Law, Touching, judged, verdict_on
 from validate.report import audit

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from validate.engines.products import BUILDERS, MUJOCO
 from validate.measure.accuracy import ASYMPTOTIC, relative, run_engine_to_end
-from validate.products import BUILDERS, MUJOCO
 from validate.worlds import ours
 from validate.worlds.conformance import Beside, error_of
 from validate.worlds.described import DESCRIBED

@@ -7,7 +7,7 @@ import pytest
 
 from solutions.support.model import Body, make_model
 from validate import __main__ as cli
-from validate.products import BOX2D, MUJOCO, PYMUNK, RAPIER
+from validate.engines.products import BOX2D, MUJOCO, PYMUNK, RAPIER
 from validate.subject.modules import ROOT
 from validate.worlds import conformance
 from validate.worlds.described import DESCRIBED

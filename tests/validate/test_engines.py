@@ -5,8 +5,8 @@ import pytest
 
 from validate.engines.bullet import Bullet, Rigid
 from validate.engines.collisions import LEAST_WAY, bullet_swept, sweep
+from validate.engines.products import PYBULLET
 from validate.measure.accuracy import relative, run_engine_to_end
-from validate.products import PYBULLET
 from validate.reference.collisions import detection_errors
 from validate.scenes.collisions import point_and_cylinder, point_and_plane
 from validate.scenes.collisions._common import SHARES

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from validate import measure
+from validate.engines.products import PYBULLET, RAPIER
 from validate.measure import exams, film
 from validate.measure.selection import Plan, select
-from validate.products import PYBULLET, RAPIER
 from validate.reference import exams as reference
 from validate.reference import mechanisms
 from validate.report import exams as shown

@@ -6,8 +6,8 @@ import pytest
 from solutions.support.model import WORLD, Body, Hinge, State, make_model
 from validate.check import BY_LAWS, JointsAllowed, Verdict
 from validate.engines import watched
+from validate.engines.products import PRODUCTS
 from validate.measure.accuracy import laws_for
-from validate.products import PRODUCTS
 from validate.reference import joint_laws
 from validate.reference.joint_laws import Reading, judged, verdict_on
 from validate.report import audit

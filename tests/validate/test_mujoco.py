@@ -7,9 +7,9 @@ from solutions.support.model import Body, Drag, Force, make_model
 from validate import measure
 from validate.check import Verdict
 from validate.engines.mujoco import IMPEDANCE, module
+from validate.engines.products import MUJOCO, PRODUCTS
 from validate.measure.accuracy import engine_curve, run_engine_to_end
 from validate.measure.selection import select
-from validate.products import MUJOCO, PRODUCTS
 from validate.reference import turns
 from validate.reference.friction import CLOSE
 from validate.report.compare import changes

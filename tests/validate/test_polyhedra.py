@@ -16,7 +16,7 @@ from solutions.support.shapes import (
     polyhedron_of,
     solid_integrals,
 )
-from validate.products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER
+from validate.engines.products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER
 from validate.worlds import derived, ours
 
 G = 9.81                     # [m/s²]

@@ -3,7 +3,7 @@
 import pytest
 
 from solutions.checks import BadInput
-from validate.products import PRODUCTS, product_named
+from validate.engines.products import PRODUCTS, product_named
 
 installed = pytest.mark.parametrize("product", [p for p in PRODUCTS if p.installed()], ids=str)
 

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from validate.engines.products import PYMUNK
 from validate.measure import calls, races, timing
 from validate.measure.compilation import compilation
 from validate.measure.races import BEST, HEADLINE, LEVELS, Outcome
 from validate.measure.selection import Plan, select
 from validate.measure.timing import times_to_error
-from validate.products import PYMUNK
 from validate.report import choice
 from validate.report import races as words
 from validate.subject import modules

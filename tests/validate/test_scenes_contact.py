@@ -5,9 +5,9 @@ import pytest
 
 from validate import measure
 from validate.check import is_right
+from validate.engines.products import PYMUNK
 from validate.measure import film, record
 from validate.measure.selection import can_do
-from validate.products import PYMUNK
 from validate.reference.contact import Towers, sway_of_tower, unrest_in_pymunk
 from validate.reference.stored import numbers
 from validate.scenes.contact import mass_ratio, piles, stack

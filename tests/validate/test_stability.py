@@ -12,9 +12,9 @@ import pytest
 
 from solutions.checks import BadInput
 from validate.check import states
+from validate.engines.products import PYBULLET
 from validate.measure.selection import Plan
 from validate.methods import EULER
-from validate.products import PYBULLET
 from validate.report import required
 from validate.stability import examine as examine_module
 from validate.stability import integrators

@@ -6,7 +6,7 @@ import types
 import numpy as np
 import pytest
 
-from validate.products import Product
+from validate.engines.products import Product
 from validate.reference.springs import modes
 from validate.scenes.friction import stick_slip
 from validate.scenes.inertia_tensors import tensors

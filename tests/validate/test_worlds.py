@@ -24,7 +24,7 @@ from solutions.support.model import (
     world_place,
 )
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
-from validate.products import BOX2D, BUILDERS, MUJOCO, PYBULLET, PYMUNK, RAPIER
+from validate.engines.products import BOX2D, BUILDERS, MUJOCO, PYBULLET, PYMUNK, RAPIER
 from validate.scene import by_order
 from validate.subject import modules
 from validate.worlds import chipmunk, derived, ours

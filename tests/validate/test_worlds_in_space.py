@@ -5,7 +5,7 @@ import pytest
 
 from solutions.support.model import WORLD, BallJoint, Body, Distance, Hinge, Spring, Weld, can_move, make_model
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace
-from validate.products import MUJOCO, PYBULLET, RAPIER
+from validate.engines.products import MUJOCO, PYBULLET, RAPIER
 from validate.subject import modules
 from validate.worlds import ours
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..products import MUJOCO, PYBULLET, PYMUNK
+from ..engines.products import MUJOCO, PYBULLET, PYMUNK
 from ..subject.modules import can_compile
 from .selection import REPEATS
 

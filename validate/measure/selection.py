@@ -13,7 +13,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from ..products import PYBULLET, PYMUNK
+from ..engines.products import PYBULLET, PYMUNK
 from ..scene import Scene
 from ..subject import modules
 

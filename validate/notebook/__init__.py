@@ -26,9 +26,9 @@ from solutions.checks import BadInput
 
 from .. import measure
 from ..check import Role
+from ..engines.products import PRODUCTS, PYMUNK
 from ..measure import film
 from ..mistakes import failing_case
-from ..products import PRODUCTS, PYMUNK
 from ..reference import choices
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..scene import check_known

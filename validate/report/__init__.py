@@ -9,9 +9,9 @@ from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
 from ..check import Verdict
+from ..engines.products import PRODUCTS
 from ..measure.races import HEADLINE, LEVELS
 from ..measure.timing import TARGETS
-from ..products import PRODUCTS
 from ..run.store import whole
 from . import choice, exams, films, numbers, plots, races, tables, words
 from .answers import LEAST, MOST, answers

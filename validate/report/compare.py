@@ -6,7 +6,7 @@ from typing import NamedTuple
 from solutions.checks import BadInput
 
 from ..check import JUDGED_RIGHT, Verdict
-from ..products import PRODUCTS
+from ..engines.products import PRODUCTS
 from .words import busy_warning
 
 GOOD = {*JUDGED_RIGHT, Verdict.REFERENCE}

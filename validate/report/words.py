@@ -8,9 +8,9 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from ..check import Verdict, is_right
+from ..engines.products import PRODUCTS
 from ..measure.accuracy import relative
 from ..measure.timing import SAME, interval
-from ..products import PRODUCTS
 from ..reference import contact_laws, joint_laws
 from ..scene import EXACT
 from . import races

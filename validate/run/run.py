@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .. import measure
-from ..products import PRODUCTS
+from ..engines.products import PRODUCTS
 from ..stability.examine import left_to_full, stability_cases
 from ..subject import modules
 from . import coverage

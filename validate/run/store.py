@@ -8,7 +8,7 @@ from importlib.metadata import version
 
 from solutions.checks import BadInput
 
-from ..products import PRODUCTS
+from ..engines.products import PRODUCTS
 from ..subject import modules
 
 FORMAT = 3                   # of stored results: raise it when a report of before cannot be read any more

@@ -25,7 +25,7 @@ from rich.table import Table
 from scipy.spatial.transform import Rotation
 
 from ..engines.contact import DT, KINDS, BulletPile, PymunkPile, fallen
-from ..products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER, Product
+from ..engines.products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER, Product
 from ..reference.overlaps import overlaps
 from ..scene import check_known
 from ..subject import modules

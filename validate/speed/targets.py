@@ -18,7 +18,7 @@ from solutions.checks import BadInput
 from solutions.support.chains import make_arm_2d, make_arm_3d
 
 from ..engines.kinematics import BulletChain
-from ..products import PYBULLET
+from ..engines.products import PYBULLET
 from ..reference.kinematics import spatial_end
 from ..scene import check_known
 from ..subject import modules

@@ -24,7 +24,7 @@ from validate.stability.case import (
     series,
 )
 
-from ..products import PYBULLET
+from ..engines.products import PYBULLET
 
 THROWN = 10_000              # balls, each at its own phase of a step
 FEW = 60                     # balls in an engine

@@ -16,7 +16,7 @@ from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import enumerated, least_energy, natural_residual
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, log_series, random_law, refuses, series
 
-from ..products import PYBULLET
+from ..engines.products import PYBULLET
 
 G = 9.81                     # [m/s²]
 THREE_DIGITS = 1e-3          # of the part that a sweep removes, 1 − ρ [-]

@@ -18,7 +18,7 @@ from validate.reference.friction import DrivenBlock, T, slip_limits, slip_positi
 from validate.reference.schemes import EULER, step_of
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, random_law, refuses, series
 
-from ..products import PYBULLET, PYMUNK
+from ..engines.products import PYBULLET, PYMUNK
 
 G = 9.81                     # [m/s²]
 WAY = 1e-9                   # [m]: far above the round-off of one second, far below the slip at 1e-6 beyond the edge

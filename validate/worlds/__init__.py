@@ -1,7 +1,7 @@
 """The worlds that are built from a Model: one file per engine.
 
 Each file has  refuses(model) → a reason, or "",  and  build(model, dt, **settings) → World.  A new engine is one file
-here and one record in `validate/products.py`; it then runs every Model that it does not refuse.
+here and one record in `validate/engines/products.py`; it then runs every Model that it does not refuse.
 """
 
 from collections.abc import Callable

@@ -6,7 +6,7 @@ Parameters and truth stay with the scenes.
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ..products import PYBULLET
+from ..engines.products import PYBULLET
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import bounces, cradle, oblique_discs, spinning_bounce

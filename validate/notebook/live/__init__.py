@@ -16,7 +16,7 @@ from IPython.display import HTML, display
 from solutions.checks import BadInput, check_not_negative
 from solutions.support.model import Model
 
-from ...products import PYMUNK
+from ...engines.products import PYMUNK
 from .. import attempt, folder, saving
 from .canvas import drawn, film_of
 from .loops import LOOPS

@@ -9,7 +9,7 @@ from solutions.support.model import WORLD, Hinge, can_move, own_place, picture_o
 from solutions.support.shapes import Ball, HalfSpace, outline_of
 
 from ... import methods
-from ...products import PYMUNK
+from ...engines.products import PYMUNK
 from ...report import HERE as REPORT
 from ..saving import KEEP_KEYS
 
