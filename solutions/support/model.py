@@ -370,10 +370,10 @@ def joined_pairs(model):
 
 def touching_pairs(model):
     """Return the pairs (i, j), i < j, of bodies that could ever touch: both have shapes, one can move, not joined."""
-    joined, n = joined_pairs(model), len(model.bodies)
-    return [(i, j) for i in range(n) for j in range(i + 1, n)
-            if model.bodies[i].shape is not None and model.bodies[j].shape is not None
-            and (can_move(model.bodies[i]) or can_move(model.bodies[j])) and frozenset((i, j)) not in joined]
+    joined = joined_pairs(model)
+    shaped = [(k, can_move(body)) for k, body in enumerate(model.bodies) if body.shape is not None]
+    return [(i, j) for at, (i, one) in enumerate(shaped) for j, other in shaped[at + 1:]
+            if (one or other) and frozenset((i, j)) not in joined]
 
 
 def friction_of(model, i, j):

@@ -21,9 +21,10 @@ from solutions.support.model import (
     make_model,
     own_place,
     start_of,
+    touching_pairs,
     world_place,
 )
-from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, size_of
 from validate.engines.products import BOX2D, BUILDERS, MUJOCO, PYBULLET, PYMUNK, RAPIER
 from validate.scene import by_order
 from validate.subject import modules
@@ -636,6 +637,43 @@ def test_the_gap_of_two_shapes_is_their_distance():
             found, way = derived.gap(one, other)
             assert found == pytest.approx(distance, abs=1e-12)
             assert way == pytest.approx(sign * np.array(n), abs=1e-9)
+
+
+def crowd(rng, d):
+    """Return a Model of bodies in a heap, of which some touch exactly, some overlap, and some are joined."""
+    def shape():
+        half = rng.uniform(0.1, 0.3, d)
+        return (Ball(half[0]), Box(tuple(half)), Capsule(half[0], half[1]), None)[rng.integers(4)]
+    bodies = [Body(tuple(rng.uniform(-0.8, 0.8, d)), rng.choice([1.0, np.inf]), shape(), rng.choice([0.0, 0.5]),
+                   rng.choice([0.0, 0.5])) for _ in range(9)]
+    bodies += [Body((2.0 + 0.4 * k, *(0.0,) * (d - 1)), 1.0, Ball(0.2)) for k in range(3)]
+    joints = [Weld(0, 1, bodies[0].x)] if np.isfinite(bodies[0].m) or np.isfinite(bodies[1].m) else []
+    floor = HalfSpace((*(0.0,) * (d - 1), 1.0), rng.uniform(-0.2, 0.2))
+    return make_model([*bodies, Body((0.0,) * d, shape=floor, mu=1.0, e=1.0)], (0.0,) * d, joints)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_what_touches_at_the_start_is_what_trying_all_pairs_finds(d):
+    for seed in range(40):
+        model = crowd(np.random.default_rng(seed), d)
+        pairs, b = touching_pairs(model), model.bodies
+        sizes = [size_of(one.shape) if one.shape is not None else np.inf for one in b]
+        gaps = [(i, j, *derived.gap(b[i], b[j])) for i, j in pairs]
+        found = [(i, j) for i, j, distance, _ in gaps
+                 if abs(distance) <= derived.TOUCH * max(size for size in (sizes[i], sizes[j]) if size < np.inf)]
+        assert [pair[:2] for pair in derived.contacts_at_start(model)] == found and len(found) >= 2
+        assert derived.touches(model) == bool(pairs)
+        assert derived.bounces(model) == any(b[i].e * b[j].e > 0.0 for i, j in pairs)
+        assert derived.rubs(model) == any(b[i].mu * b[j].mu > 0.0 for i, j in pairs)
+
+
+def test_a_large_pile_is_built_without_trying_all_pairs(monkeypatch):
+    """A body of a lattice is within reach of a few others, and of the floor."""
+    tried, n = [], 900
+    monkeypatch.setattr(derived, "gap", lambda a, b, gap=derived.gap: tried.append(1) or gap(a, b))
+    bodies = [Body((0.5 * (k % 30), 0.5 * (k // 30) + 0.25), 1.0, Box((0.2, 0.2)), 0.5) for k in range(n)]
+    chipmunk.build(make_model([*bodies, FLOOR], (0.0, -G)), 1e-3)
+    assert len(tried) <= 5 * n
 
 
 def test_a_tower_is_pressed_in_from_the_floor_upwards():

@@ -24,7 +24,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial.transform import Rotation
 
-from ..engines.contact import DT, KINDS, BulletPile, PymunkPile, fallen
+from ..engines.contact import DT, KINDS, bullet_pile, fallen, pymunk_pile
 from ..engines.products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER, Product
 from ..reference.overlaps import overlaps
 from ..scene import check_known
@@ -56,15 +56,15 @@ class Rival(NamedTuple):
 
 
 PLANE = (
-    Rival(PYMUNK, "10 iterations", partial(PymunkPile, iterations=10), {"discs": 0.5, "boxes": 0.5}, {}),
+    Rival(PYMUNK, "10 iterations", partial(pymunk_pile, iterations=10), {"discs": 0.5, "boxes": 0.5}, {}),
     Rival(BOX2D, "defaults: 4 substeps, 30 Hz, slop 5 mm", Box2DPile, {}, LOOSE),
     Rival(BOX2D, "2 substeps", partial(Box2DPile, substeps=2), {}, LOOSE),
     Rival(BOX2D, "tuned: 4 substeps, 240 Hz, slop 0.5 mm", partial(Box2DPile, hertz=240.0, unit=0.1),
           {"discs": 0.6, "boxes": 0.6}, FIRM),
 )
 SPACE = (
-    Rival(PYBULLET, "10 iterations", partial(BulletPile, iterations=10), {"spheres": 0.25, "bricks": 0.5}, {}),
-    Rival(PYBULLET, "50 iterations", partial(BulletPile, iterations=50), {"spheres": 0.1, "bricks": 0.3}, {}),
+    Rival(PYBULLET, "10 iterations", partial(bullet_pile, iterations=10), {"spheres": 0.25, "bricks": 0.5}, {}),
+    Rival(PYBULLET, "50 iterations", partial(bullet_pile, iterations=50), {"spheres": 0.1, "bricks": 0.3}, {}),
     Rival(RAPIER, "defaults: 4 iterations, 30 Hz, slop 1 mm", RapierPile, {}, SOFT_SPACE),
     Rival(RAPIER, "2 iterations", partial(RapierPile, iterations=2), {}, SOFT_SPACE),
     Rival(RAPIER, "tuned: 4 iterations, 120 Hz, slop 0.1 mm", partial(RapierPile, hertz=120.0, slop=1e-4),

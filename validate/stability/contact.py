@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 from solutions.checks import BadInput, Diverged
 from solutions.impulses import cross_2d
 from validate.engines.contact import DT as ENGINE_DT
-from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
+from validate.engines.contact import KINDS, MU, bullet_pile, fallen, pymunk_pile
 from validate.reference.contact import enumerated, least_energy, natural_residual
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, log_series, random_law, refuses, series
 
@@ -812,7 +812,7 @@ def steepest(judged):
 def pymunk_pile_at_rest(lesson):
     """Return (times [s], residuals over g dt, the last record) of 30 discs that fall and come to rest in pymunk."""
     kind, seen = KINDS["discs"]._replace(across=6), []
-    world = PymunkPile(kind, *fallen(kind, 30), 200, 1e-3)
+    world = pymunk_pile(kind, *fallen(kind, 30), 200, 1e-3)
     for _ in range(12):
         world.run(60)
         seen.append(judged_by_lesson(lesson, world.judged(), MU)[0] / (G * ENGINE_DT))
@@ -859,7 +859,7 @@ def disc_of_friction(lesson, check):
 def pyramid_of_pybullet():
     """Let 27 spheres roll in pybullet; return what it says of friction, for Checks.by."""
     kind, slopes = KINDS["spheres"]._replace(across=3), []
-    world = BulletPile(kind, *fallen(kind, 27), 50)
+    world = bullet_pile(kind, *fallen(kind, 27), 50)
     for _ in range(12):
         world.run(60)
         slopes.append(steepest(world.judged()))

@@ -79,6 +79,7 @@ class Settings(NamedTuple):
     residual: float = 0.0    # solverResidualThreshold: the solver ends where nothing changes by more [m/s]
     pyramid: bool = False    # friction within a square along x and y; in reduced coordinates only
     impacts: bool | None = None      # contacts push no overlap out; None: where a pair has restitution
+    slabs: bool = False      # half-spaces are boxes also where all that moves is a ball; a pile rests better on them
     weighed: bool = True     # do a step apart beforehand, so that moments of inertia count from the first step
 
 
@@ -104,7 +105,9 @@ def refuses(model):
 
 def cuts_friction(model):
     """Return why it refuses a model with a friction that it would cut off, or "".  An infinite friction is ROUGHEST."""
-    cut = any(ROUGHEST < friction_of(model, *pair) < np.inf for pair in touching_pairs(model))
+    roughest = sorted(body.mu for body in model.bodies)[-2:]
+    cut = roughest[0] * roughest[-1] > ROUGHEST and any(
+        ROUGHEST < friction_of(model, *pair) < np.inf for pair in touching_pairs(model))
     return f"it cuts the friction of a pair off at {ROUGHEST:g}" if cut else ""
 
 
@@ -173,10 +176,15 @@ def shape_of(parts, body, place=(0.0, 0.0, 0.0)):
     if isinstance(shape, Polyhedron):
         return pb.createCollisionShape(pb.GEOM_MESH, vertices=list(map(list, shape.corners)), **at)
     if isinstance(shape, HalfSpace):
-        if round_only(parts.model):
+        if has_planes(parts):
             return pb.createCollisionShape(pb.GEOM_PLANE)
         return pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[SLAB, SLAB, 1.0])
     return -1
+
+
+def has_planes(parts):
+    """Return whether half-spaces are the engine's planes, which have no end; otherwise they are boxes."""
+    return round_only(parts.model) and not parts.settings.slabs
 
 
 def frame_of(parts, k, x):
@@ -188,7 +196,7 @@ def frame_of(parts, k, x):
     axis = np.cross([0.0, 0.0, 1.0], n)
     size = np.linalg.norm(axis)
     R = about(axis / size, np.arctan2(size, n[2])) if size > 0.0 else np.diag((1.0, np.sign(n[2]), np.sign(n[2])))
-    depth = 0.0 if round_only(parts.model) else 1.0
+    depth = 0.0 if has_planes(parts) else 1.0
     return -(shape.offset + depth) * n, R
 
 

@@ -22,12 +22,10 @@ from solutions.support.model import (
     can_move,
     can_turn,
     check_model,
-    friction_of,
+    joined_pairs,
     loads_at,
-    restitution_of,
     rotation_of,
     start_of,
-    touching_pairs,
     world_place,
 )
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polyhedron, core_of, hull_triangles, size_of
@@ -44,17 +42,24 @@ PLANE = 1e-12                # allowed distance from a vertical plane, over the 
 
 def touches(model):
     """Return whether any two bodies could ever touch."""
-    return bool(touching_pairs(model))
+    return any_touch(model, range(len(model.bodies)))
 
 
 def bounces(model):
-    """Return whether any pair has restitution."""
-    return any(restitution_of(model, *pair) > 0.0 for pair in touching_pairs(model))
+    """Return whether any pair has restitution, which is a product."""
+    return any_touch(model, [k for k, body in enumerate(model.bodies) if body.e > 0.0])
 
 
 def rubs(model):
-    """Return whether any pair has friction."""
-    return any(friction_of(model, *pair) > 0.0 for pair in touching_pairs(model))
+    """Return whether any pair has friction, which is a product."""
+    return any_touch(model, [k for k, body in enumerate(model.bodies) if body.mu > 0.0])
+
+
+def any_touch(model, chosen):
+    """Return whether any two of the chosen bodies could ever touch."""
+    joined = joined_pairs(model)
+    shaped = [k for k in chosen if model.bodies[k].shape is not None]
+    return any(frozenset((i, j)) not in joined for i in shaped if can_move(model.bodies[i]) for j in shaped if i != j)
 
 
 def carries(model):
@@ -170,16 +175,20 @@ def gap(a, b):
 
 def contacts_at_start(model):
     """Return [(a, b, n from b to a), …]: the pairs that touch at the start and do not overlap."""
-    found = []
-    for i, j in touching_pairs(model):
-        a, b = model.bodies[i], model.bodies[j]
-        sizes = [size_of(body.shape) for body in (a, b) if not isinstance(body.shape, HalfSpace)]
-        close = TOUCH * max(sizes, default=0.0)
-        if len(sizes) == 2 and np.linalg.norm(np.subtract(a.x, b.x)) > sum(sizes) + close:
-            continue
-        distance, n = gap(a, b)
-        if sizes and abs(distance) <= close:
-            found.append((i, j, n))
+    joined, found = joined_pairs(model), []
+    shaped = [k for k, body in enumerate(model.bodies) if body.shape is not None]
+    x = np.reshape([model.bodies[k].x for k in shaped], (-1, model.d))
+    size = np.array([size_of(model.bodies[k].shape) for k in shaped])
+    for at, i in enumerate(shaped):
+        others = size[at + 1:]
+        near = np.linalg.norm(x[at + 1:] - x[at], axis=1) <= (1.0 + TOUCH) * (size[at] + others)
+        for j, other in zip(np.array(shaped[at + 1:], int)[near].tolist(), others[near].tolist()):
+            a, b = model.bodies[i], model.bodies[j]
+            if not (can_move(a) or can_move(b)) or frozenset((i, j)) in joined:
+                continue
+            distance, n = gap(a, b)
+            if abs(distance) <= TOUCH * max(one for one in (size[at], other) if np.isfinite(one)):
+                found.append((i, j, n))
     return found
 
 

@@ -16,7 +16,7 @@ from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
 from validate.check import states
 from validate.engines import watched
-from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
+from validate.engines.contact import DT, KINDS, MU, G, bullet_pile, fallen, inverse_tensors, pymunk_pile
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
 from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
@@ -42,7 +42,7 @@ class Params(NamedTuple):
 
 CASES = {
     "12 spheres": Params(), "30 discs": Params("discs", 30, 6), "200 discs": Params("discs", 200, 20, 4.0),
-    "200 boxes": Params("boxes", 200, 20, 4.0, 0), "200 spheres": Params("spheres", 200, 6, 4.0, 0),
+    "200 boxes": Params("boxes", 200, 20, 6.0), "200 spheres": Params("spheres", 200, 6, 4.0, 0),
     "200 bricks": Params("bricks", 200, 6, 4.0, 0),
     "200 spheres, judged": Params("spheres", 200, 6, 4.0), "200 bricks, judged": Params("bricks", 200, 6, 6.0),
     **{f"1,000 {name}": Params(name, 1000, kind.across, 4.0, int(name == "discs")) for name, kind in KINDS.items()},
@@ -128,9 +128,8 @@ def truth(p, t):
     """At rest the floor carries the whole weight: Newton's second law for the sum of the bodies.  The forces of the
     walls balance.  Rigid bodies do not overlap, e = 0 creates no energy, and the natural map has no residual.
 
-    The residual is that of the impulses of the last step, ours or an engine's.  For boxes pymunk reports only the sum
-    of two points, so these are not judged.  pybullet's friction is a pyramid, which reaches √2 μ along its
-    diagonals.  It is judged with √2 μ here, and with μ in a stability case.
+    The residual is that of the impulses of the last step, ours or an engine's.  pybullet's friction is a pyramid, which
+    reaches √2 μ along its diagonals.  It is judged with √2 μ here, and with μ in a stability case.
     Source: Newton; Signorini and Coulomb.
     """
     return np.array([1.0, 0.0, 0.0, 0.0] + ([] if not p.judged else [0.0]))
@@ -172,7 +171,7 @@ def make(p, dt, rival, wider=1.0):
         state, pile = start(p)
         world, energies, blocks = rival(kind_of(p), state, pile), [], round(p.seconds / DT / BLOCK)
         for block in range(blocks):
-            watched.run(world.watch(), BLOCK, kept, {BLOCK - 1} if block in watched.watched_steps(blocks) else ())
+            watched.run(world.watching, BLOCK, kept, {BLOCK - 1} if block in watched.watched_steps(blocks) else ())
             energies.append(energy(pile, *world.places(), *world.velocities()))
         residual = 0.0
         if p.judged:
@@ -203,18 +202,18 @@ STILL_CREEPS = "10 iterations per step do not bring a pile to rest"
 RUNNERS = (
     ours(PILE_IN_SPACE, limit=limit, predicted=CREEPS, order=EXACT, supports=solid),
     ours(PILE, limit=limit, predicted=CREEPS, order=EXACT, supports=flat),
-    engine(PYMUNK, "", partial(make, rival=partial(PymunkPile, iterations=50, slop=1e-3)),
+    engine(PYMUNK, "", partial(make, rival=partial(pymunk_pile, iterations=50, slop=1e-3)),
            "50 iterations, collision_slop 1e-3; steps of 1/240 s",
            order=EXACT, limit=pymunk_limit, predicted=CREEPS, supports=flat),
-    engine(PYMUNK, "default", partial(make, rival=partial(PymunkPile, iterations=10, slop=0.1)),
+    engine(PYMUNK, "default", partial(make, rival=partial(pymunk_pile, iterations=10, slop=0.1)),
            "10 iterations, collision_slop 0.1; steps of 1/240 s",
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=flat,
            laws=watched.pymunk_rules(10, STILL_CREEPS)),
-    engine(PYBULLET, "", partial(make, rival=partial(BulletPile, iterations=50), wider=PYRAMID),
+    engine(PYBULLET, "", partial(make, rival=partial(bullet_pile, iterations=50), wider=PYRAMID),
            "maximal coordinates; solverResidualThreshold 0, 50 iterations; steps of 1/240 s",
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
            laws=watched.bullet_rules(50, creeps=True)),
-    engine(PYBULLET, "default", partial(make, rival=partial(BulletPile, iterations=50, residual=1e-7), wider=PYRAMID),
+    engine(PYBULLET, "default", partial(make, rival=partial(bullet_pile, iterations=50, residual=1e-7), wider=PYRAMID),
            "maximal coordinates; 50 iterations; steps of 1/240 s",
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
            laws=watched.bullet_rules(50, creeps=True)),
