@@ -50,6 +50,12 @@ def check_shape(thing, values, shape):
         raise WrongShape(thing, values.shape, shape)
 
 
+def check_kind(thing, value, kind, remedy):
+    """Raise BadInput unless a value has the fields of this NamedTuple; it may come from another copy of its file."""
+    if getattr(value, "_fields", None) != kind._fields:
+        raise BadInput(thing, f"a {type(value).__name__}", remedy)
+
+
 def check_array(thing, values, dimensions):
     """Raise BadInput unless values is a non-empty array of finite numbers with this number of dimensions."""
     found = -1

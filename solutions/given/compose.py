@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, check_not_negative, finite_number, positive_number, whole_number
+from ..checks import BadInput, check_kind, check_not_negative, finite_number, positive_number, whole_number
 from ..simulator import weight
 from ..support.convex_2d import (
     box_bounds_of,
@@ -162,8 +162,7 @@ def compose(model, settings=SETTINGS):
 
 def checked_settings(settings):
     """Return Settings as numbers of their kinds.  Raises BadInput; rows_of checks the margin."""
-    if getattr(settings, "_fields", None) != Settings._fields:
-        raise BadInput("the settings", f"a {type(settings).__name__}", "give Settings(…), or leave them out")
+    check_kind("the settings", settings, Settings, "give Settings(…), or leave them out")
     settled = finite_number("the share at which sweeps have settled [-]", settings.settled)
     check_not_negative("the share at which sweeps have settled [-]", settled)
     return settings._replace(sweeps=whole_number("number of sweeps", settings.sweeps, 1), settled=settled)
@@ -314,12 +313,12 @@ def run_parts(loop, t, state, dt, steps):
     Raises BadInput for anything but a Loop and a state of it, for a step that is not positive, and for one with which
     springs or a drag throw bodies ever farther.  Raises Diverged where the end is not finite or a step is far too long.
     """
-    if getattr(loop, "_fields", None) != Loop._fields:
-        raise BadInput("the loop", f"a {type(loop).__name__}", "give what compose returns for a Model")
+    check_kind("the loop", loop, Loop, "give what compose returns for a Model")
     steps = whole_number("number of steps", steps, 0)
-    if getattr(state, "_fields", None) != PileState._fields or len(state.x) != len(loop.state.x):
-        raise BadInput("the state", f"a {type(state).__name__} that is not of this loop",
-                       "begin with loop.state, or go on from what run_parts has returned")
+    own = "begin with loop.state, or go on from what run_parts has returned"
+    check_kind("the state", state, PileState, own)
+    if len(state.x) != len(loop.state.x):
+        raise BadInput("the state", f"of another loop, with {len(state.x)} rows and not {len(loop.state.x)}", own)
     check_explicit_forces(loop, dt)
     functions = loop.step.step, *padded(loop), loop.touch, loop.load, loop.bounds, loop.narrow
     return advance_parts(*functions, t, state, dt, steps, loop.p)

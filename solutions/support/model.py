@@ -15,7 +15,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import BadInput, WrongShape, check_friction, check_restitution, finite_array, finite_number, number
+from ..checks import (
+    BadInput,
+    WrongShape,
+    check_friction,
+    check_kind,
+    check_restitution,
+    finite_array,
+    finite_number,
+    number,
+)
 from .model_checks import (
     check_force,
     check_joint,
@@ -182,8 +191,7 @@ def make_model(bodies, gravity, joints=(), springs=(), loads=()):
 
 def check_model(model):
     """Raise BadInput unless this is a Model."""
-    if getattr(model, "_fields", None) != Model._fields:
-        raise BadInput("the model", f"a {type(model).__name__}", "give what make_model returns")
+    check_kind("the model", model, Model, "give what make_model returns")
 
 
 def checked_body(k, body, d):
