@@ -123,7 +123,7 @@ def said_of_all(report):
     if not counts:
         return
     yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
-           "is what the intervals of both times allow. Medians of the races in which both reach the error:")
+           "is what the intervals of both times allow, and a tenth more on either side, as two runs may differ. Medians of the races in which both reach the error:")
     yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; {ended(count)}" for count in counts) + "."
     made = races.median_factors(every)
     if made["order"] is not None:
@@ -171,6 +171,6 @@ def spread(decided):
     """
     if not decided:
         return "–"
-    low, middle, high = (rounded(median(race[key] for race in decided)) for key in ("low", "ratio", "high"))
+    middle = {key: median(race[key] for race in decided) for key in ("low", "ratio", "high")}
     least, most = (rounded(of(race["ratio"] for race in decided)) for of in (min, max))
-    return f"{middle}× ({low} to {high})" + (f"; scenes {least} to {most}" if len(decided) > 1 else "")
+    return races.with_interval(middle) + (f"; scenes {least} to {most}" if len(decided) > 1 else "")
