@@ -7,7 +7,7 @@ from .numbers import engine_name, factor, percent, rounded, seconds
 
 # factor by which a ratio may lie beyond the interval of another run [-]: measured in three full runs of one commit, in
 # which 79 of 100 ratios lay within that interval, and 98.7 of 100 within this factor of it
-AGAIN = 1.1
+BETWEEN_RUNS = 1.1
 
 
 def of(result):
@@ -58,7 +58,7 @@ def ratio(race):
 
 def with_interval(times):
     """Return the ratio of a race, or a median ratio, with its interval, such as 31× (25 to 38)."""
-    low, middle, high = map(rounded, (times["low"] / AGAIN, times["ratio"], times["high"] * AGAIN))
+    low, middle, high = map(rounded, (times["low"] / BETWEEN_RUNS, times["ratio"], times["high"] * BETWEEN_RUNS))
     return f"{middle}× ({low} to {high})"
 
 
