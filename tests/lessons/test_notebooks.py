@@ -1,6 +1,7 @@
 """The notebooks run from first cell to last with nothing attempted, half done and solved; stored without outputs."""
 
 import ast
+import importlib.util
 import json
 import re
 import symtable
@@ -363,3 +364,12 @@ def test_words_can_be_read_on_white_and_on_black():
     assert LIGHT.keys() == DARK.keys()
     assert all(1.05 / (luminance(colour) + 0.05) >= 4.5 for colour in LIGHT.values())
     assert all((luminance(colour) + 0.05) / (luminance("#111111") + 0.05) >= 4.5 for colour in DARK.values())
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_what_a_notebook_imports_of_the_workbook_is_there(path):
+    """A cell may import what no default test of its notebook runs."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    text = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    for name in set(re.findall(r"^\s*(?:from|import) ((?:validate|solutions)[\w.]*)", text, re.M)):
+        assert importlib.util.find_spec(name), name
