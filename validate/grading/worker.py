@@ -46,6 +46,16 @@ class Handout(importlib.machinery.SourceFileLoader):
             setattr(module, function, remote(f"solution:{name}.{function}"))
 
 
+class Submission(importlib.machinery.SourceFileLoader):
+    """Loads a student's file, and raises SyntaxError for a NUL byte in it, as Python does from 3.11.4 on."""
+
+    def source_to_code(self, data, path):
+        try:
+            return super().source_to_code(data, path)
+        except ValueError as e:
+            raise SyntaxError(str(e)) from e
+
+
 class Finder:
     """Finds the student's file as lessons.NAME, and under solutions or lessons the checks and the lessons that this
     one builds on.
@@ -55,7 +65,8 @@ class Finder:
     def find_spec(full, path=None, target=None):
         package, _, name = full.rpartition(".")
         if full == LESSON:
-            return importlib.util.spec_from_file_location(full, os.path.join(config["student"], f"{name}.py"))
+            file = os.path.join(config["student"], f"{name}.py")
+            return importlib.util.spec_from_file_location(full, file, loader=Submission(full, file))
         file = os.path.join(config["given"], f"{name}.py")
         if full in ("solutions.given", "solutions.support"):               # what is in them is found the usual way
             folder = os.path.join(config["given"], name)

@@ -38,7 +38,11 @@ class AsSaved(SourceFileLoader):
 
     def get_code(self, fullname):
         file = self.get_filename(fullname)
-        return self.source_to_code(self.get_data(file), file)
+        data = self.get_data(file)
+        try:
+            return self.source_to_code(data, file)
+        except ValueError as e:                      # of a NUL byte, before Python 3.11.4
+            raise SyntaxError(str(e), (file, None, None, None)) from e
 
 
 class Folders(list):
