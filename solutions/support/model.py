@@ -11,6 +11,7 @@ numbers of the other body are those of the pair.  pymunk and pybullet have the s
 *Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
 """
 
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -376,12 +377,21 @@ def joined_pairs(model):
     return {frozenset((joint.a, joint.b)) for joint in model.joints if not isinstance(joint, Distance)}
 
 
-def touching_pairs(model):
-    """Return the pairs (i, j), i < j, of bodies that could ever touch: both have shapes, one can move, not joined."""
+def pair_test(model):
+    """Return could_touch(i, j) → whether two bodies could ever touch: both have shapes, one can move, no joint."""
     joined = joined_pairs(model)
-    shaped = [(k, can_move(body)) for k, body in enumerate(model.bodies) if body.shape is not None]
-    return [(i, j) for at, (i, one) in enumerate(shaped) for j, other in shaped[at + 1:]
-            if (one or other) and frozenset((i, j)) not in joined]
+    shaped = [body.shape is not None for body in model.bodies]
+    moves = [can_move(body) for body in model.bodies]
+
+    def could_touch(i, j):
+        return shaped[i] and shaped[j] and (moves[i] or moves[j]) and frozenset((i, j)) not in joined
+    return could_touch
+
+
+def touching_pairs(model):
+    """Return the pairs (i, j), i < j, of bodies that could ever touch."""
+    could_touch = pair_test(model)
+    return [pair for pair in combinations(range(len(model.bodies)), 2) if could_touch(*pair)]
 
 
 def friction_of(model, i, j):

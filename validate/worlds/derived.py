@@ -3,7 +3,7 @@
 The geometry is independent of the lessons.  It tries every direction in which two shapes could be separated.
 """
 
-from itertools import product
+from itertools import combinations, product
 from math import sqrt
 
 import numpy as np
@@ -22,8 +22,8 @@ from solutions.support.model import (
     can_move,
     can_turn,
     check_model,
-    joined_pairs,
     loads_at,
+    pair_test,
     rotation_of,
     start_of,
     world_place,
@@ -57,9 +57,8 @@ def rubs(model):
 
 def any_touch(model, chosen):
     """Return whether any two of the chosen bodies could ever touch."""
-    joined = joined_pairs(model)
-    shaped = [k for k in chosen if model.bodies[k].shape is not None]
-    return any(frozenset((i, j)) not in joined for i in shaped if can_move(model.bodies[i]) for j in shaped if i != j)
+    could_touch = pair_test(model)
+    return any(could_touch(i, j) for i, j in combinations(chosen, 2))
 
 
 def carries(model):
@@ -175,7 +174,7 @@ def gap(a, b):
 
 def contacts_at_start(model):
     """Return [(a, b, n from b to a), …]: the pairs that touch at the start and do not overlap."""
-    joined, found = joined_pairs(model), []
+    could_touch, found = pair_test(model), []
     shaped = [k for k, body in enumerate(model.bodies) if body.shape is not None]
     x = np.reshape([model.bodies[k].x for k in shaped], (-1, model.d))
     size = np.array([size_of(model.bodies[k].shape) for k in shaped])
@@ -183,10 +182,9 @@ def contacts_at_start(model):
         others = size[at + 1:]
         near = np.linalg.norm(x[at + 1:] - x[at], axis=1) <= (1.0 + TOUCH) * (size[at] + others)
         for j, other in zip(np.array(shaped[at + 1:], int)[near].tolist(), others[near].tolist()):
-            a, b = model.bodies[i], model.bodies[j]
-            if not (can_move(a) or can_move(b)) or frozenset((i, j)) in joined:
+            if not could_touch(i, j):
                 continue
-            distance, n = gap(a, b)
+            distance, n = gap(model.bodies[i], model.bodies[j])
             if abs(distance) <= TOUCH * max(one for one in (size[at], other) if np.isfinite(one)):
                 found.append((i, j, n))
     return found
