@@ -117,6 +117,31 @@ def test_plain_and_compiled_give_the_same_bits_and_the_plain_module_stays_plain(
 
 
 @needs_numba
+def test_compiled_code_frees_its_arrays_and_counts_their_references_without_locks():
+    code = """
+import numpy as np
+from numba import njit
+from numba.core.runtime import _nrt_python, rtsys
+from validate.subject import modules
+
+_nrt_python.memsys_enable_stats()
+lesson = modules.bind("integrators", compiled=True)
+twin = njit(lambda x, n: len([x + k for k in range(n)]))
+for run in (lambda: twin(np.ones(3), 100),
+            lambda: lesson.advance(lesson.rk4_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.01,
+                                   100, lesson.Oscillator(3.0, 0.1))):
+    run()
+    before = rtsys.get_allocation_stats()
+    run()
+    after = rtsys.get_allocation_stats()
+    print(after.alloc - before.alloc >= 100, after.alloc - before.alloc - (after.free - before.free))
+code = next(iter(twin.overloads.values())).library.get_llvm_str()
+print("define linkonce_odr void @NRT_incref" in code, "atomicrmw" in code)
+"""
+    assert in_a_new_process(code).splitlines() == ["True 0", "True 0", "True False"]
+
+
+@needs_numba
 def test_a_twin_raises_the_same_errors_with_the_value_in_them():
     twin = modules.bind("integrators", compiled=True)
     with pytest.raises(BadInput, match=r"-0\.5"):
