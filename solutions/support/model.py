@@ -11,7 +11,6 @@ numbers of the other body are those of the pair.  pymunk and pybullet have the s
 *Left out:* ropes that only pull, motors, limits of joints, and soft contacts.
 """
 
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -391,7 +390,8 @@ def pair_test(model):
 def touching_pairs(model):
     """Return the pairs (i, j), i < j, of bodies that could ever touch."""
     could_touch = pair_test(model)
-    return [pair for pair in combinations(range(len(model.bodies)), 2) if could_touch(*pair)]
+    bodies = range(len(model.bodies))
+    return [(i, j) for i in bodies for j in bodies[i + 1:] if could_touch(i, j)]
 
 
 def friction_of(model, i, j):
