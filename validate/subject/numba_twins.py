@@ -168,14 +168,14 @@ def _count_references_in_one_thread():
     numba adds with the processor's lock, so that threads may share an array.  A step that passes records of arrays on
     takes 1.2 to 1.6 times as long by that.  All code here runs in one thread.
     """
-    from llvmlite.ir import Constant, Function, FunctionType, IRBuilder
+    from numba.core.cgutils import ir
     from numba.core.runtime import nrtdynmod
 
     def count(module, op, ordering):
         word = nrtdynmod._word_type
-        made = Function(module, FunctionType(word, [word.as_pointer()]), name=f"nrt_atomic_{op}")
-        builder = IRBuilder(made.append_basic_block())
-        new = getattr(builder, op)(builder.load(made.args[0]), Constant(word, 1))
+        made = ir.Function(module, ir.FunctionType(word, [word.as_pointer()]), name=f"nrt_atomic_{op}")
+        builder = ir.IRBuilder(made.append_basic_block())
+        new = getattr(builder, op)(builder.load(made.args[0]), ir.Constant(word, 1))
         builder.store(new, made.args[0])
         builder.ret(new)
         return made
