@@ -37,7 +37,7 @@ def right(results, stability):
         "scenes": len(results), "runs": len(every),
         "judged": count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW] + count[Verdict.DEPARTS],
         "agree": count[Verdict.AGREES], "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
-        "by_laws": sum(count[verdict] for verdict in BY_LAWS),
+        "by_laws": sum(count[verdict] for verdict in BY_LAWS), "breaks": count[Verdict.BREAKS_AS_KNOWN],
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
         "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
         "truths": words.truths_by_engines(results), "agreed": words.truths_by_agreement(results),
