@@ -100,6 +100,11 @@ def named(curve):
     return engine_name(curve["product"], curve["variant"]) if "product" in curve else curve["label"]
 
 
+def listed(names):
+    """Return names in one sentence; a semicolon separates them if one of them contains a comma."""
+    return ("; " if any("," in name for name in names) else ", ").join(names)
+
+
 def measured_limits(results, stability):
     """[(place, what it was measured on)] of all limits and tolerances that no theory gives, each once."""
     limits = [(f"{r['scene']}: {c['label']}", c["measured"]) for r in results for one in r["cases"].values()
@@ -408,13 +413,18 @@ def headline(result):
         return f"{len(wrong)} of {len(ours) + len(engines)} comparisons depart, and nothing predicted it."
     if count[Verdict.NOT_ATTEMPTED]:
         return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
-    said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
-    if count[Verdict.UNFINISHED]:
-        said += f"; {count[Verdict.UNFINISHED]} of {len(ours)} do not arrive"
+    rest = [f"{count[one]} {single if count[one] == 1 else several}" for one, single, several in (
+        (Verdict.UNFINISHED, "does not arrive", "do not arrive"), (Verdict.UNDECIDED, "is undecided", "are undecided"),
+        (Verdict.KEEPS_LAWS, "is judged by laws alone", "are judged by laws alone"),
+        (Verdict.BREAKS_AS_KNOWN, "breaks a law as known", "break a law as known")) if count[one]]
+    right = count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW]
+    many = f"{right} of {len(ours)}" if rest else "All"
+    first = f"{many} comparisons of our methods with the truth come out as theory says"
+    said = "; ".join([first, *rest]) if ours else ""
     predicted = {named(c): None for c in ours + engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
     if predicted:
-        rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
-        return f"{said}; {rest}." if said else f"{rest}."
+        departed = f"{listed(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
+        return f"{said}; {departed}." if said else f"{departed}."
     return f"{said}." if said else ""
 
 
