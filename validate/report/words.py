@@ -273,7 +273,7 @@ def unpredicted(result):
     for case in result["cases"].values():
         for curve in case["ours"] + case["engines"]:
             if curve["unpredicted"]:
-                found.setdefault(curve["unpredicted"], {})[curve["label"]] = None
+                found.setdefault(curve["unpredicted"], {})[named(curve)] = None
     return {reason: list(labels) for reason, labels in found.items()}
 
 
@@ -474,7 +474,7 @@ def _ours(result):
         if is_right(c) is None:
             waiting.setdefault(c["message"], {})[c["label"]] = None
     for why, labels in waiting.items():
-        yield f"{', '.join(labels)}: {why}."
+        yield f"{listed(labels)}: {why}."
     shown = [c for c in next(iter(result["cases"].values()))["ours"]
              if c["order"] is not None and c["expected"] != EXACT and is_right(c)]
     if shown:
@@ -482,7 +482,7 @@ def _ours(result):
         yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
     if exact and result["refinement"]:
-        yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."
+        yield f"Exact up to round-off at every step, as derived: {listed(exact)}."
 
 
 def _engines_of(result):
@@ -495,7 +495,7 @@ def _engines_of(result):
             if Verdict(c["verdict"]) is Verdict.UNDECIDED:
                 undecided.setdefault(c["message"], {}).setdefault(named(c), []).append(n)
     for why, labels in undecided.items():
-        yield f"Undecided: {', '.join(labels)}. {why[:1].upper()}{why[1:]}."
+        yield f"Undecided: {listed(labels)}. {why[:1].upper()}{why[1:]}."
 
 
 def _engines(case):
