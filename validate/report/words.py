@@ -461,8 +461,9 @@ def _departures(result):
     for (label, reason, whose), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
-        orders = [c["order"] for _, c in found if c["order"]]
-        shown = f"converges to that law, with order {orders[0]:.2f}" if orders else "agrees with that law"
+        orders = sorted({f"{c['order']:.2f}" for _, c in found if c["order"]}, key=float)
+        slope = " to ".join(dict.fromkeys(orders[:1] + orders[-1:]))
+        shown = f"converges to that law, with order {slope}" if orders else "agrees with that law"
         yield (f"{label} departs from the truth by {size}{several}, because {reason} ({whose}). "
                f"The scene predicts this; the run {shown}.")
 
