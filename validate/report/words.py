@@ -101,8 +101,8 @@ def named(curve):
 
 
 def listed(names):
-    """Return names in one sentence; a semicolon separates them if one of them contains a comma."""
-    return ("; " if any("," in name for name in names) else ", ").join(names)
+    """Return names in one sentence; a semicolon separates them if one has a comma that is not in brackets."""
+    return ("; " if any("," in re.sub(r"\(.*?\)", "", name) for name in names) else ", ").join(names)
 
 
 def measured_limits(results, stability):
