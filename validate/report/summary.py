@@ -124,7 +124,8 @@ def said_of_all(report):
         return
     yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
            "is what the intervals of both times allow, and a tenth more on either side, as two runs may differ. "
-           "Medians of the races in which both reach the error:")
+           "The table takes the smallest ratio of each scene: the median of these, and their range. Medians of all "
+           "races in which both reach the error:")
     yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; {ended(count)}" for count in counts) + "."
     made = races.median_factors(every)
     if made["order"] is not None:
