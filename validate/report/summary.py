@@ -131,8 +131,8 @@ def said_of_all(report):
     if made["order"] is not None:
         yield (f"In each race a ratio is the product of two: the method's order, and the loop at the engine's own "
                f"order. At {percent(HEADLINE)} their medians are {factor(made['order'])} and {factor(made['loop'])}. "
-               f"(The product of two medians is not the median of the products.) The calls from Python are "
-               f"{factor(made['calls'])} of the loop.{compiled(made)}")
+               f"(The product of two medians is not the median of the products.) Calls from Python make the "
+               f"engine's time {factor(made['calls'])} as long.{compiled(made)}")
 
 
 def ended(count):
