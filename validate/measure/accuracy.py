@@ -289,7 +289,7 @@ def verdict_on(rows, law, finest, order, order_shown):
     if not any(np.isfinite(r["limit"]) for r in rows):
         return Verdict.UNDECIDED, "no theory says how far it may be off, so its error is shown and not judged"
     if not ratios:
-        return Verdict.UNDECIDED, "the sweep is too coarse to judge: theory allows 50 % at its finest step"
+        return Verdict.UNDECIDED, "the sweep is too coarse to judge: theory allows 50 % or more at its finest step"
     if surprise := next(filter(None, (surprise_in(r, law) for r in reversed(rows))), None):
         return Verdict.DEPARTS, surprise
     if max(ratios) > 1.0:

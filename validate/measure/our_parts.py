@@ -74,7 +74,7 @@ def our_parts(selection, p):
     try:
         return jsonable({"rows": rows_of(selection, one, model, p, speeds), "note": note})
     except (Exception, SystemExit) as e:                             # a subject's code may do anything
-        return {"rows": [], "note": f"the loop does not run here: {type(e).__name__}: {e}"}
+        return {"rows": [], "note": f"with these steps the loop ends in an error, {type(e).__name__}: {e}"}
 
 
 def described_scene(name):

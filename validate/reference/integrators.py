@@ -153,8 +153,8 @@ def adaptive_march(law, x, v, share, T):
 def kepler_limits(T):
     """Return function(p, dt) → {order: largest relative error at T}."""
     def limits(p, dt):
-        """Methods of order 2 and 4 drift in phase.  Symplectic Euler and pybullet are leapfrog, started half a step
-        late.
+        """Methods of order 2 and 4 drift in phase.  Symplectic Euler and pybullet are leapfrog, whose first velocity
+        should be that of half a step before the start.
         """
         smooth = {k: drift(p, T, dt, k) for k in (1, 2, 4)}
         return {**smooth, LATE_LEAPFROG: late_start(p, T, dt, 1.0) + smooth[2]}
@@ -164,7 +164,7 @@ def kepler_limits(T):
 def early_limit(T):
     """Return function(p, dt) → largest relative error at T of leapfrog that is started half a step early."""
     def limit(p, dt):
-        """pymunk is leapfrog, started half a step early."""
+        """pymunk is leapfrog, whose first velocity should be that of half a step after the start."""
         return late_start(p, T, dt, -1.0) + drift(p, T, dt, 2)
     return limit
 

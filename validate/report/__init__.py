@@ -10,8 +10,8 @@ from markupsafe import Markup
 
 from ..check import Verdict
 from ..engines.products import PRODUCTS
-from ..measure.races import HEADLINE, LEVELS
-from ..measure.timing import TARGETS
+from ..measure.races import EXACTLY, HEADLINE, LEVELS
+from ..measure.timing import LONG, LONG_REPEATS, TARGETS
 from ..run.store import whole
 from . import choice, exams, films, numbers, plots, races, tables, words
 from .answers import LEAST, MOST, answers
@@ -73,6 +73,8 @@ def environment():
     pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=numbers.known, percents=numbers.percents,
                          levels=LEVELS, targets=TARGETS, race_error=HEADLINE, level_name=races.level_name,
                          coarse=races.coarse, coarse_runs=races.coarse_runs, summary_ratio=races.summary_ratio,
+                         engine_name=numbers.engine_name, listed=words.listed, exactly=EXACTLY,
+                         long=LONG, long_repeats=LONG_REPEATS,
                          measured_limits=words.measured_limits, least=LEAST, most=MOST,
                          bars_most=BARS_MOST, cheap=choice.CHEAP, race_header=tables.RACES,
                          race_rows=lambda r: map(tables.race_row, races.of(r)),

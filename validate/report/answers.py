@@ -25,7 +25,8 @@ def right(results, stability):
     """Counts of the verdicts on our methods, and how many orders are as high as theory says."""
     every = curves_of(results, "ours")
     count = Counter(Verdict(c["verdict"]) for _, _, c in every)
-    ordered = [c for _, _, c in every if c["order"] is not None and c["expected"] in (1, 2, 4)]
+    measured = [c for _, _, c in every if c["order"] is not None and c["expected"] != EXACT]
+    ordered = [c for c in measured if c["expected"] in (1, 2, 4)]
     wrong = {r["scene"]: r["title"] for r, _, c in every if Verdict(c["verdict"]) is Verdict.DEPARTS}
     curves, predicted = set(), set()
     for r, _, c in (*every, *curves_of(results, "engines")):
@@ -37,11 +38,12 @@ def right(results, stability):
         "scenes": len(results), "runs": len(every),
         "judged": count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW] + count[Verdict.DEPARTS],
         "agree": count[Verdict.AGREES], "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
-        "by_laws": sum(count[verdict] for verdict in BY_LAWS),
+        "by_laws": sum(count[verdict] for verdict in BY_LAWS), "breaks": count[Verdict.BREAKS_AS_KNOWN],
         "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
         "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
         "truths": words.truths_by_engines(results), "agreed": words.truths_by_agreement(results),
-        "orders": len(ordered), "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
+        "orders": len(ordered), "orders_open": len(measured) - len(ordered),
+        "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
         "exact": sum(c["expected"] == EXACT and Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in every),
     }
 

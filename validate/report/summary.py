@@ -122,16 +122,17 @@ def said_of_all(report):
     counts = [count for count in races.counted(every) if count["races"]]
     if not counts:
         return
-    yield ("A race compares the time of an engine with ours, to the same error in one scene. The interval in brackets "
-           "is what the intervals of both times allow, and a tenth more on either side, as two runs may differ. "
-           "Medians of the races in which both reach the error:")
+    yield ("A race compares the time of an engine with ours, to the same error in the first case of a scene. The "
+           "interval in brackets is what the intervals of both times allow, and a tenth more on either side, as two "
+           "runs may differ. The table takes the smallest ratio of each scene: the median of these, and their range. "
+           "Medians of all races in which both reach the error:")
     yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; {ended(count)}" for count in counts) + "."
     made = races.median_factors(every)
     if made["order"] is not None:
         yield (f"In each race a ratio is the product of two: the method's order, and the loop at the engine's own "
                f"order. At {percent(HEADLINE)} their medians are {factor(made['order'])} and {factor(made['loop'])}. "
-               f"(The product of two medians is not the median of the products.) The calls from Python are "
-               f"{factor(made['calls'])} of the loop.{compiled(made)}")
+               f"(The product of two medians is not the median of the products.) Calls from Python make the "
+               f"engine's time {factor(made['calls'])} as long.{compiled(made)}")
 
 
 def ended(count):

@@ -100,6 +100,11 @@ def named(curve):
     return engine_name(curve["product"], curve["variant"]) if "product" in curve else curve["label"]
 
 
+def listed(names):
+    """Return names in one sentence; a semicolon separates them if one has a comma that is not in brackets."""
+    return ("; " if any("," in re.sub(r"\(.*?\)", "", name) for name in names) else ", ").join(names)
+
+
 def measured_limits(results, stability):
     """[(place, what it was measured on)] of all limits and tolerances that no theory gives, each once."""
     limits = [(f"{r['scene']}: {c['label']}", c["measured"]) for r in results for one in r["cases"].values()
@@ -268,7 +273,7 @@ def unpredicted(result):
     for case in result["cases"].values():
         for curve in case["ours"] + case["engines"]:
             if curve["unpredicted"]:
-                found.setdefault(curve["unpredicted"], {})[curve["label"]] = None
+                found.setdefault(curve["unpredicted"], {})[named(curve)] = None
     return {reason: list(labels) for reason, labels in found.items()}
 
 
@@ -408,13 +413,18 @@ def headline(result):
         return f"{len(wrong)} of {len(ours) + len(engines)} comparisons depart, and nothing predicted it."
     if count[Verdict.NOT_ATTEMPTED]:
         return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
-    said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
-    if count[Verdict.UNFINISHED]:
-        said += f"; {count[Verdict.UNFINISHED]} of {len(ours)} do not arrive"
+    rest = [f"{count[one]} {single if count[one] == 1 else several}" for one, single, several in (
+        (Verdict.UNFINISHED, "does not arrive", "do not arrive"), (Verdict.UNDECIDED, "is undecided", "are undecided"),
+        (Verdict.KEEPS_LAWS, "is judged by laws alone", "are judged by laws alone"),
+        (Verdict.BREAKS_AS_KNOWN, "breaks a law as known", "break a law as known")) if count[one]]
+    right = count[Verdict.AGREES] + count[Verdict.FOLLOWS_OWN_LAW]
+    many = f"{right} of {len(ours)}" if rest else "All"
+    first = f"{many} comparisons of our methods with the truth come out as theory says"
+    said = "; ".join([first, *rest]) if ours else ""
     predicted = {named(c): None for c in ours + engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
     if predicted:
-        rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
-        return f"{said}; {rest}." if said else f"{rest}."
+        departed = f"{listed(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
+        return f"{said}; {departed}." if said else f"{departed}."
     return f"{said}." if said else ""
 
 
@@ -451,8 +461,9 @@ def _departures(result):
     for (label, reason, whose), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
-        orders = [c["order"] for _, c in found if c["order"]]
-        shown = f"converges to that law, with order {orders[0]:.2f}" if orders else "agrees with that law"
+        orders = sorted({f"{c['order']:.2f}" for _, c in found if c["order"]}, key=float)
+        slope = " to ".join(dict.fromkeys(orders[:1] + orders[-1:]))
+        shown = f"converges to that law, with order {slope}" if orders else "agrees with that law"
         yield (f"{label} departs from the truth by {size}{several}, because {reason} ({whose}). "
                f"The scene predicts this; the run {shown}.")
 
@@ -464,7 +475,7 @@ def _ours(result):
         if is_right(c) is None:
             waiting.setdefault(c["message"], {})[c["label"]] = None
     for why, labels in waiting.items():
-        yield f"{', '.join(labels)}: {why}."
+        yield f"{listed(labels)}: {why}."
     shown = [c for c in next(iter(result["cases"].values()))["ours"]
              if c["order"] is not None and c["expected"] != EXACT and is_right(c)]
     if shown:
@@ -472,7 +483,7 @@ def _ours(result):
         yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
     if exact and result["refinement"]:
-        yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."
+        yield f"Exact up to round-off at every step, as derived: {listed(exact)}."
 
 
 def _engines_of(result):
@@ -485,7 +496,7 @@ def _engines_of(result):
             if Verdict(c["verdict"]) is Verdict.UNDECIDED:
                 undecided.setdefault(c["message"], {}).setdefault(named(c), []).append(n)
     for why, labels in undecided.items():
-        yield f"Undecided: {', '.join(labels)}. {why[:1].upper()}{why[1:]}."
+        yield f"Undecided: {listed(labels)}. {why[:1].upper()}{why[1:]}."
 
 
 def _engines(case):

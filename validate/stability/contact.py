@@ -1039,7 +1039,7 @@ def eight_solvers_of_one_pile(lesson, check):
     curves = {}
     for name, (step, work, steps) in eight_solvers(lesson, A, b, mu).items():
         curves[name] = work, np.array([natural(A, b, J, mu) for J in iterates(step, np.zeros(b.size), steps)])
-    curves["fewer_sweeps"] = 1.0, residuals_while_called(lesson, A, b, mu, 400)
+    curves["fewer sweeps"] = 1.0, residuals_while_called(lesson, A, b, mu, 400)
     for name, (_, residuals) in curves.items():
         check.agree("Seven solvers of a pile end at the same law.", f"residual at the end, {name} [m/s]",
                     residuals[-1], 1e-12)

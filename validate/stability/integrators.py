@@ -227,8 +227,9 @@ def amplification_map(lesson, check):
         factors = amplification(lesson, method, h_omega, zeta)
         edges = np.array([law(one) for one in zetas])
         right = int(np.sum((factors <= 1.0 + NOISE) == (h_omega < edges[:, None])))
-        check(f"A step of the {method.label} method amplifies no motion up to its edge of stability, and some motion "
-              "beyond it.", f"{method.label}: points of the map on the side that theory says [of {factors.size}]",
+        check(f"No eigenvalue of a step of the {method.label} method is larger than 1 up to its edge of stability, "
+              "and one is beyond it.",
+              f"{method.label}: points of the map on the side that theory says [of {factors.size}]",
               law=factors.size, found=right, within=0.0,
               saw=f"{right:,} of {factors.size:,} points of the map of {method.label} are on the right side.")
         maps.append({"label": method.label, "xs": hs, "ys": zetas, "values": np.round(factors, 3),

@@ -757,7 +757,7 @@ def about_release(lesson, check, held):
     fine = np.linspace(0.0, dts[0], 30)
     return [series(f"{what}: theory", 1e3 * fine, [1e3 * (held.time(0.5 * held.a * dt) - T) for dt in fine], LINE),
             series(f"{what}: v at the time of x", 1e3 * dts, 1e3 * (plain - T), DOTS),
-            series(f"{what}: leapfrog start", 1e3 * dts, 1e3 * (led - T), DOTS)]
+            series(f"{what}, leapfrog start", 1e3 * dts, 1e3 * (led - T), DOTS)]
 
 
 @case("release-from-a-support", "Release from a support", compiled=False)

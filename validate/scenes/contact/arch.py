@@ -88,8 +88,9 @@ def truth(p, t):
     """The truth is the smallest number for which a linear program finds forces that hold every stone: f_n ≥ 0 and
     |f_t| ≤ μ f_n at both ends of each joint.
 
-    Heyman's safe theorem says that such an arch stands.  The sanity checks compare the thickness with moments about
-    hinges, by hand.
+    Heyman's safe theorem says that such an arch stands if no joint can slide.  Where a joint is at the limit of
+    friction, such forces are necessary and, in theory, not sufficient.  The sanity checks compare the thickness with
+    moments about hinges, by hand.
     Source: Couplet 1730, Milankovitch 1907, Heyman 1969; SciPy's linprog.
     """
     return np.array([least_thickness(p.n, p.mu) if p.kind == "thickness" else least_friction(p.n, p.t)])

@@ -155,8 +155,9 @@ def pymunk_limit(p, dt):
 
 
 def unknown(p, dt):
-    """pymunk's default slop is larger than the bodies.  pybullet's iterations leave more than its slop.  No theory says
-    how much, so these errors are shown.  The laws of contact judge what the engine reports of some of its steps.
+    """pymunk's default slop, 0.1 m, is larger than half of the smallest body.  pybullet's iterations leave more than
+    its slop.  No theory says how much, so these errors are shown.  The laws of contact judge what the engine reports
+    of some of its steps.
     """
     return np.inf
 

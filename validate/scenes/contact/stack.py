@@ -1,4 +1,4 @@
-"""Ten stacked boxes: the joint under k of them carries k m g, and solvers differ only in how fast they find it.
+"""Ten stacked boxes: the joint under k of them carries k m g, and solvers differ in how fast they find it.
 
 A box has two contacts with the one below.  A sweep passes information only to neighbours: how many boxes are above,
 and which way they rock.  That takes long, so the sweeps of contact_forces end in an error for ten boxes.

@@ -159,6 +159,6 @@ SCENE = Scene(
     ablations={
         "the strings": "a swinging ball would move on an arc",
         "the stiffness of the balls": "it decides which balls leave if they touch; rigid bodies have none",
-        "rotation and friction": "central impacts do not depend on it",
+        "rotation and friction": "central impacts do not depend on them",
     },
 )

@@ -1,4 +1,4 @@
-"""A planet orbits its sun sixteen times on an ellipse, and the methods are compared by its final position."""
+"""A planet orbits its sun almost sixteen times on an ellipse, and the methods are compared by its final position."""
 
 from solutions.support.orbits import attraction
 from validate.methods import BLANES_MOAN, INTEGRATORS
@@ -7,7 +7,7 @@ from validate.scene import Scene
 from validate.scenes._common import coordinates
 from validate.scenes.integrators._common import PLANET, planet, planet_in_space, planet_runners, sun_and_planet
 
-T = 100.0                    # [s]: sixteen revolutions
+T = 100.0                    # [s]: 15.9 revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 150000, 200000)
 # Euler, average velocity and implicit Euler gain or lose energy at every passage; see drift() in
 # validate/reference/integrators.py.  They are drawn, but theory gives no limit for them at any step here.

@@ -62,7 +62,7 @@ def limits(p, dt, damping=0.0):
     """Only the decaying term has an error.  Its length is |v₀ − v∞|/k, its rate is k, and x(T) is ten times shorter.
 
     pymunk and pybullet take drag at the beginning of a step, or multiply v by e^(−k dt): order 1 with rate k.  MuJoCo
-    runs Runge–Kutta 4.  A first velocity from half a step later would not help, because drag depends on it.
+    runs Runge–Kutta 4.  A first velocity of another half step would not help, because drag depends on it.
     """
     scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
     return {k: scale * limit for k, limit in by_order(p.k + damping, T, dt).items()}

@@ -88,7 +88,9 @@ def limits(p, dt):
 
 
 def leapfrog_limit(p, dt):
-    """An engine that starts half a step ahead errs like our methods of order 2 if no force depends on the velocity."""
+    """An engine whose first velocity is that of half a step later (pymunk) or earlier (pybullet) errs like our methods
+    of order 2 if no force depends on the velocity.
+    """
     return limits(p, dt)[2 if p.c == 0.0 else 1]
 
 

@@ -100,8 +100,8 @@ def beyond_the_last_joint(p):
     return p.x > REACH - LENGTHS[-1]
 
 
-STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no small turn of a joint makes |e| smaller",
-                  stays, Whose.LAW)
+STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no turn of a joint changes |e| to first "
+                  "order", stays, Whose.LAW)
 POINTING = Departure("every joint points at the target already", stays, Whose.LAW)
 ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line, Whose.LAW)
 JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves nothing but roundings"}

@@ -123,7 +123,8 @@ def too_slow(p):
 
 
 def never_at_rest(p):
-    return "at the edge of the ring all links are in one line, where its steps are large: it jumps about for ever"
+    return ("at the edge of the ring all links are in one line, where its steps are large: it still jumps about when "
+            "its iterations end")
 
 
 AT_REST = {"order": EXACT, "limit": limit, "predicted": "it is at rest, and nothing but roundings is left"}

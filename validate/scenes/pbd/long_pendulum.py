@@ -1,4 +1,4 @@
-"""A pendulum swings, as a bob on a string and as an angle: what is left of the error is phase.
+"""A pendulum swings twice, as a bob on a string and as an angle: what is left of the error is phase.
 
 No method here changes the length of the string or the height of the swing for long.  Each is early or late by a little
 in every swing, so that its error grows with time.  This page has the first two swings; the published benchmark lasts
@@ -151,7 +151,7 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="Pendulum for 2,000 s", lesson="pbd",
+    title="Phase of a pendulum", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
     acceleration=lambda lessons: swings, start=start, run=run, observe=observe,

@@ -72,7 +72,7 @@ def limits(p, dt):
 def new_velocity(p, dt, share=1.0):
     """Both velocities are exact at every step, but the ball moves with the new one, the old one or their mean.
 
-    The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.
+    The rectangle rule, or the trapezoidal one, predicts where the ball ends: not far enough with the new velocity.
     """
     # share: of the new velocity in the way of a step
     rolling = p.v0 / (1.0 + p.shape)

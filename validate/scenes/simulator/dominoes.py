@@ -186,7 +186,8 @@ def is_alone(p):
 
 def truth(p, t):
     """No closed form is known.  The truth is the mean of two motions that agree: the loop of lesson 10 and pymunk, with
-    steps of 1/20,000 and 1/50,000 s.  Each row is on its way for t and for the moment at which it began.
+    steps of 1/20,000 and 1/50,000 s.  The rows begin as they are at four moments after their push, and each moves on
+    from there for the time t.
 
     The two share no code and differ in method: the loop pushes before it moves and sweeps until impulses settle,
     pymunk moves before it pushes and has 200 iterations.  The error bar is the largest distance from their mean of

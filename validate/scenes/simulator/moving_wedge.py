@@ -112,7 +112,7 @@ def relative_lag(p, dt):
 
 
 def loop_limit(p, dt):
-    """Positions with the new velocities are late by ½ a dt T, with the old ones early by the same.
+    """Positions with the new velocities are ahead by ½ a dt T, with the old ones behind by the same.
 
     Velocities are exact.
 

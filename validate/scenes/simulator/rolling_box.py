@@ -1,4 +1,4 @@
-"""A box is pushed askew over the ground and carries 25 balls, which roll on it: a benchmark of game engines.
+"""A box is pushed askew over the ground and carries 25 balls, which roll on it: a benchmark of engines for robots.
 
 The box slides and the balls roll without slipping, so friction has a closed form.  Engines whose friction is a pyramid
 do not move the box at all: askew, their friction is larger than the push.
