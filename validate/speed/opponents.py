@@ -2,7 +2,8 @@
 
 All get the same bodies, places, walls, friction and step, and start from our settled state.  No body may sleep, one
 thread works, and continuous detection is off where the binding has a switch.  An engine is imported when its pile is
-made, so this module loads without any of them.
+made, so this module loads without any of them.  Nothing is built from a Model here: the adapters of `validate/worlds/`
+look at every pair of bodies, and a pile may have 100,000.
 """
 
 import numpy as np
