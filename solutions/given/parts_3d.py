@@ -14,7 +14,6 @@ from ..support.arms import (
     arms_3d,
     normal_velocities,
     point_velocity_of,
-    turn_quaternions,
 )
 from ..support.contact_points import ContactSet
 from ..support.networks import pull_per_length
@@ -173,7 +172,8 @@ def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
 def separated_in_space(close_all, links, state, dt, p):
     """Return the state with bodies moved out of each other; close_all and links: see swept_and_closed.
 
-    A body that is turned for it takes its angular velocity along, so that its kinetic energy stays.
+    Bodies turn as free ones, because close_all closes links for such a turn.  A body that is turned takes its angular
+    velocity along, so that its kinetic energy stays.
     """
     x, q, v, omega, contacts, J = state
     inv_inertia = spatial_inertia(q, p.inv_inertia)
@@ -191,7 +191,7 @@ def separated_in_space(close_all, links, state, dt, p):
         check_left(share_left(more, J_push, push, still, contacts, arms))
     gap = contacts.gap + dt * normal_velocities(push, spin, contacts, arms)
     moved = ContactSet(contacts.first, contacts.a, contacts.b, contacts.n, contacts.p, gap)
-    turned, carried = turn_quaternions(q, spin, dt), omega.copy()
+    turned, carried = turn_on(q, spin, dt, p.inv_inertia)[0], omega.copy()
     for i in range(q.shape[0]):
         if p.inv_inertia[i, 0] > 0.0:
             carried[i] = rotate(turned[i], unrotate(q[i], omega[i]))

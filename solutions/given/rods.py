@@ -171,12 +171,12 @@ def close_links(x, q, v, omega, J, dt, p):
     where the links cannot stay closed.
     """
     v, omega, J, soft, open_by = float_copy(v), float_copy(omega), J.copy(), softness(p) / dt, 0.0
-    W, arm = responses(link_rows(x, q, p)[0], q, p), longest_arm(p)
+    W, arm, longest = responses(link_rows(x, q, p)[0], q, p), longest_arm(p), np.max(p.rods.length)
     for _ in range(MOST):
         there, turned = moved_on(x, q, v, omega, dt, p)
         G, gap = link_rows(there, turned, p)
         gap += soft * J
-        open_by, size = np.max(np.abs(gap)), np.max(np.abs(there)) + (1.0 + np.max(np.abs(turned))) * arm
+        open_by, size = np.max(np.abs(gap)), longest + np.max(np.abs(there)) + (1.0 + np.max(np.abs(turned))) * arm
         if open_by <= CLOSED * size:
             return v, omega, J
         more, reach = impulses_along(G @ W + np.diag(soft / dt), -gap / dt)

@@ -233,8 +233,12 @@ def filled(thing, shape, m, d):
         moments = moments_of_shape(shape, m, d)
     except OverflowError:
         moments = np.inf
+    except ZeroDivisionError:                                # of a volume that is none
+        moments = 0.0
     if not np.all(np.isfinite(moments)):
         raise BadInput(f"the moment of inertia of {thing} [kg m²]", np.inf, "give a smaller shape or a smaller mass")
+    if not np.all(moments):
+        raise BadInput(f"the moment of inertia of {thing} [kg m²]", 0.0, "give a larger shape or a larger mass")
     return moments
 
 

@@ -72,7 +72,7 @@ def check_moments(thing, inertia, d):
         return inertia
     try:
         moments = np.asarray(inertia, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise BadInput(thing, "not a number, nor three", "give one moment, or three") from None
     moments = np.full(3, moments) if moments.ndim == 0 else moments
     if moments.shape != (3,):
@@ -206,7 +206,7 @@ def check_force(force, free):
              for k in (force.a, force.b)]
     if not (there[0] and free[force.a]):
         raise BadInput("the body of a Force", force.a, "name a body that can move by its number")
-    if force.of not in ("t", "x", "v", "xv", "r"):
+    if not isinstance(force.of, str) or force.of not in ("t", "x", "v", "xv", "r"):
         raise BadInput("what a Force depends on", repr(force.of), 'choose from: "t", "x", "v", "xv", "r"')
     if force.of == "r" and (not there[1] or force.b == force.a):
         raise BadInput("the other body of a Force", force.b, "name another body by its number")

@@ -388,7 +388,9 @@ def shift(t, x, q, v, omega):
     ({"bodies": None}, "bodies is a NoneType: give a list"), ({"loads": None}, "loads is a NoneType"),
     ({"bodies": [ONE._replace(m=1e-310)]}, "mass m .* of body 0"),
     ({"bodies": [ONE._replace(inertia=1e-310)]}, "moment of inertia .* of body 0"),
-    ({"bodies": [ONE._replace(shape=Ball(1e200))]}, "moment of inertia of the shape of body 0"),
+    ({"bodies": [ONE._replace(shape=Ball(1e200))]}, "moment of inertia of the shape of body 0 .*smaller shape"),
+    ({"bodies": [ONE._replace(shape=Ball(1e-200))]}, "moment of inertia of the shape of body 0 .*larger shape"),
+    ({"bodies": [Body((0.0, 0.0, 0.0), 1.0, Capsule(0.5, 1e-200))], "gravity": (0.0, 0.0, -G)}, "larger shape"),
     ({"bodies": [ONE, FLOOR._replace(inertia=1.0)]}, "body 1 .*leave it out"),
     ({"bodies": [ONE._replace(omega=np.nan)]}, "angular velocity ω .* of body 0 is nan"),
     ({"bodies": [ONE, FLOOR._replace(v=(0.0, 1.0))]}, "surface of body 1 along its normal"),
@@ -405,6 +407,7 @@ def shift(t, x, q, v, omega):
     ({"loads": [lambda t, x, q, v, omega: (x + np.nan, omega)]}, "F .* of load 0 is nan"),
     ({"loads": [shift]}, "changes the state"),
     ({"loads": [Force(0, lambda t: 1.0, "t")]}, "shape of the force of load 0"),
+    ({"loads": [Force(0, lambda t: AT, np.zeros(2))]}, "what a Force depends on"),
     ({"loads": [Force(0, lambda t: (np.inf, 0.0), "t")]}, "force of load 0"),
 ], ids=lambda value: value if isinstance(value, str) else "")
 def test_what_no_world_could_run_is_refused_where_it_is_made(parts, why):
@@ -421,7 +424,7 @@ def test_a_half_space_slides_and_turns_only_so_that_it_stays_where_it_is(motion,
         make_model([floor._replace(**motion)], (0.0, 0.0, -G))
 
 
-@pytest.mark.parametrize("inertia", ["much", ((1.0, 2.0), 3.0), 1e-310])
+@pytest.mark.parametrize("inertia", ["much", ((1.0, 2.0), 3.0), 1e-310, 10**400])
 def test_moments_in_space_that_are_no_moments_are_refused(inertia):
     with pytest.raises(BadInput, match=r"moment of inertia .* of body 0"):
         make_model([Body((0.0, 0.0, 0.0), 1.0, inertia=inertia)], (0.0, 0.0, -G))

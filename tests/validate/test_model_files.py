@@ -138,6 +138,14 @@ def test_what_is_no_model_is_not_saved(tmp_path):
         save_model(3, tmp_path / "scene.json")
 
 
+@pytest.mark.parametrize("path", [None, 3, ["model.json"], b"model.json"])
+def test_what_names_no_file_gets_one_sentence(path):
+    with pytest.raises(BadInput, match="the name of a file"):
+        save_model(PLANE, path)
+    with pytest.raises(BadInput, match="the name of a file"):
+        read_model(path)
+
+
 def test_a_load_that_is_a_function_is_not_saved(tmp_path):
     model = make_model([Body((0.0, 0.0), 1.0)], (0.0, 0.0), loads=[Drag(1.0), lambda t, x, q, v, omega: (v, omega)])
     with pytest.raises(BadInput, match="load 1 is a function"):

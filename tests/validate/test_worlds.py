@@ -762,6 +762,17 @@ def test_our_loop_tells_the_forces_of_contacts_and_joints():
     assert held == pytest.approx((0.0, 2.0 * G), abs=1e-6)
 
 
+@pytest.mark.parametrize("aside", [(), (0.0,)], ids=["plane", "space"])
+def test_a_soft_rod_may_be_far_shorter_than_it_would_be(aside):
+    """A body flies past the end of its rod.  Its gap is rounded as the length is, not as the places near the origin."""
+    zero = (0.0, 0.0, *aside)
+    world = ours.build(make_model([Body((1.0, 1e-3, *aside), 1.0, v=(-20.0, 0.0, *aside))], zero,
+                                  [Distance(0, WORLD, zero, zero, 1.0)]), 0.01)
+    for _ in range(10):
+        world.step()
+    assert world.state().x[0, 0] == pytest.approx(-1.0, abs=0.05)
+
+
 def models_in_the_plane():
     light = Body((0.0, 1.0), 1.0, Ball(0.2), e=0.5)
     return {

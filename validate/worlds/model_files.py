@@ -37,10 +37,19 @@ def save_model(model, path):
         if records:
             data[name] = [plain(record) for record in records]
     text = json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    path = file_path(path)
     try:
-        Path(path).write_text(text, encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise BadInput(f"the file {path}", error.strerror, "name a file that can be written") from None
+
+
+def file_path(path):
+    """Return the Path of a file.  Raises BadInput for what names none."""
+    try:
+        return Path(path)
+    except TypeError:
+        raise BadInput("the name of a file", f"a {type(path).__name__}", "give a text or a Path") from None
 
 
 def bare(body, gravity):
@@ -74,9 +83,10 @@ def plain(value):
 
 def read_model(path):
     """Return the Model in a file.  Raises BadInput for everything that model_schema or make_model does not allow."""
+    path = file_path(path)
     try:
         return model_of(json.loads(
-            Path(path).read_text(encoding="utf-8"), parse_constant=refuse_constant, object_pairs_hook=named_once,
+            path.read_text(encoding="utf-8"), parse_constant=refuse_constant, object_pairs_hook=named_once,
             parse_float=partial(number_of, float), parse_int=partial(number_of, int)))
     except OSError as error:
         raise BadInput(f"the file {path}", error.strerror, "name a file that can be read") from None
