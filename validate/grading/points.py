@@ -128,9 +128,9 @@ def reasons(exercise, states, traces, folder):
     if exercise not in needs.table():
         return "", ""
     found = mistakes.matching(needs.table()[exercise]["lesson"], exercise, traces)
-    below = needs.first_open(exercise, states, folder) if needs.stars(exercise) != needs.OWN else None
+    below = needs.sentence_below(exercise, states, folder)
     if below:                                              # what is below spoils the results, so they tell nothing
-        return "", needs.sentence(exercise, below, states[below])
+        return "", below
     return mistakes.sentence(found), ""
 
 
