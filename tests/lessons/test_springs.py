@@ -866,7 +866,7 @@ def test_the_force_of_the_hand_obeys_its_law_at_the_end_of_the_step(lesson, draw
         F = lesson.hand_force(x, v, target, k, c, m, dt)
         after = v + dt * F / m
         law = -k * (x + dt * after - target) - c * after
-        close(f"force with {d} coordinates [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
+        close(f"force with {d} coordinate{'s' * (d > 1)} [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
               given=f"k = {k}, c = {c}, m = {m}, dt = {dt}")
         close("input x, v and target after the call", np.array((x, v, target)), kept, 0.0)
     for second, metre, kilogram in ((2.0**-20, 1.0, 1.0), (2.0**20, 2.0**40, 1.0), (1.0, 2.0**-40, 2.0**-30),
@@ -919,7 +919,7 @@ def test_a_chain_sags_as_far_as_its_equations_of_balance_say(lesson, draw):
         sag = np.linalg.solve(balance, np.full(n, m * g))[-1]
         # the condition of the balance is below 4 n² = 6400, and a sag below 25 m
         close("sag of the lowest point [m]", lesson.chain_sag(n, m, k, g), sag, 1e-11,
-              given=f"{n} points of {m:.4g} kg, k = {k:.4g} N/m, g = {g:.4g} m/s²")
+              given=f"{n} point{'s' * (n > 1)} of {m:.4g} kg, k = {k:.4g} N/m, g = {g:.4g} m/s²")
 
 
 @exercise("2.16", points=1,
