@@ -930,7 +930,8 @@ def test_the_chosen_step_keeps_its_ratio_to_the_fastest_period(lesson):
 
 
 @exercise("2.17", points=1,
-          hint="begin with triangles: a square of four springs folds flat, and a diagonal holds it")
+          hint="a square of four springs folds flat (0), and a diagonal holds it; a larger k carries more weight, "
+               "a smaller k slows the fastest vibration")
 def test_a_body_of_ones_own_holds_its_shape_and_its_weight(lesson, draw):
     for size in (draw(0.3, 0.4), draw(0.7, 0.8), draw(1.5, 2.0)):      # one body cannot have all sizes
         x, pairs, k = lesson.my_body(size)
