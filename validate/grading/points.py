@@ -225,6 +225,8 @@ def _advice(exercise, error, said):
         return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
         return VALUES
+    if said.startswith("it took too long"):                          # in the sandbox
+        return "limit the number of rounds of each loop"
     if isinstance(error, NameError):
         return "a name is misspelt, or it has no value yet"
     return ""
