@@ -208,8 +208,8 @@ def angular_acceleration(q, omega, tau, I_body):
     and has the components y in the world changes at the rate ω × y.
 
     Without a torque, ω̇ is not zero either: the body tumbles.
-    rotate and unrotate, given above, convert vectors from body to world coordinates and back.  The moments I_body are
-    above zero.
+    rotate(q, r) converts a vector r from body to world coordinates, and unrotate(q, r) from world to body coordinates.
+    The moments I_body are above zero.
     *Source:* second lecture deck, “Rigid bodies”; Euler 1758.
     """
     # YOUR CODE HERE
@@ -351,8 +351,8 @@ def splitting_free_rotation(q, L, I_body, dt):
         L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²
     and the motion by each term alone is known.  The first rotates the body about L, by dt/I_b L: multiply by
     exponential(dt/I_b L) from the left; it commutes with the others.  The second rotates it about its own axis a by the
-    angle dt (1/I_a − 1/I_b) L_a:  about_axis, with  L_a = body_component(q, L, a)  of the latest q.  The third does the
-    same about the axis c.  Order of the rotations:
+    angle dt (1/I_a − 1/I_b) L_a,  with  L_a = body_component(q, L, a)  of the latest q:  about_axis(q, a, angle) is the
+    new orientation.  The third does the same about the axis c.  Order of the rotations:
         half of a,  all of c,  half of a,  about L          and unit at the end
     Exact when two moments are equal.
     *Source:* Touma and Wisdom 1994; Fassò 2003, “Comparison of splitting algorithms for the rigid body”.

@@ -189,7 +189,7 @@ def grid_pairs(rows, cols, offsets):
 
     For every offset (dr, dc), and for every node from the first to the last, list the pair (node, node at r + dr,
     c + dc) if the second node exists.  STRUCTURAL, SHEAR and BEND are tuples of offsets; add them to combine them.
-    Returns integers; an empty list of pairs has shape (0, 2).
+    Returns an array of integers; its shape is (0, 2) where there are no pairs.
     *Source:* first lecture deck, “Multiple connectivity”; Provot 1995 for the three names.
     """
     # YOUR CODE HERE

@@ -184,6 +184,15 @@ def test_a_result_of_another_kind_is_named(tmp_path, returned, kind):
     assert {o.expected.partition(" (")[0] for o in failed} == {"2 values"}
 
 
+def test_a_list_in_place_of_an_array_is_told_what_makes_an_array_of_it(tmp_path):
+    flat, paired = "for node in (r * cols + c, (r + dr) * cols + c + dc)]", "]"
+    change = {"pairs = [node for": "pairs = [(r * cols + c, (r + dr) * cols + c + dc) for", flat: paired,
+              "return np.array(pairs, dtype=np.int64).reshape(-1, 2)": "return pairs"}
+    outcomes, _ = run_of(tmp_path, "springs", ["2.10"], change)
+    first = outcomes[0]
+    assert (first.got, first.hint) == ("a list", "np.array(…) makes an array of it")
+
+
 @pytest.mark.long
 def test_an_error_where_none_was_expected_is_said(tmp_path):
     outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: "raise ValueError('too fast')"})

@@ -275,6 +275,20 @@ def test_a_file_that_does_not_load_says_so_once(tmp_path):
     assert "the whole file" in seen.text and seen.text.count("reading the file: SyntaxError") == 1
 
 
+def test_a_failure_below_is_named_on_the_page_and_for_gradescope(tmp_path):
+    """In lesson 2, spring_network_acceleration calls air_force."""
+    rows = (("springs", "2.2", "air_force", "test_air", 1, "the wind force"),
+            ("springs", "2.8", "spring_network_acceleration", "test_mesh", 1, "divide by the mass"))
+    lost = {"status": "not yet", "earned": 0, "kind": "visible", "says": {"quantity": "the call itself"}}
+    one = {**result("ada", handed_in=()), "handed_in": ["springs"], "tests": [{**passed(*row), **lost} for row in rows]}
+    settings = marking.Settings(("springs",), "secret", rows, "code")
+    pages.write(tmp_path, [one], {}, settings, {}, FREE)
+    sentence = "2.8 calls air_force (2.2), which does not pass yet: mend that first"
+    assert Seen(tmp_path / "students" / "ada.html").text.count("mend that first") == 1
+    first, second = pages.gradescope(one, settings, FREE)["tests"]
+    assert sentence in second["output"] and "mend" not in first["output"]
+
+
 def test_an_error_of_a_call_is_recognised_by_its_kind():
     def call(a):
         raise ValueError("no such ball")

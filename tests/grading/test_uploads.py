@@ -11,7 +11,7 @@ import re
 
 import pytest
 
-from validate.grading import classlist, marks, pages, uploads
+from validate.grading import classlist, marks, pages, points, uploads
 
 from .test_cli import grade, run
 from .test_marks import HEAD, handed_in  # noqa: F401   a fixture
@@ -114,6 +114,13 @@ def test_moodle_reads_our_file_as_its_own(tmp_path):
         "fay@example.org": {"falling": (0.0, "not handed in"), "bouncing": (0.0, "not handed in")},
     }
     assert {"First name", "ID number", "Email address"} <= {*text.splitlines()[0].split(",")}
+
+
+def test_a_zero_for_a_file_that_does_not_load_comes_with_its_reason(tmp_path):
+    got = "SyntaxError: invalid syntax (falling.py, line 3)"
+    lost = [found(exercise, "not yet", {"quantity": points.READING, "got": got}) for exercise in ("1.1", "1.2", "1.10")]
+    feedback = moodle(written(tmp_path, result("ada", *lost))["moodle.csv"])["ada@example.org"]
+    assert feedback == {"falling": (0.0, f"falling.py does not load: {got}"), "bouncing": (4.0, "")}
 
 
 def test_nbgrader_has_the_columns_of_its_own_export_first(tmp_path):

@@ -866,7 +866,7 @@ def test_the_force_of_the_hand_obeys_its_law_at_the_end_of_the_step(lesson, draw
         F = lesson.hand_force(x, v, target, k, c, m, dt)
         after = v + dt * F / m
         law = -k * (x + dt * after - target) - c * after
-        close(f"force with {d} coordinates [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
+        close(f"force with {d} coordinate{'s' * (d > 1)} [N]: −k (x⁺ − target) − c v⁺", F, law, 1e-10,
               given=f"k = {k}, c = {c}, m = {m}, dt = {dt}")
         close("input x, v and target after the call", np.array((x, v, target)), kept, 0.0)
     for second, metre, kilogram in ((2.0**-20, 1.0, 1.0), (2.0**20, 2.0**40, 1.0), (1.0, 2.0**-40, 2.0**-30),
@@ -919,7 +919,7 @@ def test_a_chain_sags_as_far_as_its_equations_of_balance_say(lesson, draw):
         sag = np.linalg.solve(balance, np.full(n, m * g))[-1]
         # the condition of the balance is below 4 n² = 6400, and a sag below 25 m
         close("sag of the lowest point [m]", lesson.chain_sag(n, m, k, g), sag, 1e-11,
-              given=f"{n} points of {m:.4g} kg, k = {k:.4g} N/m, g = {g:.4g} m/s²")
+              given=f"{n} point{'s' * (n > 1)} of {m:.4g} kg, k = {k:.4g} N/m, g = {g:.4g} m/s²")
 
 
 @exercise("2.16", points=1,
@@ -930,7 +930,8 @@ def test_the_chosen_step_keeps_its_ratio_to_the_fastest_period(lesson):
 
 
 @exercise("2.17", points=1,
-          hint="begin with triangles: a square of four springs folds flat, and a diagonal holds it")
+          hint="a square of four springs folds flat (0), and a diagonal holds it; a larger k carries more weight, "
+               "a smaller k slows the fastest vibration")
 def test_a_body_of_ones_own_holds_its_shape_and_its_weight(lesson, draw):
     for size in (draw(0.3, 0.4), draw(0.7, 0.8), draw(1.5, 2.0)):      # one body cannot have all sizes
         x, pairs, k = lesson.my_body(size)

@@ -311,7 +311,7 @@ wrong("8.6", "corrects all links at once, from the old positions")(sweeping(jaco
 wrong("8.6", "visits the links from the last to the first")(sweeping(backwards=True))
 wrong("8.6", "changes its input")(sweeping(changes=True))
 wrong("8.6", "accepts coincident ends")(sweeping(checked=False))
-wrong("8.6", "moves immovable points")(sweeping(held=False))
+wrong("8.6", "moves both ends by half, also a heavy or an immovable one")(sweeping(held=False))
 edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
      "share = network.stiffness[s] * (length > network.rest[s])")
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")

@@ -23,7 +23,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from validate.run.store import write_text
-from validate.subject import modules
+from validate.subject import modules, needs
 
 from . import classlist, marking, marks, points, similar, submissions, uploads, watch
 from .texts import cell, clean, line, many, number
@@ -35,6 +35,7 @@ COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "fir
            "problems", "raw_score_of_tests", "by_hand")          # of the files; what was changed by hand
 MOST_PROBLEMS = submissions.MOST_PROBLEMS + 5          # problems shown per submission [-]; `sheet` adds some
 MOST_NAMED = 200             # students named per cause on the class page [-]; the table of students has them all
+STATES = ("passed", "not attempted", "not yet")        # of a test that was run
 MOST_BARS = 20               # bars of the histogram [-]: a phone has room for so many
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
@@ -372,7 +373,8 @@ def lessons_of(one):
 
     Tests that failed with the same words share a remark, so that a file that does not load has only one.
     """
-    theirs = grouped(one.tests, "lesson")
+    tests = [*one.tests]
+    theirs, below = grouped(tests, "lesson"), below_of(tests)
     for lesson, account in one.accounts.items():
         exercises, remarks = {}, {}
         for t in theirs.get(lesson, ()):
@@ -382,11 +384,23 @@ def lessons_of(one):
         yield {
             "name": lesson,
             "account": account,
-            "remarks": [*remarks.values()],
+            "remarks": [(tests, [*dict.fromkeys(below[t["exercise"]] for t in tests if t["exercise"] in below)])
+                        for tests in remarks.values()],
             "exercises": [exercise_row(tests, one.hands.get((lesson, exercise)))
                           for exercise, tests in exercises.items()],
             "hands": one.hands_in(lesson),
         }
+
+
+def below_of(tests):
+    """Return {exercise: a sentence} for each that does not pass and calls another one that does not pass either.
+
+    Earlier lessons are worked where a class is graded, so the other one is of the same lesson.
+    """
+    states = needs.states((t["exercise"], t["status"]) for t in tests if t["status"] in STATES
+                          and needs.table().get(t["exercise"], {}).get("lesson") == t["lesson"])
+    sentences = {number: needs.sentence_below(number, states) for number, state in states.items() if state == "not yet"}
+    return {number: sentence for number, sentence in sentences.items() if sentence}
 
 
 def exercise_row(tests, hand):
@@ -423,6 +437,7 @@ def sheet_for_gradescope(one, terms):
     score is after the late penalty and with points by hand; Gradescope takes it in place of the sum of the rows.
     *Source:* Gradescope, Autograder Specifications.
     """
+    below = below_of(one.tests)
     by_hand = [f"By hand: {line(marks.words(hand))}" for hand in one.hands.values()]
     lines = [clean(lateness(one, terms)), *by_hand, *map(line, one.problems)]
     return {
@@ -431,16 +446,16 @@ def sheet_for_gradescope(one, terms):
         "stdout_visibility": "hidden",
         "output": "\n".join(filter(None, lines)),
         "output_format": "text",
-        "tests": [row_of(t) for t in one.tests],
+        "tests": [row_of(t, below.get(t["exercise"], "")) for t in one.tests],
     }
 
 
-def row_of(test):
-    """Return Gradescope's row of one test."""
+def row_of(test, below):
+    """Return Gradescope's row of one test.  below: a sentence about an exercise that it calls, or empty."""
     said = [f"{name}: {clean(test['says'][name])}" for name in SHOWN if name in test["says"]]
     if test["status"] == "not yet":
         hint = [] if test["tells"] else [f"hint: {clean(test['hint'])}"]
-        said = [INPUTS[test["kind"]], *said, *hint]
+        said = [INPUTS[test["kind"]], *said, *[f"first: {below}"] * bool(below), *hint]
     if test["status"] == "not attempted":
         said = [test["status"]]
     passed = test["status"] == "passed"

@@ -26,6 +26,7 @@ AGAIN = 10.0                 # and so long where a test of the exercise, or of o
 READING = "reading the file"   # the quantity where a file could not be loaded
 FILE = "the file"            # the quantity where it has no function that a test calls
 OWN_NAME = "name the function as in the file that you received"
+VALUES = "return as many values as the docstring says, in its order"
 DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 20.0             # and so long in the sandbox [s]
 SHAPES = (AttributeError, TypeError, ValueError, IndexError, KeyError)   # what a result of another kind ends in
@@ -128,9 +129,9 @@ def reasons(exercise, states, traces, folder):
     if exercise not in needs.table():
         return "", ""
     found = mistakes.matching(needs.table()[exercise]["lesson"], exercise, traces)
-    below = needs.first_open(exercise, states, folder) if needs.stars(exercise) != needs.OWN else None
+    below = needs.sentence_below(exercise, states, folder)
     if below:                                              # what is below spoils the results, so they tell nothing
-        return "", needs.sentence(exercise, below, states[below])
+        return "", below
     return mistakes.sentence(found), ""
 
 
@@ -171,8 +172,9 @@ def outcome(mark, name, excinfo, trace=None):
         said = said.partition(": ")[0]                               # a student's own remedy is no advice here
     shapes = isinstance(error, SHAPES) and _misshapen(exercise, trace)
     if shapes:                                                       # the caller could not use what was returned
-        return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
-                       "return as many values as the docstring says, in its order", kind)
+        listed = "array" in shapes[0] and shapes[1].startswith(("a list", "a tuple"))
+        advice = "np.array(…) makes an array of it" if listed else VALUES
+        return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "", advice, kind)
     expected, advice = "an answer, and no error" if place else "an answer", _advice(exercise, error, said)
     return Outcome(exercise, name, points, "not yet", "the call itself", expected, f"{kind}: {said}{place}", "",
                    advice or hint, f"{kind}{place}", tells=find and not advice)
@@ -222,7 +224,9 @@ def _advice(exercise, error, said):
     if "NoneType" in said:
         return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
-        return "return as many values as the docstring says, in its order"
+        return VALUES
+    if said.startswith("it took too long"):                          # in the sandbox
+        return "limit the number of rounds of each loop"
     if isinstance(error, NameError):
         return "a name is misspelt, or it has no value yet"
     return ""

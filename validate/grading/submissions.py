@@ -353,7 +353,7 @@ def resembling(names, lessons, found):
         for name in sorted(alike, key=lambda name: name.lower().endswith(".ipynb"))[:1]:
             yield (NOTEBOOK.format(name, f"lessons/{lesson}.py") if name.lower().endswith(".ipynb") else
                    f"{lesson}.py is not there, and {name} was not read: if it is meant, call it {lesson}.py")
-    if not found:
+    if any(lesson not in found for lesson in lessons):
         packed = [name for name in names if name.lower().endswith((".zip", *ARCHIVES))]
         remedy = "a folder holds lesson files or a single zip, and a zip holds lesson files"
         yield from [f"{name} lies inside, and was not read: {remedy}" for name in packed]
@@ -500,6 +500,6 @@ def in_cells(path, asked):
         found = [name for name in functions if re.search(rf"(?m)^def {name}\b", text)]
         lesson = owners.of_lesson(re.sub(r"^\d\d_|\.ipynb$", "", os.path.basename(place)))[1]
         if found:
-            told[place] = shortened(f"answers in the cells of {place} are not graded: move {', '.join(found)} "
-                                    f"into lessons/{lesson}.py")
+            told[place] = shortened(f"answers in the cells of {place} are not graded: move them into "
+                                    f"lessons/{lesson}.py ({', '.join(found)})")
     return told

@@ -9,7 +9,7 @@ import io
 from collections import Counter
 from typing import NamedTuple
 
-from . import marks
+from . import marks, points
 from .texts import cell, line, number
 
 DIGITS = 4                   # decimals of a point: Canvas shows two, and reads no exponents
@@ -93,12 +93,18 @@ def entry(person, one, maxima):
         late = [f"{number(account.penalty)} off for being late"] * bool(account.penalty)
         scores[lesson] = account.score
         missing = "no file of this lesson that can be read" if one.problems else "not handed in"
-        remarks[lesson] = " | ".join([missing] * (not account.handed_in) + late + told)
+        remarks[lesson] = " | ".join([missing] * (not account.handed_in) + unloadable(one, lesson) + late + told)
     if marks.BY_HAND in maxima:
         hand = one.hands.get(marks.TOTAL) if one else None
         scores[marks.BY_HAND] = hand.points - hand.before if hand else 0
         remarks[marks.BY_HAND] = marks.words(hand) if hand else ""
     return Entry(person, scores, remarks)
+
+
+def unloadable(one, lesson):
+    """Return why the file of a lesson earns nothing, as a list of one sentence; empty if it loads."""
+    said = [t["says"] for t in one.tests if t["lesson"] == lesson and t["says"].get("quantity") == points.READING]
+    return [f"{lesson}.py does not load: {said[0]['got']}"] if said else []
 
 
 def write(put, sheets, failed, settings, people):

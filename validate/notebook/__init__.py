@@ -204,12 +204,17 @@ if get_ipython():
 
 
 def show_choice(lesson, question):
-    """Draw the four curves of a question, with the letters that its answer names them by."""
+    """Draw the four curves of a question, with the letters that its answer names them by.
+
+    Where curves coincide, those below are seen: they are wider, and no two have their markers in one place.
+    """
     found, dealt = choices.of(lesson, question)
     _, ax = plt.subplots()
     looks = zip(("#0072B2", "#D55E00", "#009E73", "#000000"), ("o", "s", "^", "d"), strict=True)
-    for (letter, curve), (colour, marker) in zip(dealt.items(), looks, strict=True):
-        ax.plot(found.x, curve, color=colour, marker=marker, markevery=max(1, len(found.x) // 8), lw=1.4, label=letter)
+    apart = max(4, len(found.x) // 8)
+    for k, ((letter, curve), (colour, marker)) in enumerate(zip(dealt.items(), looks, strict=True)):
+        ax.plot(found.x, curve, color=colour, marker=marker, markevery=(k * apart // 4, apart), lw=3.8 - 0.8 * k,
+                label=letter)
     ax.set(title=found.title, xlabel=found.xlabel, ylabel=found.ylabel, yscale="log" if found.log else "linear")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     show_figure()

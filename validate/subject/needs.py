@@ -95,6 +95,15 @@ def sentence(exercise, below, state):
     return f"{exercise} {calls} {other['function']} ({below}{lesson}), which {is_open} that first"
 
 
+def sentence_below(exercise, states, folder=None):
+    """Return the same about the first exercise below this one that does not pass; empty if all of them do.
+
+    A ★★★ exercise has an answer of one's own, which need not call them.
+    """
+    below = first_open(exercise, states, folder) if stars(exercise) != OWN else None
+    return sentence(exercise, below, states[below]) if below else ""
+
+
 # ---------------------------------------------------------------------------------------------- reading the answers
 
 def read_from(solutions, lessons, exercises):
