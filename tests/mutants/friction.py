@@ -813,3 +813,6 @@ edit("3.19", "takes the load of a block of 1 kg, whatever the load is", FIRST,
      "j_n = 0.2; along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",
      "[np.sign(v_t[1]) * across, np.sign(v_t[0]) * along]")
+edit("3.19", "forgets the mass along the blade: a light block goes back faster, a heavy one never quite stops",
+     "m * abs(v_t[0])", "abs(v_t[0])")
+edit("3.19", "forgets the mass across the blade", "m * abs(v_t[1])", "abs(v_t[1])")
