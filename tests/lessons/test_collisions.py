@@ -1256,6 +1256,10 @@ def pairs_of_boxes(draw, lesson, size, place):
     for R_b, half_a, half_b, apart in cases:
         a = lesson.Box(place + size * apart * axes(draw, 3)[0], R, size * half_a)
         yield a, lesson.Box(place, np.ascontiguousarray(R_b), size * half_b)
+    for high in (0.002, -0.002, 1e-6, -1e-6):                            # plates side by side, one barely the higher
+        plate = size * np.array([2.0, 2.0, 0.05])
+        yield (lesson.Box(place + size * R @ [draw(0.3, 0.6), draw(-0.6, 0.6), high], R, plate),
+               lesson.Box(place, R @ turned(2, draw(0.3, 1.2)), plate))
     for k in range(15 if size == 1.0 else 0):                            # far apart along each axis, the best one
         turns = ((R, Q), (np.eye(3), Q), (R, np.eye(3)))[k % 3]
         a, b = lesson.Box(place, turns[0], cube), lesson.Box(place, turns[1], any_half)
@@ -1504,8 +1508,9 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
     # exact: sums of two powers of two; a radius of 0 is a point
     for size, e, wide in itertools.product(SIZES, (*np.eye(2), np.eye(3)[1], np.ones(1)), (2.0, 0.0, 2.0**-10)):
         corner, wide = size * np.array([2.0, 0.0, -1.0])[:len(e)], wide * size
-        raises("a position on the surface of an obstacle", BadInput,
-               lesson.repulsion, corner + wide * e, corner, wide, size, 1.0)
+        for k in (1.0, 0.0):
+            raises("a position on the surface of an obstacle", BadInput,
+                   lesson.repulsion, corner + wide * e, corner, wide, size, k)
         for near, k in ((0.5, 1.0), (0.5, 0.0), (2.0**-8, 2.0**-30), (2.0**-8, 2.0**30), (2.0**-20, 1.0),
                         (2.0**-40, 1.0), (1.0 - 2.0**-10, 1.0)):
             g, strength = near * size, (1.0 / near - 1.0) / near**2 / size**3

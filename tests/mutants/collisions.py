@@ -787,6 +787,8 @@ edit("6.14", "takes the faces alone where a is not rotated",
      "range(15)", "range(6 if np.all(a.R == np.eye(3)) else 15)")
 edit("6.14", "skips an axis whose components add up to 0", "dot(axis, axis) > 0.0", "np.sum(axis) != 0.0")
 edit("6.14", "skips an axis without a first component", "dot(axis, axis) > 0.0", "axis[0] != 0.0")
+edit("6.14", "returns a normal from a to b where a is barely beside b along it", "dot(best, r) >= 0.0",
+     "dot(best, r) >= -1e-2 * np.sqrt(dot(r, r))")
 edit("6.14", "skips an axis without a last component", "dot(axis, axis) > 0.0", "axis[2] != 0.0")
 
 
@@ -903,6 +905,7 @@ edit("6.16", "gives no field where the offset has no last component", "g >= reac
 def repulsion(x, centre, radius, reach, k):
     return list(worked.repulsion(x, centre, radius, reach, k))
 edit("6.16", "refuses gaps below a billionth of the distance", "not g > 0.0", "not g > 1e-9 * distance")
+edit("6.16", "accepts a position inside an obstacle without a field", "not g > 0.0", "k > 0.0 and not g > 0.0")
 edit("6.16", "ends its field a thousandth before the reach", "g >= reach", "g >= 0.999 * reach")
 
 
