@@ -1230,6 +1230,11 @@ def test_two_edges_across_each_other_separate_and_equal_axes_leave_it_to_a_face(
     got = lesson.box_separation(*flush)
     close("gap of two aligned boxes [m]", got[0], gap, ROUND_OFF, given=f"{flush}")
     close("number of the axis of two aligned boxes: the first of equal ones", got[2], 2, 0.0, given=f"{flush}")
+    cube = lesson.Box(np.zeros(3), np.eye(3), np.ones(3))                # powers of two: all gaps are exact
+    for k, lead in itertools.product((1, 2), (2.0**-35, 2.0**-50)):
+        beside = cube._replace(x=3.0 * np.ones(3) + lead * np.eye(3)[k])
+        close("number of the axis of the face that leads, by however little", lesson.box_separation(cube, beside)[2], k,
+              0.0, given=f"{cube}, {beside}")
 
 
 def gaps_of_axes(a, b):
