@@ -86,7 +86,8 @@ def test_the_distance_to_a_plane_has_a_sign_for_its_side(lesson, draw):
         for rows in frames(draw, d):
             for foot in (size * draw(-3.0, 3.0, d), size * draw.sparse(-3.0, 3.0, d), np.zeros(d)):
                 plane, height = lesson.Plane(rows[0], float(-rows[0] @ foot)), size * draw(-3.0, 3.0)
-                for high, along in ((height, size * draw(-2.0, 2.0)), (0.0, size * draw(-2.0, 2.0)), (height, 0.0)):
+                for high, along in ((height, size * draw(-2.0, 2.0)), (0.0, size * draw(-2.0, 2.0)), (height, 0.0),
+                                    (1e-10 * size, size * draw(-2.0, 2.0))):
                     p = foot + high * rows[0] + along * rows[1]
                     close("signed distance [m]", lesson.plane_distance(p, plane), high, ROUND_OFF * size,
                           given=f"p = {p}, {plane}")
@@ -178,6 +179,9 @@ def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(le
         close("time of impact at the end of the step [s]",
               lesson.plane_impact_time(3.0, 0.5, above, on, size * r, floor), 3.5, 0.0,
               f"{above} to {on}, r = {size * r}, {floor}")
+        never("time of impact of a ball that does not quite arrive [s]",
+              lesson.plane_impact_time(3.0, 0.5, above, on + 2.0**-30 * size * floor.n, size * r, floor),
+              f"{above} to {on}, but for the last 1e-9 of the size, r = {size * r}, {floor}")
         above = on + 2.0**-30 * size * floor.n
         close("time of impact at the very beginning of the step [s]",
               lesson.plane_impact_time(3.0, 0.5, above, on - size * floor.n, size * r, floor), 3.0 + 2.0**-31, 1e-15,
@@ -379,6 +383,10 @@ def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
         close("time of impact of a ball that only grazes [s]",
               lesson.cylinder_impact_time(2.0, 0.5, begin, end, size, size * (rho - 1.0)), 2.25, ROUND_OFF,
               f"{begin} to {end}, r = {size}, R = {size * (rho - 1.0)}")
+        aside = 2.0**-30 * size * np.array([0.0, 0.0, 1.0])
+        never("time of impact of a ball that barely misses [s]",
+              lesson.cylinder_impact_time(2.0, 0.5, begin + aside, end + aside, size, size * (rho - 1.0)),
+              f"{begin + aside} to {end + aside}, r = {size}, R = {size * (rho - 1.0)}")
 
 
 @exercise("6.5", points=0.25, hint="s = (p − a) · (b − a)/|b − a|², clamped to 0 … 1")
@@ -579,14 +587,14 @@ def test_a_triangle_is_flat_by_its_area_over_its_longest_edge_squared(lesson, dr
     raises("three corners on one line", BadInput, lesson.closest_on_triangle, np.array([0.0, 0.0, 1.0]), np.zeros(3),
            np.array([1.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
     for size, (third, longest), turn in itertools.product(SIZES, ((0.5, 1.0), (-1.0, 2.0), (2.0, 2.0)), range(6)):
-        for share in (1e-3, 0.7, 1.2, 1e3):
+        for share in (1e-3, 0.7, 0.99, 1.0, 1.01, 1.2, 1e3):
             high = share * flat * longest**2
             corners = size * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [third, high, 0.0]])
             corners = [corners[k] for k in list(itertools.permutations(range(3)))[turn]]
             p = size * np.array([draw(0.1, 0.4), 0.0, draw(0.5, 2.0)])
-            if share < 1.0:
-                raises("a triangle flatter than DEGENERATE_AREA", BadInput, lesson.closest_on_triangle, p, *corners,
-                       naming=[0.5 * size * size * high])
+            if share <= 1.0:
+                raises("a triangle as flat as DEGENERATE_AREA, or flatter", BadInput, lesson.closest_on_triangle, p,
+                       *corners, naming=[0.5 * size * size * high])
             else:
                 q = np.asarray(lesson.closest_on_triangle(p, *corners))
                 close("nearest point of a needle, over its size [-]", q / size, [p[0] / size, 0.0, 0.0], 1e-8,
@@ -604,6 +612,11 @@ def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson,
             for p in place + size * (draw(-2.0, 3.0, (4, 2)) @ rows[:2] + draw(-0.2, 0.2, (4, 1)) * rows[2]):
                 q = lesson.closest_on_triangle(p, *(row.copy() for row in corners))
                 is_nearest("nearest point of the triangle", q, p, corners, size, f"p = {p}, corners {corners.tolist()}")
+    right = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    for x, turn in itertools.product((2.0**-12, 2.0**-20), range(3)):    # p is barely beyond one of the edges
+        for p in np.array([[0.5, -x, 0.5], [-x, 0.5, 0.5], [0.5 + x, 0.5 + x, 0.5]]):
+            q = lesson.closest_on_triangle(p, *np.roll(right, turn, axis=0))
+            is_nearest("nearest point of the triangle", q, p, right, 1.0, f"p = {p}, corners {right.tolist()}")
     # p at the corners, the middles of the edges, inside and beyond, in the triangle's plane and above a point of it
     shares = np.array([*np.eye(3), *(1.0 - np.eye(3)) / 2.0, [0.25, 0.25, 0.5], [2.0, 0.0, -1.0], [1.5, 1.5, -2.0]])
     balanced = np.array([[[1, 1, 0], [0, 0, 1], [1, -1, 0]], [[1, -1, 0], [1, 1, 1], [1, 1, -2]]], float)
@@ -1087,6 +1100,14 @@ def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
                        given=f"y = {y.tolist()}")
         close("corners of a rectangle of which one edge remains, sorted by position [m]",
               left[np.argsort(left[:, 1])], y[[0, 3]], 0.0, given=f"y = {y.tolist()}")
+        for least in (wide * 2.0**-30, wide * 2.0**-45):                 # a sliver is cut off, or left
+            for cut, first, last in ((wide - least, 0.0, wide - least), (least, 0.0, least)):
+                corners = y.copy()
+                corners[:, 0] = np.where(y[:, 0] > 0.0, last, first)
+                given = f"y = {y.tolist()}, n = {n}, d = {cut}"
+                left = numbers("corners of what a cut near an edge leaves [m]", lesson.clip(y, n, cut), (4, d), given)
+                close("corners of what a cut near an edge leaves, over its width [m]", left[:, 0] / last,
+                      corners[:, 0] / last, ROUND_OFF, given)
         for place, k, sign in itertools.product((0.0, 3.0), range(d), (1.0, -1.0)):
             e, aside, rows = sign * np.eye(d)[k], np.eye(d)[k - 1], [place * np.ones(d)] * 4
             y, level = np.stack(rows) + np.array([-e, -aside, e, aside]) * wide, sign * place
@@ -1209,6 +1230,11 @@ def test_two_edges_across_each_other_separate_and_equal_axes_leave_it_to_a_face(
     got = lesson.box_separation(*flush)
     close("gap of two aligned boxes [m]", got[0], gap, ROUND_OFF, given=f"{flush}")
     close("number of the axis of two aligned boxes: the first of equal ones", got[2], 2, 0.0, given=f"{flush}")
+    cube = lesson.Box(np.zeros(3), np.eye(3), np.ones(3))                # powers of two: all gaps are exact
+    for k, lead in itertools.product((1, 2), (2.0**-35, 2.0**-50)):
+        beside = cube._replace(x=3.0 * np.ones(3) + lead * np.eye(3)[k])
+        close("number of the axis of the face that leads, by however little", lesson.box_separation(cube, beside)[2], k,
+              0.0, given=f"{cube}, {beside}")
 
 
 def gaps_of_axes(a, b):
@@ -1235,6 +1261,10 @@ def pairs_of_boxes(draw, lesson, size, place):
     for R_b, half_a, half_b, apart in cases:
         a = lesson.Box(place + size * apart * axes(draw, 3)[0], R, size * half_a)
         yield a, lesson.Box(place, np.ascontiguousarray(R_b), size * half_b)
+    for high in (0.002, -0.002, 1e-6, -1e-6):                            # plates side by side, one barely the higher
+        plate = size * np.array([2.0, 2.0, 0.05])
+        yield (lesson.Box(place + size * R @ [draw(0.3, 0.6), draw(-0.6, 0.6), high], R, plate),
+               lesson.Box(place, R @ turned(2, draw(0.3, 1.2)), plate))
     for k in range(15 if size == 1.0 else 0):                            # far apart along each axis, the best one
         turns = ((R, Q), (np.eye(3), Q), (R, np.eye(3)))[k % 3]
         a, b = lesson.Box(place, turns[0], cube), lesson.Box(place, turns[1], any_half)
@@ -1483,9 +1513,11 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
     # exact: sums of two powers of two; a radius of 0 is a point
     for size, e, wide in itertools.product(SIZES, (*np.eye(2), np.eye(3)[1], np.ones(1)), (2.0, 0.0, 2.0**-10)):
         corner, wide = size * np.array([2.0, 0.0, -1.0])[:len(e)], wide * size
-        raises("a position on the surface of an obstacle", BadInput,
-               lesson.repulsion, corner + wide * e, corner, wide, size, 1.0)
-        for near, k in ((0.5, 1.0), (0.5, 0.0), (2.0**-8, 2.0**-30), (2.0**-8, 2.0**30), (2.0**-20, 1.0)):
+        for k in (1.0, 0.0):
+            raises("a position on the surface of an obstacle", BadInput,
+                   lesson.repulsion, corner + wide * e, corner, wide, size, k)
+        for near, k in ((0.5, 1.0), (0.5, 0.0), (2.0**-8, 2.0**-30), (2.0**-8, 2.0**30), (2.0**-20, 1.0),
+                        (2.0**-40, 1.0), (1.0 - 2.0**-10, 1.0)):
             g, strength = near * size, (1.0 / near - 1.0) / near**2 / size**3
             for centre in (corner, 0.0 * corner, (wide + g) * e):
                 got = lesson.repulsion(centre - (wide + g) * e, centre, wide, size, k)
@@ -1563,7 +1595,7 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
     for size, e in ((size, np.roll([turn, 0.0], k)) for size in SIZES for k in range(2) for turn in (1.0, -1.0)):
         # Sums of powers of two: the offset is exact.  Motions along the second axis start at the origin.
         x, v, left = abs(e[0]) * size * np.array([1.0, 2.0]), 2.0 * size * e, np.array([-e[1], e[0]])
-        offsets = [0.0] + [s * 2.0**-k for k in (10, 20, 30) for s in (1, -1)]
+        offsets = [0.0] + [s * part for k in (10, 20, 30) for part in (2.0**-k, 1.0 - 2.0**-k) for s in (1, -1)]
         for tau in (0.0, 4.0):                                           # 0 < τ < ahead: at both ends nothing happens
             close("acceleration exactly beside the centre, and exactly at the end of the time ahead [m/s²]",
                   lesson.steer(x, v, x + tau * v + 0.5 * size * left, size, 4.0), np.zeros(2), 0.0,
@@ -1577,7 +1609,7 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
             close("acceleration when heading for the centre, times τ² over the size [-]",
                   np.asarray(lesson.steer(x, v, x + tau * v, size, ahead)) / size * tau**2, 2.0 * left, 1e-12,
                   f"x = {x}, v = {v}, radius {size}, τ = {tau} s, ahead {ahead} s")
-        for tau, offset in ((tau, offset) for tau in (2.0**-20, 2.0**-5, 0.25, 2.0) for offset in offsets):
+        for tau, offset in ((tau, offset) for tau in (2.0**-40, 2.0**-20, 2.0**-5, 0.25, 2.0) for offset in offsets):
             centre = x + tau * v + offset * size * left
             expected = 2.0 * (1.0 - abs(offset)) * (left if offset <= 0.0 else -left)
             close("acceleration when heading for the centre, or slightly beside it, times τ² over the size [-]",

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from solutions.checks import BadInput
-from validate.grading.expect import NotYet, between, choice, close, raises
+from validate.grading.expect import NotYet, between, choice, close, raises, truth
 from validate.reference import choices
 from validate.reference.choices.friction import LOAD, MU_K, MU_S
 
@@ -15,6 +15,9 @@ exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
 # All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
+# Usual, tiny and huge velocities, loads and lengths.  Powers of two: what is exact at one size is exact at the others.
+SIZES = (1.0, 2.0**-100, 2.0**100)
+BARELY = 1e-9                # this share beyond a threshold, or within it, is far above the round-off of either side
 
 
 WAYS = ((2, True), (3, True), (2, False), (3, False))     # d and turned of a frame
@@ -63,29 +66,30 @@ def plain_pairs():
 
 @exercise("3.1", points=1, hint="the part of F against n: −F · n, but never less than zero")
 def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(lesson, draw):
-    for d, turned in WAYS:
-        for load, size in ((draw(1.0, 20.0), draw(1.0, 20.0)), (1e-6, draw(1.0, 20.0)), (draw(1.0, 20.0), 0.0),
-                           (0.0, 0.0)):
-            axes = frame(draw, d, turned)
-            n, pull = axes[0], along_surface(draw, axes, size)
+    for (d, turned), size in itertools.product(WAYS, SIZES):
+        for load, along in ((draw(1.0, 20.0), draw(1.0, 20.0)), (1e-6, draw(1.0, 20.0)), (draw(1.0, 20.0), 0.0),
+                            (0.0, 0.0)):
+            axes, load = frame(draw, d, turned), size * load
+            n, pull = axes[0], along_surface(draw, axes, size * along)
             # The lift first: without the minus sign a formula returns the lift here, and 0 for a load.
             close("normal force when F lifts [N]", lesson.normal_force(pull + load * n, n), 0.0, 0.0,
                   given=f"lift {load} N, n = {n}")
-            close("normal force [N]", lesson.normal_force(pull - load * n, n), load, ROUND_OFF,
+            close("normal force [N]", lesson.normal_force(pull - load * n, n), load, ROUND_OFF * size,
                   given=f"load {load} N, n = {n}")
 
 
 @exercise("3.2", points=0.25,
           hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no tangential part")
 def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
-    for d, turned in WAYS:
-        axes, load, mu = frame(draw, d, turned), draw(1.0, 20.0), draw(0.2, 1.5)
+    for (d, turned), size in itertools.product(WAYS, SIZES):
+        axes, load, mu = frame(draw, d, turned), size * draw(1.0, 20.0), draw(0.2, 1.5)
         for share, friction in (*((share, mu) for share in draw.within()), (draw(2.0, 5.0), np.inf), (0.0, mu),
-                                (0.0, 0.0)):
+                                (1.0 - BARELY, mu), (0.0, 0.0)):
             pull = along_surface(draw, axes, share * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
-            close("friction on a body that holds [N]", got, -pull, ROUND_OFF,
+            close("friction on a body that holds [N]", got, -pull, ROUND_OFF * size,
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
+    load = draw(1.0, 20.0)
     for n, along in plain_pairs():
         pull = draw(0.1, 0.9) * mu * load * along
         close("friction on a body that a pull along an axis or a diagonal does not move [N]",
@@ -96,14 +100,15 @@ def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
 @exercise("3.2", points=0.25,
           hint="beyond the cone its magnitude is μ_s F_N, where F_N is the normal force of F; it points against F_t")
 def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
-    for d, turned in WAYS:
-        axes, load, mu = frame(draw, d, turned), draw(1.0, 10.0), draw(0.2, 1.0)
-        for share, friction in (*((share, mu) for share in draw.beyond(3.0)), (draw(1.1, 3.0), 0.0)):
+    for (d, turned), size in itertools.product(WAYS, SIZES):
+        axes, load, mu = frame(draw, d, turned), size * draw(1.0, 10.0), draw(0.2, 1.0)
+        for share, friction in (*((share, mu) for share in (*draw.beyond(3.0), 1.0 + BARELY)), (draw(1.1, 3.0), 0.0)):
             pull = along_surface(draw, axes, share * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
             expected = -friction * load * pull / np.linalg.norm(pull)
-            close("friction on a body that slips [N]", got, expected, ROUND_OFF,
+            close("friction on a body that slips [N]", got, expected, ROUND_OFF * size,
                   given=f"pull {pull} N, load {load} N, μ = {friction}")
+    load = draw(1.0, 10.0)
     for n, along in plain_pairs():
         pull = draw(1.1, 3.0) * mu * load * along
         close("friction on a body that a pull along an axis or a diagonal moves [N]",
@@ -148,11 +153,11 @@ def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(le
             # Friction has the direction of v_t, whose round-off is 1e-16 of v.
             close("friction on a sliding body [N]", got, -mu * load * direction, 1e-8 if speed < 1e-3 else 1e-11,
                   given=f"F = {F} N, speed {speed} m/s, sinking {sinking} m/s, μ = {mu}")
-    for n, along in plain_pairs():
-        v = draw(0.5, 9.0) * along
-        close("friction on a body that slides along an axis or a diagonal [N]",
-              lesson.kinetic_friction(-load * n, v, n, mu), -mu * load * along, ROUND_OFF,
-              given=f"load {load} N, v = {v} m/s, n = {n}, μ = {mu}")
+    for (n, along), slow, light in itertools.product(plain_pairs(), SIZES, SIZES):
+        v, F = slow * draw(0.5, 9.0) * along, -light * load * n
+        got = np.asarray(lesson.kinetic_friction(F, v, n, mu))
+        close("friction on a body that slides along an axis or a diagonal, over its load [-]", got / light / load,
+              -mu * along, ROUND_OFF, given=f"F = {F} N, v = {v} m/s, n = {n}, μ = {mu}")
 
 
 @exercise("3.3", points=0.5, hint="where v_t is zero there is no direction to oppose: return zeros before dividing")
@@ -207,8 +212,15 @@ def test_a_block_holds_up_to_the_angle_whose_tangent_is_mu(lesson, draw):
     tiny = draw(1e-9, 2e-9)                              # its sine and its tangent are the same float, its cosine is 1
     close("acceleration where sin θ is exactly μ_s cos θ [m/s²]: the block holds",
           lesson.incline_acceleration(tiny, tiny, 0.5 * tiny, g), 0.0, 0.0, given=f"θ = {tiny}, μ_s = {tiny}")
-    between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g),
-            1e-12, 2e-5 * g, given=f"μ = {mu}")
+    for rough, past in itertools.product((mu, 1e-3, 1e-7, 1e-20), (1e-6, BARELY)):       # the last ones are ice
+        edge = np.arctan(rough)
+        theta = (1.0 + past) * edge
+        given = f"θ = {theta}, μ_s = μ_k = {rough}, g = {g} m/s²"
+        close("acceleration barely beyond the edge, over that without friction [-]",
+              lesson.incline_acceleration(theta, rough, rough, g) / (g * np.sin(theta)),
+              1.0 - rough / np.tan(theta), ROUND_OFF, given=given)
+        close("acceleration barely before the edge [m/s²]",
+              lesson.incline_acceleration((1.0 - past) * edge, rough, 0.5 * rough, g), 0.0, 0.0, given=given)
     for mu_s in (0.0, mu):
         steep = draw(1.1, 1.4) * np.arctan(mu_s) + 0.1
         close("acceleration of a block that slides without friction, μ_k = 0 [m/s²]",
@@ -272,13 +284,25 @@ def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(les
         close("impulse on a body that slides along an axis or a diagonal [N s]",
               lesson.friction_impulse(v, m, 0.5 * m, 0.8), -0.4 * m * along, ROUND_OFF, given=f"v_t = {v}, m = {m}")
     raises("a negative μ", BadInput, lesson.friction_impulse, v, m, j_n, -1.0)
+    check_impulses_of_any_size(lesson, draw)
+
+
+def check_impulses_of_any_size(lesson, draw):
+    """Friction stops or brakes a creeping body under a tiny load as it does a fast one under a huge load."""
+    shares = *draw.within(), *draw.beyond(4.0), 1.0 - BARELY, 1.0 + BARELY           # of the load that would stop it
+    for d, size, share in itertools.product((2, 3), SIZES, shares):
+        speed, m, mu = draw(0.5, 5.0), draw(0.5, 5.0), draw(0.2, 1.5)
+        v, j_n = along_surface(draw, frame(draw, d), speed), share * m * speed / mu
+        close("impulse over the size [N s]", np.asarray(lesson.friction_impulse(size * v, m, size * j_n, mu)) / size,
+              -min(1.0, share) * m * v, ROUND_OFF, given=f"v_t = {size * v}, m = {m}, j_n = {size * j_n}, μ = {mu}")
 
 
 @exercise("3.6", points=1, hint="treat each tangent separately: −m v_t · t, limited to ±μ j_n")
 def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
     shares = ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)), (-draw(1.1, 4.0), -draw(0.1, 0.9)),
               (draw(0.1, 0.9), -draw(1.1, 4.0)), (0.99, -1.01), (0.0, 0.0), (draw(1.1, 4.0), 0.0),
-              (0.0, draw(0.1, 0.9)), (-draw(1.1, 4.0), draw(1.1, 4.0)))
+              (0.0, draw(0.1, 0.9)), (1.0 - BARELY, -1.0 - BARELY), (-draw(1.05, 1.25), draw(0.1, 0.5)),
+              (draw(0.1, 0.5), draw(1.05, 1.25)), (-draw(1.1, 4.0), draw(1.1, 4.0)))
     for turned, (first, second) in ((False, shares[1]), (False, shares[6]), *((True, share) for share in shares)):
         n, t_1, t_2 = frame(draw, 3, turned)
         m, limit, mu = draw(0.5, 5.0), draw(0.5, 4.0), draw(0.2, 1.5)
@@ -296,10 +320,11 @@ def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
     for normal, first in plain_pairs():
         if len(normal) == 3:
             second = np.cross(normal, first)
-            for slip in (first, second, np.sqrt(0.5) * (first + second)):
-                close("impulse on a body that slides along an axis or a diagonal, and stops [N s]",
-                      lesson.pyramid_impulse(slip, m, 10.0, 1.0, first, second), -m * slip, ROUND_OFF,
-                      given=f"v_t = {slip} m/s, m = {m} kg, t_1 = {first}, t_2 = {second}")
+            for slip, size in itertools.product((first, second, np.sqrt(0.5) * (first + second)), SIZES):
+                got = lesson.pyramid_impulse(size * slip, m, 10.0 * size, 1.0, first, second)
+                close("impulse on a body that slides along an axis or a diagonal, and stops, over the size [N s]",
+                      np.asarray(got) / size, -m * slip, ROUND_OFF,
+                      given=f"v_t = {size * slip} m/s, m = {m} kg, t_1 = {first}, t_2 = {second}")
     for load, friction in ((0.0, np.inf), (0.0, mu), (limit, 0.0)):
         close("impulse where μ or j_n is 0 [N s]", lesson.pyramid_impulse(v, m, load, friction, t_1, t_2), np.zeros(3),
               0.0, given=f"v_t = {v}, j_n = {load}, μ = {friction}")
@@ -395,11 +420,11 @@ def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
 @exercise("3.7", points=0.25, hint="use μ_s at rest and μ_k in motion, both with the normal force of this slope")
 def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
     dt, steps = draw(0.01, 0.05), 20
-    held, down_held, _, _ = slope(draw, lesson, 1.001, draw(0.1, 0.5))
+    held, down_held, _, _ = slope(draw, lesson, 1.0 + BARELY, draw(0.1, 0.5))
     x, v = run(lesson, lesson.sliding_step, held, np.zeros(3), np.zeros(3), dt, steps)
     close("position of a block that holds [m]", x, np.zeros(3), 0.0, given=f"{held}")
     close("velocity of a block that holds [m/s]", v, np.zeros(3), 0.0, given=f"{held}")
-    loose, other, _, _ = slope(draw, lesson, 0.999, draw(0.1, 0.8))
+    loose, other, _, _ = slope(draw, lesson, 1.0 - BARELY, draw(0.1, 0.8))
     for p, down, v0 in ((held, down_held, draw(0.5, 2.0)), (loose, other, 0.0)):
         press = -(p.gravity @ p.n)
         # v = v₀ + a t at every step, so Σ dt v = v₀ t + ½ a t (t + dt).
@@ -457,7 +482,11 @@ def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(l
         close("velocity of a block that slides along an axis or a diagonal [m/s]", v, (speed - 0.3 * G * dt) * to,
               ROUND_OFF, given=f"v = {speed * to} m/s, {floor}")
     between_the_two, down, tangent, press = slope(draw, lesson, 1.5, 0.5)
-    for slow in (1e-4, 1e-10):
+    for slow in (1e-4, 1e-10, *SIZES[1:2]):
+        afloat = block(lesson, up, 0.8, 0.3, 0.0 * up)
+        v = lesson.sliding_step(pull, 0.0, up, slow * along, dt, afloat)[1]
+        close("velocity of a block without a load, over that before [-]", np.asarray(v) / slow, along, ROUND_OFF,
+              given=f"v = {slow * along} m/s, {afloat}")
         v = lesson.sliding_step(pull, 0.0, np.zeros(3), slow * down, dt, between_the_two)[1]
         close("velocity of a block that creeps down a slope [m/s]", v,
               (slow + 0.5 * tangent * press * dt) * down, ROUND_OFF, given=f"v = {slow} m/s down, {between_the_two}")
@@ -494,7 +523,7 @@ def on_the_line(draw, lesson, mu, amplitude, omega, turned=True):
           hint="a moving block slides along v/|v|; a block at rest slides "
                "along the pull, if the pull exceeds μ_s a_n")
 def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
-    steep, down, _, _ = slope(draw, lesson, 0.99, 0.3)
+    steep, down, _, _ = slope(draw, lesson, 1.0 - BARELY, 0.3)
     still, across = np.zeros(3), np.cross(steep.n, down)
     pull = lesson.driven_acceleration
     close("direction from rest on a steep slope [-]", lesson.slip_direction(pull, 0.0, still, still, steep),
@@ -502,7 +531,7 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     v = draw(0.5, 3.0) * across
     close("direction of a block that crosses it [-]", lesson.slip_direction(pull, 0.0, still, v, steep),
           across, ROUND_OFF, given=f"{steep}, v = {v}")
-    gentle = steep._replace(mu_s=1.001 * np.tan(np.arcsin(steep.gravity @ down / G)))
+    gentle = steep._replace(mu_s=(1.0 + BARELY) * np.tan(np.arcsin(steep.gravity @ down / G)))
     close("direction from rest where it holds [-]: none", lesson.slip_direction(pull, 0.0, still, still, gentle),
           still, 0.0, given=f"{gentle}")
     lifted = gentle._replace(drive=draw(0.1, 0.3) * G * gentle.n)
@@ -519,11 +548,12 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
                                      ("where |a_t| is μ_s a_n: none", 5.0 * along - 10.0 * up, 0.5, 0.0 * up),
                                      ("of a lifted block: along the pull", lifted, 0.9, along),
                                      ("of a lifted block with μ = ∞: along the pull", lifted, np.inf, along)):
-        got = lesson.slip_direction(pull, 0.0, np.zeros(2), np.zeros(2), block(lesson, up, mu, mu, load))
-        close(f"direction from rest {name} [-]", got, expected, 0.0, given=f"a = {load}, n = {up}, μ = {mu}")
+        for a in (size * load for size in SIZES):
+            got = lesson.slip_direction(pull, 0.0, np.zeros(2), np.zeros(2), block(lesson, up, mu, mu, a))
+            close(f"direction from rest {name} [-]", got, expected, 0.0, given=f"a = {a}, n = {up}, μ = {mu}")
         got = lesson.slip_direction(pull, 0.0, 0.0 * up, -2.0 * along, block(lesson, up, mu, mu, load))
         close("direction of a block that moves along an axis [-]", got, -along, 0.0, given=f"a = {load}, μ = {mu}")
-    for slow in (1e-4, 1e-10):
+    for slow in (1e-4, 1e-10, *SIZES[1:2]):
         got = lesson.slip_direction(pull, 0.0, still, -slow * down, gentle)
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
     for n, to in plain_pairs():
@@ -560,6 +590,7 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
         got = lesson.stopping_time(lesson.driven_acceleration, 0.0, np.zeros(2), speed * d, dt, d, p)
         close("time to the stop [s], or the whole step if it does not stop", got,
               dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
+    check_stops_early_in_a_long_step(lesson, draw)
     for n, along in ((p.n, d), frame(draw, 3, turned=False)[:2]):
         for brake, expected in ((0.0, stop), (speed / stop, stop), (speed / (0.3 * stop), 0.3 * stop)):
             for gravity in (0.0 * n, -G * n):
@@ -567,6 +598,22 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
                 got = lesson.stopping_time(lesson.driven_acceleration, 0.0, 0.0 * n, speed * along, stop, along, ice)
                 close("time to the stop without friction [s]: by the pull, or not at all", got, expected, ROUND_OFF,
                       given=f"v = {speed} m/s, {ice}, dt = {stop} s")
+
+
+def check_stops_early_in_a_long_step(lesson, draw):
+    """A creeping block stops early: after many halvings; the end of the last interval is where it no longer moves."""
+    pull, rest = lesson.driven_acceleration, np.zeros(2)
+    for sign, slow in itertools.product((1.0, -1.0), (1.0, 1e-6, 1e-12)):
+        p, d, speed = block(lesson, [0.0, 1.0], 0.9, draw(0.3, 0.9), [0.0, -G]), np.array([sign, 0.0]), draw(0.5, 2.0)
+        stop = slow * speed / (p.mu_k * G)
+        for dt, expected in ((draw(1.0, 2.0), stop), (2.0 * stop, stop), (0.5 * stop, 0.5 * stop)):
+            v, given = slow * speed * d, f"v = {slow * speed * d} m/s, {p}, dt = {dt} s"
+            tau = float(lesson.stopping_time(pull, 0.0, rest, v, dt, d, p))
+            close("time to the stop, or the step, over that which theory gives [-]", tau / expected, 1.0, 1e-4, given)
+            left = lesson.kinetic_friction_step(pull, 0.0, rest, v, tau, d, p)[1] @ d
+            if expected == stop:
+                between("speed along d after a slide over the returned time [m/s]: none but round-off", left, -slow,
+                        1e-14 * slow, given)
 
 
 @exercise("3.9", points=0.25,
@@ -638,6 +685,17 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
                                 level._replace(gravity=level.gravity + s, drive=-s))
     close("time from t = 0 to the slip [s]", got, first, 1e-13, given=f"pull {s}, {level}")
     check_slip_under_a_varying_load(lesson, draw, p, omega, amplitude)
+    check_slips_at_the_end_of_the_wait(lesson, draw, level, holds, slips, 0.5 * (slips + np.pi / omega))
+
+
+def check_slips_at_the_end_of_the_wait(lesson, draw, p, holds, slips, end):
+    """After the returned time the block slips: else the next search would find it at rest, and wait again."""
+    for share in draw(0.1, 0.9, 8):
+        t = holds + share * (slips - holds)
+        got = float(lesson.breakaway_time(tethered_acceleration, t, anchor(p), np.zeros(2), end - t, p))
+        truth("whether the block slips after the returned time: the end of the last interval",
+              np.any(lesson.slip_direction(tethered_acceleration, t + got, anchor(p), np.zeros(2), p)), True,
+              given=f"{p}, t = {t} s, dt = {end - t} s")
 
 
 def check_slip_under_a_varying_load(lesson, draw, p, omega, amplitude):
@@ -684,7 +742,7 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     p, down, tangent, press = slope(draw, lesson, 1.5, 1.2)
     up, begin = -down, draw(-1.0, 1.0, 3)
     brake = (1.2 + 1.0) * tangent * press
-    for long in (draw(1.5, 3.0), 1.1, 1.01, 1.001, 1.0001):
+    for long in (draw(1.5, 3.0), 1.1, 1.01, 1.001, 1.0001, 1.0 + BARELY, 1.0 + 1e-11):
         speed = draw(0.5, 3.0)
         stop = speed / brake
         tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, speed * up, long * stop, p)
@@ -692,13 +750,13 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
         close("displacement until the stop [m]", x - begin, 0.5 * speed * stop * up, ROUND_OFF,
               given=f"{p}, v = {speed} m/s")
         close("velocity after the stop [m/s]: exactly zero", v, np.zeros(3), 0.0)
-    part = draw(0.2, 0.8)
-    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, speed * up, part * stop, p)
-    close("time of a step that ends before the stop [s]", tau, part * stop, 0.0)
-    close("velocity after that step [m/s]", v, (1.0 - part) * speed * up, ROUND_OFF,
-          given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
-    close("displacement in that step [m]", x - begin, (part - 0.5 * part * part) * speed * stop * up, ROUND_OFF,
-          given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
+    for part in (draw(0.2, 0.8), 1.0 - BARELY, 1.0 - 1e-11):
+        tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, speed * up, part * stop, p)
+        given = f"{p}, v = {speed} m/s, dt = {part * stop} s"
+        close("time of a step that ends before the stop [s]", tau, part * stop, 0.0)
+        close("velocity after that step [m/s]", v, (1.0 - part) * speed * up, ROUND_OFF, given)
+        close("displacement in that step [m]", x - begin, (part - 0.5 * part * part) * speed * stop * up, ROUND_OFF,
+              given)
     steep, down, tangent, press = slope(draw, lesson, 0.9, 0.5)
     dt, a = draw(0.1, 0.5), 0.5 * tangent * press                        # the block slips at once and accelerates
     tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, np.zeros(3), dt, steep)
@@ -761,9 +819,10 @@ def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw
     for across, out in plain_pairs():
         for axis in (0.0 * across, across * (len(out) - 2)):
             p = bowl(lesson, draw, axis, len(out))
-            x, p = 0.5 * p.radius * out, p._replace(centre=0.0 * out)
-            close("normal n at a place along a coordinate axis or a diagonal [-]: inward",
-                  lesson.particle_bowl_gap(x, p)[1], -out, ROUND_OFF, given=f"{p}, x = {x} m")
+            p = p._replace(centre=0.0 * out)
+            for x in (0.5 * p.radius * out, 1e-9 * out, 2.0**-100 * out):
+                close("normal n at a place along a coordinate axis or a diagonal, however near the centre [-]: inward",
+                      lesson.particle_bowl_gap(x, p)[1], -out, ROUND_OFF, given=f"{p}, x = {x} m")
 
 
 @exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
@@ -822,11 +881,16 @@ def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, dra
             close("velocity after an impact without friction [m/s]", after,
                   v - (1.0 + bounce) * (v @ axes[0]) * axes[0], ROUND_OFF,
                   given=f"v = {v} m/s, n = {axes[0]}, e = {bounce}")
-        for speed in (draw(0.5, 3.0), 1e-6):
-            head_on = -speed * axes[0]
-            after = head_on + np.asarray(lesson.particle_contact_impulse(head_on, axes[0], m, e, mu)) / m
-            close("velocity after a head-on impact [m/s]", after, -e * head_on, ROUND_OFF,
+        for speed in (draw(0.5, 3.0), 1e-6, *SIZES[1:]):
+            head_on = -speed * np.eye(d)[-1]
+            after = head_on + np.asarray(lesson.particle_contact_impulse(head_on, np.eye(d)[-1], m, e, mu)) / m
+            close("velocity after a head-on impact, over that before [-]", after / speed, e * np.eye(d)[-1], ROUND_OFF,
                   given=f"v = {head_on} m/s, e = {e}")
+        for grazing in (1e-6, BARELY):
+            v = along_surface(draw, axes, 1.0) - grazing * axes[0]
+            after = v + np.asarray(lesson.particle_contact_impulse(v, axes[0], m, e, 0.0)) / m
+            close("normal velocity after an impact that barely grazes the surface [m/s]", after @ axes[0], e * grazing,
+                  ROUND_OFF, given=f"v = {v} m/s, n = {axes[0]}, e = {e}")
 
 
 def above(lesson, draw, mu, e, theta=0.0, d=3, turned=True):
@@ -952,7 +1016,7 @@ def check_just_touching(lesson, step, draw):
     e = draw(0.2, 0.9)
     begin = np.array([float(draw.whole(-3, 3)), 1.0])
     p = lesson.ParticleOnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
-    for y in (-0.5, 0.5):
+    for y in (-0.5, 0.5, -(2.0**-30), 2.0**-30, -(2.0**-100)):
         still = np.array([1.0, y])
         x, v_new = fly(lesson, step, p, still, 0.0 * still, 0.5, 1)
         close("position of a particle at rest, without gravity [m]: not inside", x, [1.0, max(0.0, y)], 0.0,
@@ -999,6 +1063,10 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
             got = lesson.friction_position_correction(size * along, n, 0.1, 0.5)
             close("tangential correction of a displacement along an axis or a diagonal [m]", got, -expected * along,
                   ROUND_OFF, given=f"moved by {size * along} m, n = {n}, depth 0.1 m, μ = 0.5")
+    for size, (n, along), (depth, expected) in itertools.product(SIZES, plain_pairs(), ((4.0, 1.0), (1.0, 0.5))):
+        got = lesson.friction_position_correction(size * along, n, size * depth, 0.5)
+        close("tangential correction over the displacement [-]", np.asarray(got) / size, -expected * along, ROUND_OFF,
+              given=f"moved by {size * along} m, n = {n}, depth {size * depth} m, μ = 0.5")
     straight = lesson.friction_position_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
     close("tangential correction of a displacement along −n [m]: none", straight, np.zeros(2), 0.0)
 
@@ -1031,6 +1099,11 @@ def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
     check_just_touching(lesson, lesson.position_friction_step, draw)
     level = lesson.ParticleOnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
     deep = np.array([0.0, -draw(0.1, 0.5)])
+    for sinks in (1e-6, 2.0**-60):
+        v = np.array([draw(10.0, 20.0), -sinks])
+        x, _ = fly(lesson, lesson.position_friction_step, level, deep, v, 0.1, 1)
+        close("position of a particle inside that slowly goes deeper [m]: friction takes back μ times its depth", x,
+              [0.1 * v[0] + level.mu * (deep[1] - 0.1 * sinks), 0.0], ROUND_OFF, f"x = {deep} m, v = {v} m/s, {level}")
     v = np.array([draw(0.5, 2.0), 0.0])                                  # v · n is exactly 0
     x, v_new = fly(lesson, lesson.position_friction_step, level, deep, v, 0.1, 1)
     given = f"x = {deep} m, v = {v} m/s, {level}"
@@ -1054,9 +1127,11 @@ def test_a_block_slides_as_far_as_the_times_on_both_materials_allow(lesson, draw
             crossing = (v - np.sqrt(v * v - 2.0 * near * g * width)) / (near * g)
             slower = v - near * g * crossing
             expected = width + 0.5 * slower * slower / (far * g)
-        close("way of a block over two materials [m]", lesson.sliding_distance(v, width, near, far, g), expected,
-              ROUND_OFF,
-              given=f"v = {v:.4g} m/s, width = {width:.4g} m, μ = {near:.4g} and {far:.4g}, g = {g:.4g} m/s²")
+        for size in SIZES:
+            way = lesson.sliding_distance(size * v, size**2 * width, near, far, g)
+            close("way of a block over two materials, over the size [m]", way / size**2, expected, ROUND_OFF,
+                  given=f"v = {size * v:.4g} m/s, width = {size**2 * width:.4g} m, μ = {near:.4g} and {far:.4g}, "
+                        f"g = {g:.4g} m/s²")
 
 
 @exercise("3.18", points=1, hint="what holds a block that nothing pulls? And what is the force on it when it slides?")
@@ -1071,13 +1146,13 @@ def test_the_chosen_friction_balances_the_pull_up_to_its_limit_and_is_kinetic_be
 @exercise("3.19", points=1, hint="multiply v_t by a factor from 0 to 1, or each of its components by one of its own; "
                "without a load, j_n = 0, there is no friction")
 def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, draw):
-    m, mu, dt = draw(0.5, 2.0), draw(0.3, 0.6), 0.02
-    j_n = m * G * dt
-    for angle in draw(0.0, 1.0) + np.pi / 3.0 * np.arange(6):
-        v = 3.0 * np.array([np.cos(angle), np.sin(angle)])
+    mu, dt = draw(0.3, 0.6), 0.02
+    for m, angle in itertools.product((draw(5.0, 9.0), draw(0.1, 0.3), draw(0.5, 2.0)), np.pi / 3.0 * np.arange(6)):
+        v, j_n = 3.0 * np.array([np.cos(angle + mu), np.sin(angle + mu)]), m * G * dt
         for _ in range(200):
             v = slowed(lesson, v, m, j_n, mu)
-        close("velocity 4 s after a throw at 3 m/s [m/s]", v, np.zeros(2), ROUND_OFF, given=f"μ = {mu:.4g}")
+        close("velocity 4 s after a throw at 3 m/s [m/s]", v, np.zeros(2), ROUND_OFF,
+              given=f"m = {m:.4g} kg, μ = {mu:.4g}")
     for speed in (1e-3, 1.0, 30.0):
         slowed(lesson, speed * draw(-1.0, 1.0, 2), m, draw(0.0, 2.0) * j_n, mu)
     for v in (*draw(-3.0, 3.0, (4, 2)), *3.0 * np.eye(2), *-3.0 * np.eye(2), np.zeros(2)):

@@ -14,6 +14,7 @@ exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
 # All drawn values are below 10 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
+SHORT = 2.0**-40             # a length far below those beside it; the differences of whole numbers and it are exact
 TINY = 1e-30                 # complex step: its square vanishes beside 1, so a derivative is exact to round-off
 
 
@@ -77,11 +78,12 @@ def visited_in_order(goal, p, dt, soft):
 
 
 def sweeps_of_a_chain(step, lesson, draw, soft):
-    """Compare a step of a chain of three links, several sweeps, with visited_in_order."""
-    for d, sweeps, hard in ((2, draw.whole(2, 4), False), (3, draw.whole(8, 12), False), (3, draw.whole(8, 12), True)):
+    """Compare a step of a chain, several sweeps, with visited_in_order.  Twenty links change for hundreds of sweeps."""
+    for d, sweeps, links, hard in ((2, draw.whole(2, 4), 3, False), (3, draw.whole(8, 12), 3, False),
+                                   (3, draw.whole(8, 12), 3, True), (2, draw.whole(25, 30), 20, True)):
         dt = draw(0.02, 0.1)
-        x, p = chain(lesson, draw, 3, d)
-        alpha, stiffness = draw(0.001, 0.01, 3), draw(0.2, 0.8, 3)
+        x, p = chain(lesson, draw, links, d)
+        alpha, stiffness = draw(0.001, 0.01, links), draw(0.2, 0.8, links)
         p = p._replace(alpha=0.0 * alpha if hard else alpha, stiffness=stiffness, sweeps=sweeps)
         goal = x + dt**2 * np.where(p.inv_mass[:, None] > 0.0, p.gravity, 0.0)
         new, _ = step(lesson.network_gravity, 0.0, x, 0.0 * x, dt, p)
@@ -130,6 +132,10 @@ def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw
             given = f"x_i = {x_j + r} m, x_j = {x_j} m, rest = {rest} m"
             close("constraint C of a link that has a length [m]", C, length - rest, ROUND_OFF, given=given)
             close("gradient of C of a link that has a length [-]", gradient, r / length, ROUND_OFF, given=given)
+            C, gradient = lesson.distance_constraint(x_j + SHORT * r, x_j, rest)
+            given = f"x_i = x_j + {SHORT * r} m, x_j = {x_j} m, rest = {rest} m"
+            close("constraint C of a link with all but no length [m]", C, -rest, ROUND_OFF * 10.0, given=given)
+            close("gradient of C of a link with all but no length [-]", gradient, r / length, ROUND_OFF, given=given)
         for n in (direction(draw, d), *np.eye(d), *-np.eye(d)):
             length, rest = draw(0.5, 3.0), draw(0.5, 3.0)
             for x_j in (draw(-2.0, 2.0, d), draw.sparse(-2.0, 2.0, d), np.zeros(d), 0.0 - length * n):
@@ -255,7 +261,7 @@ def test_free_points_are_predicted_with_and_immovable_ones_without_acceleration(
     for d in (2, 3):
         x, v = draw(-1.0, 1.0, (4, d)), draw(-1.0, 1.0, (4, d))
         t, dt = draw(0.5, 2.0), draw(0.05, 0.5)
-        p = network(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7), 10.0 ** draw(-15.0, -9.0)], [(0, 1)], 1.0, d)
+        p = network(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7), 10.0 ** draw(-300.0, -9.0)], [(0, 1)], 1.0, d)
         free, still = np.array([[1.0], [0.0], [1.0], [1.0]]), np.zeros((4, d))
         cases = [(t, *draw.sparse(-1.0, 1.0, (2, 4, d))), (0.0, x, v), (0.0, still, still), (t, still, v)]
         cases += [(t, x, still), (t, x, v)]
@@ -580,6 +586,11 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
         small = lesson.distance_sweep(size * x, p._replace(rest=size * p.rest))
         close("positions of a tiny network, over its size [-]", np.asarray(small) / size, expected, ROUND_OFF * 10.0,
               given=f"size {size} m")
+    for r in never_zero(draw, 3):
+        squeezed, link = np.stack((SHORT * r, 0.0 * r)), network(lesson, np.ones(2), [(0, 1)], rest[0], 3)
+        apart = 0.5 * rest[0] * r / np.linalg.norm(r)
+        close("ends of a link with all but no length after a visit [m]", lesson.distance_sweep(squeezed, link),
+              np.stack((apart, -apart)), ROUND_OFF * 10.0, given=f"x = {squeezed.tolist()} m, rest = {rest[0]} m")
     still = p._replace(rest=lengths(x, p))
     new = lesson.distance_sweep(x, still)
     close("positions where every link has its rest length [m]", new, x, ROUND_OFF, given=f"x = {x.tolist()} m")
@@ -591,7 +602,8 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
 @exercise("8.7", points=1, hint="predict, then network.sweeps sweeps, then the velocity from the displacement")
 def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
     for sweeps, s in ((1, draw(0.2, 0.8)), (draw.whole(2, 5), draw(0.2, 0.8)), (draw.whole(8, 12), draw(0.2, 0.8)),
-                      (draw.whole(60, 80), draw(0.2, 0.8)), (1, 1.0), (draw.whole(2, 5), 1.0)):
+                      (draw.whole(60, 80), draw(0.2, 0.8)), (draw.whole(130, 150), draw(0.01, 0.02)), (1, 1.0),
+                      (draw.whole(2, 5), 1.0)):
         dt, length = draw(0.01, 0.1), draw(0.5, 2.0)
         S = (1.0 - s) ** sweeps
         sag = G * dt * dt * S / (1.0 - S)
@@ -703,7 +715,7 @@ def check_half_turns(lesson, draw):
     halves = numbers("C of a flat sheet with a wanted angle of π, or −π [rad]",
                      [lesson.fold_constraint(sheet, turn)[0] for turn in (np.pi, -np.pi)], (2,))
     close("size of C of a flat sheet with a wanted angle of π, or −π [rad]", np.abs(halves), [np.pi, np.pi], ROUND_OFF)
-    for past in (draw(1e-6, 1e-3), -draw(1e-6, 1e-3)):
+    for past in (draw(1e-6, 1e-3), -draw(1e-6, 1e-3), 1e-11, -1e-11):
         wanted = np.pi + past
         close("C of a flat sheet with a wanted angle near π [rad]", lesson.fold_constraint(sheet, wanted)[0],
               -wanted + 2.0 * np.pi * (past > 0.0), ROUND_OFF * 10.0, given=f"wanted {wanted} rad")
@@ -800,6 +812,9 @@ def test_the_gap_of_a_ball_is_the_distance_to_its_surface(lesson, draw):
             given = f"{exact}, x − centre {r} m"
             close("gap of a ball [m]", phi, np.linalg.norm(r) - ball.radius, ROUND_OFF, given=given)
             close("normal of a ball [-]", normal, r / np.linalg.norm(r), ROUND_OFF, given=given)
+            close("normal of a ball, very near its centre [-]",
+                  lesson.ball_gap(exact.centre + SHORT * r, exact)[1], r / np.linalg.norm(r), ROUND_OFF,
+                  given=f"{exact}, x − centre {SHORT * r} m")
         phi, normal = lesson.ball_gap(ball.centre, ball)
         close("gap at the centre [m]", phi, -ball.radius, ROUND_OFF)
         close("normal at the centre [-]", normal, np.zeros(d), 0.0)
@@ -887,6 +902,13 @@ def check_slopes(lesson, draw):
             close("a point below and one above a slope through the origin [m]",
                   lesson.keep_outside(lesson.floor_gap, np.stack((-depth * up, depth * up)), np.ones(2), slope),
                   np.stack((0.0 * up, depth * up)), ROUND_OFF, given=f"{depth} m below and above {slope}")
+        for e in np.eye(d):                                              # all differences are exact
+            floor = lesson.Obstacle(np.zeros(d), 0.0, np.zeros(d), e)
+            place = (1.0 - e) * whole_place(draw, d)
+            x = place + np.outer((-1e-9, -SHORT, SHORT), e)
+            close("heights of points that are barely below a floor, or barely above, over 1e-12 m [-]",
+                  np.asarray(lesson.keep_outside(lesson.floor_gap, x, np.ones(3), floor)) @ e / SHORT,
+                  [0.0, 0.0, 1.0], ROUND_OFF, given=f"x = {x.tolist()} m, {floor}")
 
 
 @exercise("8.11", points=0.5,
@@ -897,6 +919,7 @@ def test_every_point_goes_to_the_nearest_point_outside_however_many_how_deep_and
         floor = lesson.Obstacle(np.zeros(d), 0.0, place, n)
         x = place + size * draw(-2.0, 2.0, (12, d))
         w = 10.0 ** draw(-12.0, 3.0, 12)
+        w[draw.whole(0, 11)] = 1e-300
         w[draw.whole(0, 11)] = 0.0
         heights = (x - place) @ n
         new = np.asarray(lesson.keep_outside(lesson.floor_gap, x, w, floor), dtype=float)
@@ -915,7 +938,8 @@ def test_every_point_goes_to_the_nearest_point_outside_however_many_how_deep_and
 def test_after_a_visit_a_compliant_constraint_obeys_hookes_law(lesson, draw):
     for alpha, side, other, heavy in ((0.0, 1, 1, 1.0), (0.0, -1, 1, 1.0), (draw(0.001, 0.1), 1, -1, 1.0),
                                       (draw(0.001, 0.1), -1, -1, 1.0), (draw(0.001, 0.1), 0, 1, 1.0),
-                                      (1e-20 * draw(0.001, 0.1), 1, -1, 1e20)):
+                                      (1e-20 * draw(0.001, 0.1), 1, -1, 1e20),
+                                      (1e-100 * draw(0.001, 0.1), 1, -1, 1e100)):
         C, Lam = side * draw(0.1, 1.0), heavy * other * draw(0.1, 1.0)
         weight, dt = draw(0.2, 2.0) / heavy, draw(0.05, 0.5)
         change = lesson.compliant_multiplier(C, Lam, weight, alpha / dt**2)
@@ -931,7 +955,7 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
     change = lesson.compliant_multiplier(C, 0.0, 1.0, alpha / 0.1**2)
     close("C + α λ after an ordinary visit [m]", C + change + alpha * change / 0.1**2, 0.0, 1e-10,
           given=f"C = {C} m, α = {alpha} m/N")
-    for alpha in (-draw(0.001, 0.1), -1e-20, np.nan):
+    for alpha in (-draw(0.001, 0.1), -1e-20, -1e-300, np.nan):
         raises("an invalid compliance", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha)
     for alpha in (0.0, draw(0.001, 0.1)):
         raises("a constraint without movable mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha)
@@ -946,7 +970,8 @@ def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(l
              for y in never_zero(draw, d)]
     for d, alpha, rest, *x in ((2, draw(0.001, 0.1), draw(0.5, 1.0)), (3, draw(0.001, 0.1), draw(8.0, 9.0)),
                                (2, 0.0, draw(0.5, 1.0)), (3, 0.0, draw(8.0, 9.0)),   # α = 0 pulls and pushes, too
-                               (2, draw(0.001, 0.1), None), *axes):      # at its rest length its old Λ acts alone
+                               (2, 1e-8 * draw(0.1, 1.0), draw(0.5, 1.0)), (3, 1e3 * draw(0.1, 1.0), draw(0.5, 1.0)),
+               (2, draw(0.001, 0.1), None), *axes):      # at its rest length its old Λ acts alone
         x = x[0] if x else np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
         rest = np.linalg.norm(x[0] - x[1]) if rest is None else rest
         w = draw(0.3, 2.0, 2)
@@ -1062,7 +1087,8 @@ def test_the_generalised_inverse_mass_is_the_response_to_a_unit_impulse(lesson, 
     """An impulse n at r gives v = n/m and ω = I⁻¹(r × n), so the point moves along n with n·(v + ω × r)."""
     q, R, mass, I_body = body(draw)
     cases = [(q, R, r, direction(draw, 3), m, I_body) for r, m in (
-        (draw(-1.0, 1.0, 3), mass), (np.zeros(3), mass), (draw(-1.0, 1.0, 3), 0.1 * mass),
+        (draw(-1.0, 1.0, 3), mass), (np.zeros(3), mass), (1e-4 * direction(draw, 3), mass),
+        (draw(-1.0, 1.0, 3), 0.1 * mass),
         (draw(-1.0, 1.0, 3), 10.0 * mass))]
     for at in ((q, R), (np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3))):
         for moments in (I_body, I_body[[0, 0, 1]], I_body[[0, 0, 0]]):   # a top, and a ball
@@ -1100,7 +1126,7 @@ def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
         close("centre of mass after a central push [m]", new, x + push / m, ROUND_OFF * 10.0,
               given=f"r = {arm} m, p = {push} kg m, m = {m} kg")
         close("orientation after a central push [-]", turned, q, ROUND_OFF, given=f"r = {arm} m, p = {push} kg m")
-    for share in (1.0, 1e-7):
+    for share in (1.0, 1e-7, 1e-10):
         check_push(lesson, q, R, x, r, share * p, m, I_body)
     axes = np.roll(np.eye(3), draw.whole(0, 2), axis=0)
     for moments in (I_body, I_body[[0, 0, 1]], I_body[[0, 0, 0]]):       # also of a top and of a ball
@@ -1134,9 +1160,9 @@ def test_a_turn_has_the_rate_that_leads_from_one_orientation_to_the_other(lesson
     for still in (q, np.array([1.0, 0.0, 0.0, 0.0])):
         close("angular velocity of a body that does not turn [rad/s]", lesson.turning_rate(still, still.copy(), dt),
               np.zeros(3), ROUND_OFF, given=f"q = {still}, dt = {dt} s")
-    # In the first and the fourth the scalar part is 1 or −1: only its sign matters.  The others begin at
+    # In the first and the last two the scalar part is 1 or −1: only its sign matters.  The others begin at
     # (1, 0, 0, 0).
-    angles = 1e-4 * draw(0.5, 1.0), draw(0.1, 2.0), draw(2.9, 3.1), 1e-7 * draw(1.0, 5.0)
+    angles = 1e-4 * draw(0.5, 1.0), draw(0.1, 2.0), draw(2.9, 3.1), 1e-7 * draw(1.0, 5.0), 1e-10 * draw(1.0, 5.0)
     cases = [(q, axis, angle) for angle in angles]
     cases += [(still, about, draw(0.1, 3.0)) for about in (axis, *np.eye(3))]
     cases += [(still, y / np.linalg.norm(y), draw(0.1, 3.0)) for y in never_zero(draw, 3)]
@@ -1192,19 +1218,20 @@ def volume(x, faces, o):
           hint="keep every sign: an inside-out surface has a negative volume and the opposite gradient")
 def test_lumps_small_and_large_and_inside_out_have_the_volume_of_their_hull_and_its_slope(lesson, draw):
     """Brute force: the volume of the convex hull, and a complex step of tetrahedra from the mean of the corners."""
-    for size in (1e-6, 1.0, 1e3):
-        for far in (0.0, 3.0):
-            x, faces = solid(draw(-0.5, 0.5, (10, 3)) + far * draw(-1.0, 1.0, 3))
-            middle, moves = x.mean(axis=0), np.eye(x.size).reshape(-1, *x.shape)
-            slope = np.array([volume(x + 1j * TINY * move, faces, middle).imag / TINY
-                              for move in moves]).reshape(x.shape)
-            for name, sign, turned in (("a lump", 1.0, faces),
-                                       ("a lump inside-out", -1.0, np.ascontiguousarray(faces[:, ::-1]))):
-                V, gradient = lesson.volume_gradient(size * x, turned)
-                given = f"corners {(size * x).tolist()} m, triangles {turned.tolist()}"
-                close(f"volume of {name}, over its size [-]", V / size**3, sign * ConvexHull(x).volume, 1e-11, given)
-                close(f"gradient of the volume of {name}, over its size [-]", np.asarray(gradient) / size**2,
-                      sign * slope, 1e-11, given)
+    lumps = [(size, draw(-0.5, 0.5, (10, 3)) + far * draw(-1.0, 1.0, 3)) for size in (1e-6, 1.0, 1e3)
+             for far in (0.0, 3.0)]
+    lumps.append((1.0, np.array([0.5 * direction(draw, 3) for _ in range(80)])))         # like a ball: 156 faces
+    for size, points in lumps:
+        x, faces = solid(points)
+        middle, moves = x.mean(axis=0), np.eye(x.size).reshape(-1, *x.shape)
+        slope = np.array([volume(x + 1j * TINY * move, faces, middle).imag / TINY for move in moves]).reshape(x.shape)
+        for name, sign, turned in (("a lump", 1.0, faces),
+                                   ("a lump inside-out", -1.0, np.ascontiguousarray(faces[:, ::-1]))):
+            V, gradient = lesson.volume_gradient(size * x, turned)
+            given = f"corners {(size * x).tolist()} m, triangles {turned.tolist()}"
+            close(f"volume of {name}, over its size [-]", V / size**3, sign * ConvexHull(x).volume, 1e-11, given)
+            close(f"gradient of the volume of {name}, over its size [-]", np.asarray(gradient) / size**2,
+                  sign * slope, 1e-11, given)
 
 
 # ---------------------------------------------------------------------------------------------- why?

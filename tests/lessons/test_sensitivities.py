@@ -943,6 +943,10 @@ def check_halvings(lesson, draw):
             close("inputs that hit, in halved steps", np.asarray(s) * 2.0**halvings, -np.ones(k), ROUND_OFF,
                   given=given)
             close("misses", misses, [np.linalg.norm(first), 0.0], ROUND_OFF, given=given)
+            barely, size = p._replace(near=(1.0 - 1e-9) * first), np.linalg.norm(first)
+            s, _ = lesson.aim(narrow, np.zeros(k), (1.0 - 5e-10) * size, 1, barely)
+            close("inputs that miss by a billionth less, in halved steps", np.asarray(s) * 2.0**halvings, -np.ones(k),
+                  ROUND_OFF, given=given)
         for reach in (draw(0.6, 0.9) * 0.5**40, 0.0):
             raises("a step that has to be halved more than 40 times", Diverged, lesson.aim, narrow, np.zeros(k), 1e-3,
                    9, Narrow(first, 0.0 * first, beyond * first, reach), naming=[np.linalg.norm(first)],

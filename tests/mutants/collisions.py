@@ -35,6 +35,8 @@ edit("6.1", "subtracts d", "p @ plane.n + plane.d", "plane.d - p @ plane.n")
 edit("6.1", "reverses the distance: positive on the wrong side",
      "return p @ plane.n + plane.d", "return -(p @ plane.n + plane.d)")
 edit("6.1", "forgets d of a plane that lies along an axis", "plane.d", "(plane.d if np.all(plane.n) else 0.0)")
+edit("6.1", "returns zero for distances that are small beside d", "return p",
+     "return 0.0 if abs(p @ plane.n + plane.d) < 1e-9 * abs(plane.d) else p")
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
@@ -93,6 +95,7 @@ edit("6.2", "takes a ball for at rest where the components of its move add up to
      "after < 0.0", "after < 0.0 or np.sum(x_1 - x_0) == 0.0")
 edit("6.2", "takes a ball for at rest where the first component of its move is 0",
      "after < 0.0", "after < 0.0 or x_1[0] == x_0[0]")
+edit("6.2", "finds an impact of a ball that nearly reaches the plane", "after < 0.0", "after < -1e-3 * before")
 
 
 
@@ -210,6 +213,7 @@ edit("6.4", "takes a ball for at rest where the components of its move add up to
      "B >= 0.0 or", "np.sum(w) == 0.0 or B >= 0.0 or")
 edit("6.4", "takes a ball for at rest where it does not move along y", "B >= 0.0 or", "w[0] == 0.0 or B >= 0.0 or")
 edit("6.4", "takes a ball for at rest where it does not move along z", "B >= 0.0 or", "w[1] == 0.0 or B >= 0.0 or")
+edit("6.4", "finds an impact of a ball that barely misses", "or D < 0.0", "or D < -1e-6 * A * rho * rho")
 
 
 
@@ -374,6 +378,12 @@ edit("6.7", "refuses a triangle whose normal has components that add up to 0",
      "if not np.sqrt", "if np.sum(N) == 0.0 or not np.sqrt")
 edit("6.7", "refuses a triangle whose normal has no first component", "if not np.sqrt", "if N[0] == 0.0 or not np.sqrt")
 edit("6.7", "refuses a triangle whose normal has no last component", "if not np.sqrt", "if N[2] == 0.0 or not np.sqrt")
+edit("6.7", "accepts a triangle that is exactly as flat as DEGENERATE_AREA",
+     "if not np.sqrt(dot(N, N)) > DEGENERATE_AREA", "if np.sqrt(dot(N, N)) < DEGENERATE_AREA")
+edit("6.7", "refuses a triangle that is barely less flat than DEGENERATE_AREA", "DEGENERATE_AREA * longest",
+     "1.1 * DEGENERATE_AREA * longest")
+edit("6.7", "takes a point for inside that is barely beyond the first edge", "if dot(cross(b - a, q - a), N) >= 0.0",
+     "if dot(cross(b - a, q - a), N) >= -1e-6 * dot(N, N)")
 
 
 
@@ -712,6 +722,9 @@ edit("6.13", "drops the ends of a segment that are on the plane", "s_i <= 0.0", 
 edit("6.13", "skips an edge whose components add up to 0", "s_i * s_j < 0.0", "s_i * s_j < 0.0 != np.sum(y[j] - y[i])")
 edit("6.13", "skips an edge without a first component", "s_i * s_j < 0.0", "s_i * s_j < 0.0 != y[j, 0] - y[i, 0]")
 edit("6.13", "puts the crossing of a segment behind its second corner", "(k > 2 or i == 0)", "(k != 2 or i == 1)")
+edit("6.13", "keeps corners that are outside by a billionth of d", "s_i <= 0.0", "s_i <= 1e-9 * abs(d)")
+edit("6.13", "adds no crossing where one end is very near to the plane", "s_i * s_j < 0.0",
+     "s_i * s_j < -1e-12 * (s_i**2 + s_j**2)")
 
 
 
@@ -774,6 +787,8 @@ edit("6.14", "takes the faces alone where a is not rotated",
      "range(15)", "range(6 if np.all(a.R == np.eye(3)) else 15)")
 edit("6.14", "skips an axis whose components add up to 0", "dot(axis, axis) > 0.0", "np.sum(axis) != 0.0")
 edit("6.14", "skips an axis without a first component", "dot(axis, axis) > 0.0", "axis[0] != 0.0")
+edit("6.14", "returns a normal from a to b where a is barely beside b along it", "dot(best, r) >= 0.0",
+     "dot(best, r) >= -1e-2 * np.sqrt(dot(r, r))")
 edit("6.14", "skips an axis without a last component", "dot(axis, axis) > 0.0", "axis[2] != 0.0")
 
 
@@ -889,6 +904,9 @@ edit("6.16", "gives no field where the offset has no last component", "g >= reac
 @right("6.16", "as a list")
 def repulsion(x, centre, radius, reach, k):
     return list(worked.repulsion(x, centre, radius, reach, k))
+edit("6.16", "refuses gaps below a billionth of the distance", "not g > 0.0", "not g > 1e-9 * distance")
+edit("6.16", "accepts a position inside an obstacle without a field", "not g > 0.0", "k > 0.0 and not g > 0.0")
+edit("6.16", "ends its field a thousandth before the reach", "g >= reach", "g >= 0.999 * reach")
 
 
 
@@ -959,6 +977,8 @@ edit("6.17", "treats v as zero where its components add up to 0", "speed == 0.0"
 edit("6.17", "treats v as zero where its second component is zero", "speed == 0.0", "v[1] == 0.0")
 edit("6.17", "treats an offset as head-on where its components add up to 0", "offset > 0.0", "np.sum(y) != 0.0")
 edit("6.17", "treats an offset as head-on where its first component is zero", "offset > 0.0", "y[0] != 0.0")
+edit("6.17", "does not steer in the last 0.1 µs", "tau <= 0.0", "tau <= 1e-7")
+edit("6.17", "does not steer where it would barely touch", "offset >= radius", "offset >= 0.999999 * radius")
 
 
 

@@ -44,6 +44,9 @@ HOLDS_WHAT_LIFTS = edit("3.1", "returns the size of the normal part, whatever it
                         "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)")
 edit("3.1", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
 edit("3.1", "leaves out a force straight into the support", "-(F @ n))", "-(F @ n)) * np.any(tangential(F, n))")
+edit("3.1", "takes a load below 10 nN for none", "return np.maximum",
+     "return 0.0 if np.isclose(F @ n, 0.0) else np.maximum")
+edit("3.1", "takes a load of at most 100 N", "np.maximum(0.0, -(F @ n))", "np.clip(-(F @ n), 0.0, 100.0)")
 
 
 # 3.2 ------------------------------------------------------------------------------------------------------------
@@ -87,6 +90,10 @@ for words, test in partial_tests("F_t"):
     edit("3.2", f"takes a pull for none if {words} is 0", "return -", f"return 0.0 * F_t if {test} == 0.0 else -")
     edit("3.2", f"does not limit the friction against a pull if {words} is 0", "size <= limit",
          f"size <= limit or {test} == 0.0")
+edit("3.2", "takes a pull below 10 nN for none", "return -F_t", "return 0.0 * F_t if np.allclose(F_t, 0.0) else -F_t")
+edit("3.2", "holds a pull that exceeds the limit by a thousandth", "size <= limit", "size <= 1.001 * limit")
+edit("3.2", "holds a pull that is close to the limit", "size <= limit", "size <= limit or np.isclose(size, limit)")
+edit("3.2", "holds a pull that exceeds the limit by a micronewton", "size <= limit", "size <= limit + 1e-6")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -121,6 +128,9 @@ edit("3.3", "divides by the speed of the whole motion, not by that along the sur
 edit("3.3", "divides by zero where the whole motion is along n", "speed > 0.0", "np.any(v)")
 for words, test in partial_tests("v_t"):
     edit("3.3", f"takes a slip for none if {words} is 0", "speed > 0.0", f"{test} != 0.0")
+edit("3.3", "treats a speed of the size of round-off as rest", "speed > 0.0", "speed > 1e-15")
+edit("3.3", "lets the friction grow from zero with the speed, if only up to 1e-15 m/s", "-limit / speed",
+     "-limit * np.tanh(1e15 * speed) / speed")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -161,6 +171,11 @@ edit("3.4", "compares the angle itself with μ",
      "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))", "theta <= cone_radius(mu_s, 1.0)")
 edit("3.4", "takes the static coefficient for a block that slides", "cone_radius(mu_k", "cone_radius(mu_s")
 edit("3.4", "slides exactly at the limit of static friction", "<= cone_radius(mu_s", "< cone_radius(mu_s")
+edit("3.4", "holds on a slope that is hardly too steep", "<= cone_radius(mu_s, np.cos(theta))",
+     "<= cone_radius(mu_s, np.cos(theta)) + 1e-9")
+edit("3.4", "holds on a slope that is too steep by a ten-millionth", "<= cone_radius(mu_s, np.cos(theta))",
+     "<= (1.0 + 1e-7) * cone_radius(mu_s, np.cos(theta))")
+edit("3.4", "holds on ice, if it is nearly level", "np.sin(theta) <=", "theta < 1e-3 or np.sin(theta) <=")
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
@@ -200,6 +215,12 @@ for words, test in partial_tests("v_t"):
 @right("3.5", "as a list")
 def friction_impulse(v_t, m, j_n, mu):
     return worked.friction_impulse(v_t, m, j_n, mu).tolist()
+edit("3.5", "treats a body slower than 1 nm/s as at rest", "return -m", "return 0.0 * v_t if speed < 1e-9 else -m")
+edit("3.5", "takes a load below 1 µN s for none", "cone_radius(mu, j_n)", "cone_radius(mu, j_n) * (j_n > 1e-6)")
+edit("3.5", "stops a body for which the cone is too narrow by 1 nN s", "m * speed <= limit",
+     "m * speed <= limit + 1e-9")
+edit("3.5", "stops a body for which the cone is nearly wide enough", "m * speed <= limit",
+     "m * speed <= limit or np.isclose(m * speed, limit)")
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
@@ -250,6 +271,11 @@ edit("3.6", "leaves out a body that slides along one of the tangents", "return -
 for words, test in partial_tests("v_t"):
     edit("3.6", f"takes a slip for none if {words} is 0", "return -first",
          f"return 0.0 * v_t if {test} == 0.0 else -first")
+edit("3.6", "stops whatever is in the circle around the square", "limit = cone_radius(mu, j_n)",
+     "limit = cone_radius(mu, j_n); first, second = m * (v_t @ t_1), m * (v_t @ t_2)\n"
+     "    if np.hypot(first, second) <= np.sqrt(2.0) * limit: return -m * v_t")
+edit("3.6", "treats a body slower than 10 nm/s as at rest", "return -first",
+     "return 0.0 * v_t if np.allclose(v_t, 0.0) else -first")
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
@@ -314,6 +340,11 @@ edit("3.7", "computes the acceleration of a block at rest", "acceleration(t, x, 
 edit("3.7", "computes the acceleration at the origin", "acceleration(t, x, v, p)", "acceleration(t, 0.0 * x, v, p)")
 edit("3.7", "uses a law of the lesson in place of the one that is passed in", "acceleration(t, x, v, p)",
      "driven_acceleration(t, x, v, p)")
+edit("3.7", "treats a block slower than 1 pm/s as at rest", "not np.any(v)", "np.sqrt(v @ v) < 1e-12")
+edit("3.7", "holds a block whose pull exceeds the limit by a millionth", "<= cone_radius(p.mu_s, a_n)",
+     "<= 1.000001 * cone_radius(p.mu_s, a_n)")
+edit("3.7", "stops a block that has become slower than 10 nm/s", "v = v + friction_impulse(v, 1.0, dt * a_n, p.mu_k)",
+     "v = v + friction_impulse(v, 1.0, dt * a_n, p.mu_k); v = v * (not np.allclose(v, 0.0))")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -361,6 +392,9 @@ for words, test in partial_tests("a_t"):
     edit("3.8", f"takes a pull for none if {words} is 0", "a_t / pull if", f"a_t / pull if {test} != 0.0 and")
 edit("3.8", "uses a law of the lesson in place of the one that is passed in", "acceleration(t, x, v, p)",
      "driven_acceleration(t, x, v, p)")
+edit("3.8", "treats a block slower than 1 pm/s as at rest", "speed != 0.0", "speed > 1e-12")
+edit("3.8", "holds a block whose pull exceeds the limit by a millionth", "pull > cone", "pull > 1.000001 * cone")
+edit("3.8", "takes a pull below 1 nm/s² for none", "pull > cone", "pull > 1e-9 and pull > cone")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -407,6 +441,12 @@ for story, old, new in (("takes the place of the block to be the origin", "t, x"
     edit("3.9", f"{story}, while it halves", PART, PART.replace(old, new))
 edit("3.9", "uses a law of the lesson in place of the one that is passed in, for the whole step", WHOLE,
      f"driven_{WHOLE}")
+edit("3.9", "halves the interval 45 times", "range(HALVINGS)", "range(45)")
+edit("3.9", "returns the beginning of the last interval, where the block still moves", "return stopped",
+     "return moving")
+edit("3.9", "stops halving at 1e-14 s", "middle = 0.5 *", "if stopped - moving < 1e-14: break\n        middle = 0.5 *")
+edit("3.9", "takes a block for going on that hardly moves back", "acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
+     "acceleration, t, x, v, dt, d, p)[1] @ d > -1e-6")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -452,6 +492,7 @@ for words, test in partial_tests("slip_direction(acceleration, t + dt, x, v, p)"
          "not np.any(slip_direction(acceleration, t + dt, x, v, p))", f"{test} == 0.0")
 edit("3.10", "uses a law of the lesson in place of the one that is passed in", "acceleration, t + middle",
      "driven_acceleration, t + middle")
+edit("3.10", "returns the beginning of the last interval, where the block still holds", "return slips", "return holds")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -500,6 +541,8 @@ edit("3.11", "slides with the deceleration of the start", "kinetic_friction_step
 edit("3.11", "slides along the motion, with friction of the static coefficient",
      "kinetic_friction_step(acceleration, t, x, v, tau, d, p)",
      "kinetic_friction_step(acceleration, t, x, v, tau, d, p._replace(mu_k=p.mu_s))")
+edit("3.11", "lets a block go on that stops barely before the end of the step", "tau == dt", "np.isclose(tau, dt)")
+edit("3.11", "stops a block that has become slower than 1 nm/s", "v if tau == dt", "v if np.sqrt(v @ v) > 1e-9")
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
@@ -536,6 +579,7 @@ edit("3.12", "divides the normal of a trough by the distance from its centre, no
 edit("3.12", "divides by zero on the axis of a trough", "distance > 0.0", "np.any(x != p.centre)")
 for words, test in partial_tests("r"):
     edit("3.12", f"takes a place for the centre if {words} is 0, seen from there", "distance > 0.0", f"{test} != 0.0")
+edit("3.12", "treats round-off around the centre as the centre", "distance > 0.0", "distance > 1e-15")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
@@ -579,6 +623,9 @@ edit("3.13", "stops a particle that does not bounce", "return j_n * n", "return 
 for words, test in partial_tests("tangential(v, n)"):
     edit("3.13", f"omits the friction of a slip if {words} is 0", "+ friction_impulse(tangential(v, n)",
          f"+ ({test} != 0.0) * friction_impulse(tangential(v, n)")
+edit("3.13", "takes an approach slower than 10 nm/s for none", "v_n >= 0.0", "v_n >= 0.0 or np.isclose(v_n, 0.0)")
+edit("3.13", "takes a particle that barely grazes for leaving", "v_n >= 0.0", "v_n >= -1e-6 * np.sqrt(v @ v)")
+edit("3.13", "does not bounce below 0.1 µm/s", "(1.0 + e)", "(1.0 + e * (v_n < -1e-7))")
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
@@ -653,6 +700,9 @@ for number in ("3.14", "3.16"):
          "particle_contact_impulse(v, p.n,")
 edit("3.16", "takes the normal of the plane for the displacement", "friction_position_correction(moved, n",
      "friction_position_correction(moved, p.n")
+for number in ("3.14", "3.16"):
+    edit(number, "finds no contact where the particle is less than 1 nm inside", "phi < 0.0", "phi < -1e-9")
+edit("3.16", "does not correct the displacement of a particle that slowly goes deeper", "v @ n < 0.0", "v @ n < -1e-6")
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
@@ -682,6 +732,9 @@ edit("3.15", "takes back everything where there is no depth", "return friction_i
 for words, test in partial_tests("tangential(moved, n)"):
     edit("3.15", f"corrects no displacement if {words} is 0", "return friction_impulse",
          f"return ({test} != 0.0) * friction_impulse")
+edit("3.15", "takes a depth below 0.1 nm for none", "1.0, depth", "1.0, depth * (depth > 1e-10)")
+edit("3.15", "takes a displacement below 0.1 nm for none", "tangential(moved, n)",
+     "tangential(moved, n) * (moved @ moved > 1e-20)")
 
 
 # 3.17 -----------------------------------------------------------------------------------------------------------
@@ -710,6 +763,7 @@ edit("3.17", "slides over the whole strip from rest", "return 0.5 * v * v / (mu_
 edit("3.17", "takes the gravity of the earth on the strip", "mu_near * g * width", "mu_near * 9.81 * width")
 edit("3.17", "takes the gravity of the earth behind the strip", "mu_far * g", "mu_far * 9.81")
 edit("3.17", "takes the gravity of the earth for a block that stops on the strip", "(mu_near * g)", "(mu_near * 9.81)")
+edit("3.17", "lets a block stop on the strip that is barely fast enough to cross it", "left <= 0.0", "left <= 1e-9")
 
 
 # 3.18 -----------------------------------------------------------------------------------------------------------
@@ -759,3 +813,6 @@ edit("3.19", "takes the load of a block of 1 kg, whatever the load is", FIRST,
      "j_n = 0.2; along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",
      "[np.sign(v_t[1]) * across, np.sign(v_t[0]) * along]")
+edit("3.19", "forgets the mass along the blade: a light block goes back faster, a heavy one never quite stops",
+     "m * abs(v_t[0])", "abs(v_t[0])")
+edit("3.19", "forgets the mass across the blade", "m * abs(v_t[1])", "abs(v_t[1])")

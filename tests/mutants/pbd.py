@@ -56,6 +56,8 @@ edit("8.1", "uses half of the squares of the lengths, and their gradient", "retu
      "return 0.5 * (length * length - rest * rest), r")
 edit("8.1", "uses the squares of the lengths, and their gradient", "return length - rest, r / length",
      "return length * length - rest * rest, 2.0 * r")
+edit("8.1", "refuses a link that is very short beside its rest length", "length == 0.0", "length < 1e-12 * rest")
+edit("8.1", "refuses a link whose ends are close to each other", "length == 0.0", "np.allclose(x_i, x_j, 1e-9, 0.0)")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
@@ -154,6 +156,7 @@ edit("8.3", "does not accelerate points at rest", "free = network.inv_mass > 0.0
      "free = (network.inv_mass > 0.0) * v.any(axis=1)")
 edit("8.3", "returns a point that is alone as a vector", "return x + dt * v + dt * dt * free[:, None] * a",
      "new = x + dt * v + dt * dt * free[:, None] * a\n    return new if len(new) > 1 else new[0]")
+edit("8.3", "treats very heavy points as immovable", "network.inv_mass > 0.0", "network.inv_mass > 1e-16")
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
@@ -353,6 +356,8 @@ edit("8.6", "multiplies by the vector, not by the unit vector",
 edit("8.6", "makes the correction half as large", "share = network", "share = 0.5 * network")
 edit("8.6", "compares the lengths by their ratio the other way round",
      "network.rest[s] / length - 1.0", "length / network.rest[s] - 1.0")
+edit("8.6", "refuses a link that is very short beside its rest length", "length == 0.0",
+     "length < 1e-9 * network.rest[s]")
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
@@ -397,6 +402,7 @@ edit("8.7", "adds the change to the old velocity", "(new - x) / dt", "v + (new -
 edit("8.7", "leaves points without gravity where they are", "new = predict(acceleration, t, x, v, dt, network)",
      "if not network.gravity.any():\n        return x, v\n    new = predict(acceleration, t, x, v, dt, network)")
 edit("8.7", "takes the mean of the old and the new velocity", "(new - x) / dt", "0.5 * (v + (new - x) / dt)")
+edit("8.7", "makes at most a hundred sweeps", "range(network.sweeps)", "range(min(network.sweeps, 100))")
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
@@ -533,6 +539,9 @@ edit("8.9", "reverses the second normal", "cross(b - d, a - d)", "cross(a - d, b
 edit("8.9", "measures the shares of an end from the other end",
      "-dot(b - c, e) / squared * wing_c - dot(b - d, e)", "-dot(a - c, e) / squared * wing_c - dot(b - d, e)")
 edit("8.9", "forgets the rest angle", "theta - fold", "theta")
+for side in ("-", "+"):
+    edit("8.9", "takes a little less than half a turn for a little more, or the other way round",
+         "np.ceil((turn - np.pi) / (2.0 * np.pi))", f"np.ceil((turn - np.pi {side} 1e-7) / (2.0 * np.pi))")
 
 
 # 8.10 -----------------------------------------------------------------------------------------------------------
@@ -567,6 +576,8 @@ edit("8.10", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
 edit("8.10", "adds the radius", "distance - obstacle.radius", "distance + obstacle.radius")
 NORMAL_OVER_RADIUS = edit("8.10", "divides the normal by the radius", "r / distance if", "r / obstacle.radius if")
 edit("8.10", "subtracts squares", "distance - obstacle.radius", "distance**2 - obstacle.radius**2")
+edit("8.10", "treats what is very near the centre, beside the radius, as the centre", "distance > 0.0",
+     "distance > 1e-9 * obstacle.radius")
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
@@ -607,6 +618,9 @@ edit("8.11", "returns a point that is alone as a vector", "return x", "return x 
 edit("8.11", "returns its input where nothing is inside", "x = float_copy(x)",
      "if min(surface(p, obstacle)[0] for p in x) >= 0.0:\n        return x\n    x = float_copy(x)")
 edit("8.11", "moves the points that are outside only", "phi < 0.0", "phi > 0.0")
+edit("8.11", "leaves points whose depth is small beside their coordinates", "phi < 0.0",
+     "phi < -1e-6 * np.sqrt(np.sum(x[k] * x[k]))")
+edit("8.11", "treats very heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-13")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
@@ -643,6 +657,9 @@ edit("8.12", "multiplies by the denominator", "/ (weight + alpha_scaled)", "* (w
 edit("8.12", "returns the new Λ, not its change", "return (-C", "return Lam + (-C")
 edit("8.12", "takes a weight of 1", "(weight + alpha_scaled)", "(1.0 + alpha_scaled)")
 edit("8.12", "forgets the compliance beside the multiplier so far", "alpha_scaled * Lam", "Lam")
+edit("8.12", "refuses very heavy points", "weight == 0.0", "weight < 1e-22")
+edit("8.12", "accepts a compliance that is negative by round-off", "not alpha_scaled >= 0.0",
+     "not alpha_scaled >= -1e-25")
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
@@ -723,6 +740,10 @@ edit("8.13", "exchanges C and Λ", "length - network.rest[s], Lam[s],", "Lam[s],
 edit("8.13", "reverses the sign of C", "length - network.rest[s], Lam[s]", "network.rest[s] - length, Lam[s]")
 edit("8.13", "moves the ends by the whole Λ, not by its change",
      "Lam[s] += change", "Lam[s] += change; change = Lam[s]")
+edit("8.13", "takes a stiff spring for an inextensible link", "network.alpha[s] / (dt * dt)",
+     "network.alpha[s] * (not 0.0 < network.alpha[s] < 1e-6) / (dt * dt)")
+edit("8.13", "takes a compliance of at most 10 m/N", "network.alpha[s] / (dt * dt)",
+     "(network.alpha[s] if not network.alpha[s] > 10.0 else 10.0) / (dt * dt)")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
@@ -764,6 +785,7 @@ edit("8.14", "starts from the old positions and forgets the prediction",
 edit("8.14", "makes one sweep only", "range(network.sweeps)", "range(1)")
 edit("8.14", "leaves points without gravity where they are", "new = predict(acceleration, t, x, v, dt, network)",
      "if not network.gravity.any():\n        return x, v\n    new = predict(acceleration, t, x, v, dt, network)")
+edit("8.14", "makes at most twenty sweeps", "range(network.sweeps)", "range(min(network.sweeps, 20))")
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
@@ -799,6 +821,8 @@ edit("8.15", "omits the rotation where the components of r × n add up to 0", "t
      "if np.sum(cross(r, n)) == 0.0:\n        return 1.0 / m\n    turn = unrotate")
 edit("8.15", "omits the rotation of a body in the orientation (1, 0, 0, 0)", "turn = unrotate",
      "if q[0] == 1.0:\n        return 1.0 / m\n    turn = unrotate")
+edit("8.15", "omits the rotation at a point that is less than a millimetre from the centre of mass", "turn = unrotate",
+     "if np.sqrt(np.sum(r * r)) < 1e-3:\n        return 1.0 / m\n    turn = unrotate")
 
 
 # 8.16 -----------------------------------------------------------------------------------------------------------
@@ -841,6 +865,8 @@ edit("8.16", "does not rotate where r × p has no last component", "return x + p
      "if cross(r, p)[2] == 0.0:\n        return x + p / m, q\n    return x + p / m,")
 edit("8.16", "does not rotate a body in the orientation (1, 0, 0, 0)", "return x + p / m,",
      "if q[0] == 1.0:\n        turn = 0.0 * turn\n    return x + p / m,")
+edit("8.16", "ignores rotations below 1 nrad", "quaternion_update(q, turn, 1.0)",
+     "quaternion_update(q, turn * (turn @ turn > 1e-18), 1.0)")
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
@@ -887,6 +913,7 @@ edit("8.17", "returns no rate where the components of the axis add up to 0", "re
      "if np.sum(turn[1:]) == 0.0:\n        return np.zeros(3)\n    return 2.0")
 edit("8.17", "takes the difference of the quaternions",
      "turn = quaternion_product(q_new, q_back)", "turn = q_new - q_old; turn[0] = 1.0")
+edit("8.17", "ignores rotations below 20 nrad", "* turn[1:]", "* turn[1:] * (turn[1:] @ turn[1:] > 1e-16)")
 
 
 # 8.18 -----------------------------------------------------------------------------------------------------------
@@ -922,6 +949,7 @@ edit("8.18", "keeps only the last face of each corner",
 edit("8.18", "leaves out the corners of no face", "return V, gradient", "return V, gradient[np.unique(faces)]")
 edit("8.18", "forgets the division by 6", "cross(b, c) / 6.0", "cross(b, c)")
 EXCHANGED = edit("8.18", "exchanges the corners in one of the cross products", "cross(c, a) / 6.0", "cross(a, c) / 6.0")
+edit("8.18", "uses the first hundred faces only", "range(faces.shape[0])", "range(min(faces.shape[0], 100))")
 edit("8.18", "forgets the division by 6 at the third corner", "cross(a, b) / 6.0", "cross(a, b)")
 edit("8.18", "gives two corners of a face the same gradient",
      "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")

@@ -658,6 +658,8 @@ edit("12.10", "stops where a step is small", "step = solve(J, r)",
      "step = solve(J, r)\n        if np.abs(step).max() < 1e-6: return s, misses[:i + 1]")
 edit("12.10", "limits the step to 10", "step = solve(J, r)",
      "step = solve(J, r); step = step * min(1.0, 10.0 / np.sqrt(step @ step))")
+edit("12.10", "halves a step until the miss is smaller by a millionth", "np.sqrt(r @ r) < misses[i]",
+     "np.sqrt(r @ r) < 0.999999 * misses[i]")
 
 
 # 12.11 ----------------------------------------------------------------------------------------------------------
