@@ -12,11 +12,11 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from solutions.given import passing
-from solutions.given.joints import turn_on
 from solutions.support import model, shapes
 from solutions.support.events import extrema, value_at, zeros
 from solutions.support.quaternions import quaternion_from_matrix
 from solutions.support.small_systems import shortest_solution
+from validate.reference.turns import free_splitting, matrix
 from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 ROUND_OFF = 1e-14            # change of an impulse, over the largest one, at which sweeps have settled
@@ -1405,8 +1405,8 @@ def overlap_goes_in_space(lesson, rng):
     for i, sign in ((0, 1.0), (2, -1.0)):
         x[i] += sign * dt * p.inv_mass[i] * J * n
         if away > 0.0:
-            there, _ = turn_on(state.q, sign * J * spins[i] + 0.0 * state.omega, dt, p.inv_inertia)
-            turned[i] = rotations(there)[i]
+            L = sign * J * R[i].T @ np.cross(place - state.x[i], n)              # in the body
+            turned[i] = R[i] @ matrix(free_splitting((1.0 + 0j, 0j), tuple(L), tuple(1.0 / p.inv_inertia[i]), dt))
         omega[i] = turned[i] @ R[i].T @ omega[i]
     end = lesson.separate_in_space(None, None, None, 0.0, state, dt, record)
     return ((end.x, rotations(end.q), end.v, end.omega, end.contacts.gap),
