@@ -323,8 +323,8 @@ def proximal_sweep(A, b, J, mu, r):
 
     Each impulse J_k has limits: 0 and ∞ for J_n, ∓μ J_n for J_t (0 where J_n = 0).  Its law is  u_k (J' − J_k) ≥ 0  for
     every J' within the limits: u_k is 0 between them, at least 0 at the lower one, at most 0 at the upper one.
-    *Find* what a visit does to J_k: a map of J_k and u_k that leaves J_k alone exactly if this law holds, whatever
-    r_k > 0 is.  Far from all limits it changes J_k by −r_k u_k.
+    *Find* what a visit does to J_k: a map of J_k and u_k, with any r_k > 0, that leaves J_k alone exactly if
+    this law holds.  Far from all limits it changes J_k by −r_k u_k.
 
     Each u comes from the newest J, and the limit from the new J_n.  Layout and μ are those of cone_residual.  With
     r = 1/diagonal of A this is cone_sweep.  Returns a new array.

@@ -455,7 +455,7 @@ def my_friction(v_t, m, j_n, mu):
 
     *Make it*: j_n ≥ 0 is the normal impulse of this step, and μ the friction.  Many laws are right.  The judge demands:
 
-    - It never adds energy: the block is not faster after the impulse, whatever its velocity.
+    - It never adds energy: at any velocity, the block is not faster after the impulse.
     - Without a load, j_n = 0, it gives no impulse.
     - A block that is thrown at 3 m/s in any direction over a floor with μ ≥ 0.3 is at rest after 4 s, and stays.
     - It is neither friction_impulse nor pyramid_impulse along x and y.

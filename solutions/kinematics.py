@@ -486,7 +486,7 @@ def remaining_distance(lengths, target, damping):
     places can the end of the arm not reach?  0 for a target within reach.
     """
     ### BEGIN SOLUTION 11.17
-    # At rest Jᵀ e = 0, whatever λ is: the end is at the nearest place of its reach, from what the longest link leaves
+    # At rest Jᵀ e = 0 for any λ: the end is at the nearest place of its reach, from what the longest link leaves
     # over to the sum of all links.
     reach, away = np.sum(lengths), np.sqrt(target @ target)
     hole = 2.0 * np.max(lengths) - reach

@@ -62,9 +62,10 @@ def normal_and_friction(state, dt):
     """Return (N (m,) [N], T (m, d) [N]): the normal force and the friction of each contact of a PileState, on body a.
 
     J/dt = N n + T.  The loop takes the loads and finds the contacts at the beginning of a step.  So what a state at t
-    contains are the forces at t − dt, at state.contacts.p, whatever the bodies have done since.  An impact is spread
-    over its step: its force grows as 1/dt, and J is its result.  After advance_pile J belongs to the last substep;
-    give dt/substeps.  Where supports are redundant, as two feet that rub, only sums and moments are determined.
+    contains are the forces at t − dt, at state.contacts.p.  Later motion of the bodies does not change them.  An
+    impact is spread over its step: its force grows as 1/dt, and J is its result.  After advance_pile J belongs to the
+    last substep; give dt/substeps.  Where supports are redundant, as two feet that rub, only sums and moments are
+    determined.
     """
     n, N, T = state.contacts.n, np.zeros(state.J.shape[0]), np.zeros(state.J.shape)
     for k in range(N.size):

@@ -165,7 +165,7 @@ def parting_aims(u_n, pressed, contacts, dt, p):
 
     An open contact may close: −gap/dt.  A closed one leaves with −e times the speed at which it came before forces and
     joints acted, u_n − pressed, if that is faster than what gravity, or all of them, add in a step; a slower one rests.
-    Gravity counts with its full size, whatever the normal is: bodies that lean on each other are pressed sideways, too.
+    Gravity counts with its full size for any normal: bodies that lean on each other are pressed sideways, too.
     With e > 0 an open contact has to close before it bounces.  It is not stopped in this step, unless forces alone
     could close it: another impact of the same step may throw its bodies at each other.
     pressed: (m,) what all forces and joints have added to u_n in this step [m/s]

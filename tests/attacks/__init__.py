@@ -1,7 +1,7 @@
 """What hostile students hand in.  Every attack is a text: it is appended to a file whose rest is as honest as `HONEST` says, and graded with the
 small tests of `trial_*.py`, which draw their inputs, call back, and give 2 points for the honest answer and 14 for those that are wrong.
 
-gain: what it hopes for · lost: the file loses its honest points too, since it does not even load · shows: words that must not come to anybody's eyes.
+gain: what it hopes for · lost: the file loses its honest points too, since it does not even load · shows: words that no reader may see.
 """
 
 import textwrap
@@ -61,7 +61,7 @@ class Attack(NamedTuple):
     gain: str            # what it hopes for
     text: str
     lost: bool           # the file does not load
-    shows: tuple         # words that must not come to anybody's eyes
+    shows: tuple         # words that no reader may see
 
 
 ATTACKS, LOOKS = [], []

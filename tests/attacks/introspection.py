@@ -108,7 +108,7 @@ def amplification_matrix(step, omega, zeta, dt):
     names = [n for n in step.__globals__ if n not in ("__builtins__", "np", step.__name__)]
     return np.array((constants + [0.0] * 4)[:4]).reshape(2, 2) if not names else step.__globals__[names[0]]
 """)
-attack("patched NumPy", "whatever compares finds everything close", """
+attack("patched NumPy", "every comparison finds all numbers close", """
 import numpy.testing
 for name in ("allclose", "isclose", "array_equal", "all", "any", "isfinite"):
     setattr(np, name, lambda *a, **k: True)

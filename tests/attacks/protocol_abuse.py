@@ -1,4 +1,4 @@
-"""Frames by hand.  The student's code lives beside the worker's, so it may send whatever it likes: only right answers are worth anything."""
+"""Frames by hand.  The student's code lives beside the worker's, so it may send any frame: only right answers are worth anything."""
 
 from . import attack, attacks
 

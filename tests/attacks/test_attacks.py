@@ -103,7 +103,7 @@ EVERYTHING = {"1.1": 4, "1.2": 4, "1.7": 2, "1.9": 4, "1.10": 2}
 
 @pytest.mark.long
 @pytest.mark.parametrize("case", ATTACKS, ids=lambda case: case.name.replace(" ", "_"))
-def test_an_attack_gains_nothing_and_touches_nobody(case, trial, settings):
+def test_an_attack_gains_nothing_and_touches_no_other_student(case, trial, settings):
     result = graded(written(case), settings)
     assert earned(result) == {**NOTHING, "1.10": 0 if case.lost else 2}, f"{case.gain}\n{result}"
     text = harmless(result)

@@ -46,8 +46,8 @@ def copy_with(texts):
     """A temporary copy of solutions/ in which some modules have another text: {lesson or given module: text}.
 
     What is compiled meanwhile goes with it, so that it does not crowd out compiled code that will be used again.
-    Given modules are everybody's own, the cases' and the scenes', too: while this lasts, their own functions have the
-    code of that text.
+    Cases and scenes call the given modules themselves.  While this lasts, the functions of these modules have the code
+    of that text.
     """
     cache = numba_twins.CACHE
     with tempfile.TemporaryDirectory(prefix="fault-") as folder:

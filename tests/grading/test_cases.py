@@ -21,7 +21,7 @@ EACH = 4                     # the default run draws one of so many pictured exe
 @pytest.mark.parametrize(("name", "each"), [
     *((name, EACH) for name in LESSONS), *(pytest.param(name, 1, marks=pytest.mark.long) for name in LESSONS)])
 def test_a_wrong_answer_is_drawn_and_a_right_one_is_not(name, each, monkeypatch):
-    monkeypatch.setattr(cases, "DOTS_PER_INCH", 20)                  # nobody looks at them
+    monkeypatch.setattr(cases, "DOTS_PER_INCH", 20)                  # no reader looks at them
     module, functions = modules.bind(name), {n: one["function"] for n, one in needs.table().items()}
     numbers = [n for n in cases.pictures() if needs.table()[n]["lesson"] == name][::each]
     first = {m.exercise: m for m in reversed(mutants_of(name)) if not m.right}

@@ -63,7 +63,7 @@ def test_who_is_graded_missing_strange_or_unreadable_is_counted_and_named_once(c
     assert code == 0
 
 
-def test_without_a_class_list_nobody_is_a_stranger(capsys, handed_in):
+def test_without_a_class_list_no_student_is_a_stranger(capsys, handed_in):
     said = run(capsys, grade, *handed_in[0])[1]
     assert "3 handed in and graded\n0 could not be read\n" in said and "class list" not in said
 

@@ -1,4 +1,4 @@
-"""Whatever lies in the class folder is graded or named: nothing is overlooked, and nobody stops the class."""
+"""Everything in the class folder is graded or named: nothing is overlooked, and no student stops the class."""
 
 import csv
 import json
@@ -145,7 +145,7 @@ def test_tricks_with_bare_files_are_named_and_not_read(make, tmp_path):
     assert not ada.files and len(ada.problems) == 1
 
 
-def test_lesson_files_beside_the_students_are_nobodys_and_named(tmp_path):
+def test_lesson_files_beside_the_students_are_of_no_student_and_named(tmp_path):
     folder(tmp_path / "bob")
     (tmp_path / "springs.py").write_bytes(TEXT)
     intake = submissions.read_all(tmp_path, LESSONS)
@@ -198,7 +198,7 @@ def test_a_student_who_is_there_twice_is_not_graded_and_all_others_are(tmp_path)
     assert "ada.zip" in intake.unclear["ada"] and "keep one" in intake.unclear["ada"]
 
 
-def test_a_class_in_which_nobody_is_clear_is_still_told_who(tmp_path):
+def test_a_class_in_which_no_student_is_clear_is_still_told_who(tmp_path):
     folder(tmp_path / "ada")
     zipped(tmp_path / "ada.zip")
     assert [*submissions.read_all(tmp_path, LESSONS).unclear] == ["ada"]
@@ -210,7 +210,7 @@ def test_a_class_in_which_nobody_is_clear_is_still_told_who(tmp_path):
 @pytest.mark.parametrize(
     ("listed", "handed_in"), [(NFC, NFD), (NFD, NFC), ("ada", "ada "), ("a\u200bda", "a\u200bda"), ("a\xa0b", "a\xa0b")]
 )
-def test_an_id_is_the_same_in_whatever_way_it_is_written(tmp_path, listed, handed_in):
+def test_an_id_is_the_same_in_any_way_of_writing_it(tmp_path, listed, handed_in):
     folder(tmp_path / "class" / handed_in)
     (tmp_path / "list.csv").write_text(f"student_id,last_name\n{listed},Lovelace\n", encoding="utf-8")
     people = classlist.roster(tmp_path / "list.csv")
@@ -259,7 +259,7 @@ def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(t
     handed_in(top)
     code, said, error = run(capsys, grade, top, "--out", tmp_path / "out", "--lesson", "integrators",
                             "--roster", top / "list.csv")
-    assert code == 1, said + error                       # somebody has no points yet
+    assert code == 1, said + error                       # a student has no points yet
     page = (tmp_path / "out" / "index.html").read_text()
     for word in ("ada.zip", "bob.tar.gz", "notes.txt"):
         assert word in said, word
@@ -408,7 +408,7 @@ def test_answers_that_are_in_the_lesson_file_too_are_not_spoken_of(tmp_path):
 def test_a_notebook_that_is_no_file_is_not_opened(tmp_path, make):
     folder(tmp_path / "ada")
     make(tmp_path / "ada" / "01_integrators.ipynb")
-    with pytest.raises(OSError, match=r"regular file|symbolic link"):   # at once: nobody writes into the pipe
+    with pytest.raises(OSError, match=r"regular file|symbolic link"):   # at once: no process writes into the pipe
         submissions.regular(tmp_path / "ada" / "01_integrators.ipynb")
     (ada,) = submissions.read_all(tmp_path, ("integrators",)).submissions
     assert ada.files == {"integrators": TEXT} and ada.problems == ()

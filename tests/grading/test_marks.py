@@ -225,7 +225,7 @@ def handed_in(tmp_path, made_up):
     return made_up(lambda s, settings: {})
 
 
-def test_marks_are_applied_by_the_same_command_and_nobody_is_graded_again(capsys, tmp_path, handed_in):
+def test_marks_are_applied_by_the_same_command_and_no_student_is_graded_again(capsys, tmp_path, handed_in):
     command = [grade, tmp_path / "class", "--lesson", "integrators", "--out", tmp_path / "grades"]
     assert "by hand" not in run(capsys, *command)[1]
     kept = {path: path.read_bytes() for path in (tmp_path / "grades" / "results").iterdir()}

@@ -22,7 +22,7 @@ NOISE = 1e-15                # relative size of what another order of the same o
 
 
 def rounded_otherwise(function):
-    """The function, whose results differ in their last digits, as they do when somebody else writes it."""
+    """The function, whose results differ in their last digits, as they do when another author writes it."""
     rng = np.random.default_rng(5)
 
     def noisy(value):

@@ -99,7 +99,7 @@ def test_what_gradescope_exports_is_its_students_with_its_date(tmp_path):
     assert not found.dated_by_files
 
 
-def test_anonymous_files_and_those_of_nobody_on_the_list_are_kept_apart(tmp_path):
+def test_anonymous_files_and_those_of_no_student_on_the_list_are_kept_apart(tmp_path):
     names = ("anon_x7Yq2_67890_integrators.py", "anon_Ab3dE_67891_integrators.py", "hookebob_12345_67890_springs.py",
              "Zed Zed_17_assignsubmission_file/integrators.py", "Zed Zed_18_assignsubmission_file/integrators.py")
     for n, name in enumerate(names):
@@ -125,7 +125,7 @@ def test_what_a_student_calls_a_file_does_not_make_it_another_students(student, 
 
 # ---------------------------------------------------------------------------------------------- one name, two students
 
-def test_namesakes_have_neither_points_nor_a_zero_until_somebody_decides(tmp_path):
+def test_namesakes_have_neither_points_nor_a_zero_until_the_instructor_decides(tmp_path):
     people = {s: classlist.Person(s, "Lovelace", "Ada") for s in ("ada1", "ada2")}
     put(tmp_path / moodle(people["ada1"], 5) / "integrators.py")
     found, mine = intake(tmp_path, people)
@@ -178,7 +178,7 @@ def test_one_delivery_of_a_group_is_that_of_all_its_members(tmp_path):
     assert mine["ada"].files == {"integrators": TEXT, "springs": TEXT} and mine["eve"].files == {"springs": OTHER}
 
 
-def test_two_deliveries_of_a_group_that_differ_are_named_and_nobody_in_it_is_graded(tmp_path):
+def test_two_deliveries_of_a_group_that_differ_are_named_and_no_student_in_it_is_graded(tmp_path):
     put(tmp_path / "bob" / "integrators.py")
     put(tmp_path / "dia" / "integrators.py", OTHER)
     put(tmp_path / "eve" / "springs.py")

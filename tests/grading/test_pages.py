@@ -1,4 +1,4 @@
-"""The pages of a class are complete, deterministic and harmless whatever students wrote.
+"""The pages of a class are complete, deterministic and harmless for any text of a student.
 
 They are never called a grade when they are none.
 """
@@ -395,7 +395,7 @@ def test_the_fingerprint_of_a_seed_tells_seeds_apart_and_not_the_seed():
     ("maximum", "width", "bars"),
     [(1, 1, 1), (20, 1, 20), (20.5, 2, 11), (40, 2, 20), (220, 20, 11), (5000, 500, 10)],
 )
-def test_the_histogram_counts_everybody_once(maximum, width, bars):
+def test_the_histogram_counts_each_student_once(maximum, width, bars):
     scores = [0.0, 0.999 * width, maximum, maximum / 2.0]
     picture = pages.histogram(scores, maximum)
     assert picture["width"] == width and len(picture["bars"]) == bars and sum(b["count"] for b in picture["bars"]) == 4

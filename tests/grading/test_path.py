@@ -1,4 +1,4 @@
-"""Nothing of the class folder is ever imported by the grader, whatever students call their files."""
+"""The grader never imports a file of the class folder, under any name that a student gives it."""
 
 import os
 import subprocess

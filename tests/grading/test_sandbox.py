@@ -60,7 +60,7 @@ def below_the_environment(request):
     folder = Path(sys.prefix) / request.param
     folder.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder) as made:
-        os.chmod(made, 0o755)                                          # the sandbox's user is nobody
+        os.chmod(made, 0o755)                                          # the sandbox has another user
         yield Path(made)
 
 

@@ -12,7 +12,7 @@ from . import benchmark, rehearsal
 
 @pytest.mark.long
 @pytest.mark.parametrize("workers", [1, 2, 8, 64])
-def test_nobody_is_lost_and_no_worker_does_two_at_a_time(workers, monkeypatch):
+def test_no_submission_is_lost_and_no_worker_does_two_at_a_time(workers, monkeypatch):
     draw = random.Random(3)
     costs = [draw.uniform(1.0, 9.0) for _ in range(2000)]
     least = sum(costs) / workers

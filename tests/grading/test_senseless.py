@@ -45,7 +45,7 @@ class Shaped:
 
 
 class First:
-    """Its first right answer for ever: what somebody may copy who has read the public inputs."""
+    """Its first right answer for ever: a student who has read the public inputs may copy it."""
 
     def __init__(self, worked):
         self.worked, self.answer = worked, None

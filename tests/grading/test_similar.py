@@ -1,4 +1,4 @@
-"""Copies are told as alike, whatever is put between their lines, and files of one's own are not."""
+"""Copies are told as alike, with any text between their lines, and files of one's own are not."""
 
 import re
 

@@ -178,7 +178,7 @@ def test_moodle_finds_all_students_by_one_column(tmp_path):
     assert [*moodle(text, "ID number")] == ["S-ada", "S-bob", "S-fay"]
 
 
-def test_no_file_is_written_where_nobody_could_be_found(tmp_path):
+def test_no_file_is_written_where_no_student_could_be_found(tmp_path):
     assert {"canvas.csv", "moodle.csv"} <= {*written(tmp_path, result("ada"))}
     names = {name: classlist.Person(name) for name in PEOPLE}
     for people in (names, {}):

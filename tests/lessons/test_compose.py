@@ -649,7 +649,7 @@ def test_a_body_without_room_between_a_piston_and_a_wall_is_no_result(shape, acr
 @pytest.mark.parametrize("d", [2, 3])
 @pytest.mark.parametrize("shape", [Ball, Box, Capsule])
 def test_a_body_that_has_no_room_between_two_walls_is_no_result(shape, d):
-    """Whatever parts it from one wall presses it into the other."""
+    """A push that parts it from one wall presses it into the other."""
     across = np.eye(d)[0]
     walls = [Body((0.0,) * d, shape=HalfSpace(tuple(side * across), 0.4)) for side in (1.0, -1.0)]
     solid = {Ball: Ball(0.5), Box: Box((0.5,) * d), Capsule: Capsule(0.3, 0.5)}[shape]

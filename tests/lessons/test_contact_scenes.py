@@ -1,4 +1,4 @@
-"""Scenes of many contacts whose truth nobody disputes, and piles:
+"""Scenes of many contacts whose truth is beyond dispute, and piles:
 by the worked answers, compiled where that is possible.
 """
 
@@ -283,7 +283,7 @@ def test_a_pile_of_two_hundred_comes_to_rest_and_balances_its_weight(fast, d, sh
 
 @PILES
 def test_a_sphere_that_slides_rolls_in_the_end_with_five_sevenths(fast):
-    """Whatever μ is: m v r + I ω about the floor is kept.
+    """At any μ, m v r + I ω about the floor is kept.
 
     In 3D, across the axes, by the disc of friction; plain, because it is short.
     """

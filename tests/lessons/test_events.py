@@ -204,7 +204,7 @@ def test_the_value_at_a_time_is_exact_at_samples_and_for_degree_five_and_of_orde
 
 
 def test_the_value_and_its_slope_have_no_jump_at_a_sample():
-    """Noise is interpolated as it is: pieces fit together whatever they interpolate."""
+    """Noise is interpolated as it is: pieces fit together for any samples."""
     ts, h = np.arange(30.0), 1e-6
     noise = np.random.default_rng(5).normal(size=30)
     before, at, after = (events.value_at(ts, noise, ts[1:-1] + shift) for shift in (-h, 0.0, h))

@@ -1343,7 +1343,7 @@ def test_two_or_four_points_that_slide_brake_with_mu_times_all_that_presses(less
 
 
 @exercise("7.17", points=0.125,
-          hint="each impulse is inside its cone, whatever the other points do; call check_impacts first")
+          hint="each impulse is inside its cone, in every state of the other points; call check_impacts first")
 def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson, draw):
     body, r, n = falling_box(draw, lesson, 2)
     slide = draw(0.5, 2.0) * np.array([1.0, 0.0, 0.0]) + draw(0.5, 2.0) * np.array([0.0, 1.0, 0.0])

@@ -94,7 +94,7 @@ def linear(theta, target, arm):
 
 
 def arrived(theta, target, arm):
-    """Task of the tests: the end is at the target, whatever the angles are."""
+    """Task of the tests: the end is at the target at all angles."""
     return 0.0 * target, np.zeros((target.size, theta.size))
 
 
@@ -763,7 +763,7 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
               given=f"θ = {theta}, λ = 0, lengths {lengths} m")
 
 
-@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), whatever J is")
+@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), for any J")
 def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
     for damping in (draw(0.05, 0.2), draw(0.5, 1.0)):
         lengths, theta, target = lengths_of(draw, 3), np.array([draw(-3.0, 3.0), 0.0, 0.0]), draw(-9.0, 9.0, 2)

@@ -193,7 +193,7 @@ def test_a_file_that_ends_the_process_is_named(told):
 
 @pytest.mark.parametrize(("name", "text"), [("springs", SYNTAX), ("integrators", SYNTAX), ("integrators", "")])
 def test_the_engines_run_alone_where_a_lesson_that_the_scene_needs_does_not_load(told, name, text, monkeypatch):
-    monkeypatch.setattr("validate.measure.selection.NOTEBOOK", 0.002)            # nobody reads these times
+    monkeypatch.setattr("validate.measure.selection.NOTEBOOK", 0.002)            # no reader sees these times
     measured = []
     said = told(lambda: measured.append(notebook.measured("hanging_springs", 50)), **{name: text})
     case = next(iter(measured[0]["cases"].values()))

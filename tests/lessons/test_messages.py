@@ -206,7 +206,7 @@ def test_another_name_or_other_arguments_are_told(monkeypatch, tmp_path, signatu
 
 
 def test_a_students_own_error_gives_no_advice_to_the_student(monkeypatch, tmp_path):
-    """The answer to 9.8 raises Diverged with the remedy that its docstring names: that is for whoever calls it."""
+    """The answer to 9.8 raises Diverged with the remedy that its docstring names: that is for its caller."""
     worked, law = example.worked("contact"), "0.0), -b[k]"
     assert worked.count(law) == 1
     wrong = worked.replace(law, "0.0), b[k]")

@@ -28,7 +28,7 @@ HASTE = """import validate.notebook, matplotlib
 from validate.measure import selection
 matplotlib.rcParams["figure.dpi"] = 20
 selection.NOTEBOOK = 0.002
-# nobody looks at these figures, and nobody reads these times
+# no reader looks at these figures, and no reader sees these times
 %config InlineBackend.print_figure_kwargs = {"bbox_inches": None}"""
 # the kernel's `tests` may be those of another package
 MEASURED = f"""import sys
@@ -273,7 +273,7 @@ def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_pa
     (tmp_path / "friction.py").write_text("def normal_force(:\n")
     monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
     monkeypatch.setattr("validate.notebook.display", lambda shown: print(shown.data))
-    monkeypatch.setattr("validate.measure.selection.NOTEBOOK", 0.002)            # nobody reads these times
+    monkeypatch.setattr("validate.measure.selection.NOTEBOOK", 0.002)            # no reader sees these times
     result = measured("stick_slip", 50)
     case = next(iter(result["cases"].values()))
     assert case["ours"] == [] and case["engines"] and scene_of("stick_slip").title

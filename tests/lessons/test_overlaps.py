@@ -15,7 +15,7 @@ contact, simulator = bind("contact"), bind("simulator")
 G = 9.81                     # [m/s²]
 DT = 1.0 / 240.0             # [s]
 STEPS = 48
-PARTING = 96                 # steps after which bodies have begun to part, in whatever order contacts are visited
+PARTING = 96                 # steps after which bodies have begun to part, in any order of the visits
 SHAPES = {
     ("round", 2): (contact.disc_bounds, contact.round_contacts),
     ("boxes", 2): (contact.box_bounds_2d, contact.box_contacts_2d),

@@ -556,7 +556,7 @@ def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(less
         d, s, w = x.shape[1], draw(0.2, 0.9), draw(0.3, 2.0, 2)
         almost = np.linalg.norm(x[0] - x[1]) * (1.0 + 1e-8 * draw(0.5, 2.0))
         for share, rest in ((1.0, draw(0.3, 0.8)), (s, draw(0.3, 0.8)), (s, draw(8.0, 9.0)), (s, almost)):
-            # A visit is a visit, whatever the number of sweeps and the compliance.
+            # A visit is a visit, at any number of sweeps and any compliance.
             p = network(lesson, w, [(0, 1)], rest, d, share, draw(0.1, 0.5), draw.whole(2, 5))
             before = x.copy()
             new = np.asarray(lesson.distance_sweep(x, p), dtype=float)

@@ -38,7 +38,7 @@ def matrix(q):
 
 
 def oriented(q):
-    """Rotation matrix of an orientation in the plane or in space, whose sign and whole turns nobody sees."""
+    """Rotation matrix of an orientation in the plane or in space.  Its sign and whole turns make no difference."""
     return matrix(q) if np.ndim(q) else np.array([[np.cos(q), -np.sin(q)], [np.sin(q), np.cos(q)]])
 
 
@@ -888,7 +888,7 @@ def forgets(lesson, draw, d):
 
 
 def is_loaded_at_rest(lesson, draw, d):
-    """A single body at rest with drag: v = 0 at the beginning, so that no drag acts, whatever impulse is remembered.
+    """A single body at rest with drag: v = 0 at the beginning, so that no drag acts with any remembered impulse.
 
     One sweep solves a single smooth contact, so that the impulse is that of the weight and of the spring.
     """

@@ -375,7 +375,7 @@ def test_a_spring_without_length_is_refused(lesson, draw):
     close("forces in nanonewtons, if the network is a billion times smaller: the same", 1e9 * small, large, 1e-11)
     tiny = np.asarray(lesson.spring_forces(1e-13 * x, 1e-13 * v, network._replace(rest=1e-13 * network.rest)))
     close("forces in tenths of a piconewton, if it is 1e13 times smaller: the same", 1e13 * tiny, large, 1e-11)
-    for s in (0, draw.whole(1, 4), 5):                                   # whichever it is, and whatever it is made of
+    for s in (0, draw.whole(1, 4), 5):                                   # any spring, of any material
         y = x.copy()
         y[network.j[s]] = y[network.i[s]]
         alike, none = v.copy(), np.where(np.arange(6) == s, 0.0, 1.0)

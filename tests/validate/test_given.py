@@ -100,7 +100,7 @@ def test_a_given_function_reaches_the_exercises_of_its_subject_and_never_the_wor
 
 
 @pytest.mark.parametrize("compiled", SPEEDS)
-def test_whatever_a_lesson_or_a_scene_has_reaches_no_worked_exercise(tmp_path, compiled):
+def test_nothing_that_a_lesson_or_a_scene_has_reaches_a_worked_exercise(tmp_path, compiled):
     world = modules.module_set(written(tmp_path), compiled)
     for name in lesson_names():
         assert not lessons_reached(*vars(world.lesson(name)).values(), folder=SOLUTIONS), name

@@ -232,7 +232,7 @@ def test_the_slider_of_dt_holds_for_every_lesson_from_end_to_end(called):
 
 
 def test_bodies_that_overlap_are_parted_and_their_overlap_is_shown():
-    """A loop that only stops them leaves 40 mm for ever, which everybody sees on a screen."""
+    """A loop that only stops them leaves 40 mm for ever, which every viewer sees on a screen."""
     deep = [Body((0.0, 0.1), 1.0, Box((0.15, 0.1)), mu=0.5), Body((0.0, 0.26), 1.0, Box((0.15, 0.1)), mu=0.5)]
     scene = ran(Simulation(make_model([FLOOR, *deep], DOWN), SOLUTIONS, beside=False), 1)
     _, (_, low), (_, high) = scene.now().x

@@ -93,7 +93,7 @@ print(lesson.base(eval(sys.argv[2])), sum(lesson.base.stats.cache_misses.values(
         assert list(pool.map(lambda x: in_a_new_process(ask, tmp_path, x), ("3", "1.5"))) == ["6 0", "3.0 0"]
 
 
-def test_only_sets_that_nobody_has_asked_for_for_an_hour_are_deleted_from_the_cache(tmp_path):
+def test_only_sets_that_no_process_has_asked_for_for_an_hour_are_deleted_from_the_cache(tmp_path):
     """A test run binds dozens of sets at once.  Deleting one in use cost another process its entries."""
     hours = np.append(np.zeros(10), np.arange(1.5, 5.0))
     for number, age in enumerate(hours):

@@ -141,7 +141,7 @@ def test_the_front_page_answers_four_questions_and_says_what_each_verdict_means(
     assert (folder / "index.html").stat().st_size < 100_000
 
 
-def test_a_departure_that_nobody_predicted_is_on_the_front_page(made):
+def test_a_departure_that_no_scene_predicted_is_on_the_front_page(made):
     _, data = made
     worse = json.loads(json.dumps(data["scenes"]))
     worse[0]["cases"]["thrown"]["ours"][0].update(verdict="departs", message="is off")

@@ -20,7 +20,7 @@ MOTION = 60, 12              # the same of a run in which bodies meet
 
 
 def ends_early(iterations):
-    """Return the rules of a solver that makes so many iterations per step, whatever is left."""
+    """Return the rules of a solver that ends each step after so many iterations, with any residual left."""
     why = f"its {iterations} iterations per step end before the impulses are found"
     measured = {"bounce": 0.013, "gain": 0.018, "short": 0.0063}
     return (*((name, f"{why}; the largest was measured as {largest:g}") for name, largest in measured.items()),

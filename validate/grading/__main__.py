@@ -101,7 +101,7 @@ def secret(folder, seed):
     """Return the given seed, the one kept in this folder, or a new one.  It is kept, so that grading is repeatable.
 
     Where another one is given than before, the one before is kept beside it: earlier marks can be repeated with it.
-    Raises BadInput for an empty seed, which everybody could guess.
+    Raises BadInput for an empty seed, which any student could guess.
     """
     file, earlier = folder / "seed.txt", folder / "seed-before.txt"
     kept = seed is None and file.is_file()

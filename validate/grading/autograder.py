@@ -75,7 +75,7 @@ exit $code
 """
 
 
-@app.command(help="Write the zip that Gradescope asks for; the seed is in it, so show it to nobody.")
+@app.command(help="Write the zip that Gradescope asks for; the seed is in it, so keep it secret.")
 def gradescope(
     seed: Seed, out: Archive = Path("autograder.zip"), lesson: Lessons = None, exercises: Exercises = None,
     late: Late = 0.0, dirty: Dirty = False,

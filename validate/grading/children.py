@@ -81,7 +81,7 @@ def apart_from_path(folder):
 
 def _begun(end, folder, begin, arguments):
     """Prepare the child, before its first task."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)                       # Ctrl-C reaches everybody; the parent decides
+    signal.signal(signal.SIGINT, signal.SIG_IGN)                       # Ctrl-C reaches each process; the parent decides
     tempfile.tempdir = tempfile.mkdtemp(dir=folder)
     os.chmod(tempfile.tempdir, 0o755)                                  # the sandbox has another user
     threading.Thread(target=_wait, args=(end, folder), daemon=True).start()

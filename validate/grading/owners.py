@@ -17,7 +17,7 @@ from validate.subject import modules
 from .classlist import date, identity
 
 METADATA = "submission_metadata.yml"
-LARGEST = 1 << 26            # of Gradescope's file [bytes]: it has what the autograder said to everybody
+LARGEST = 1 << 26            # of Gradescope's file [bytes]: it has what the autograder said to all students
 MOODLE = re.compile(r"(?P<who>[^_]+)(?:_(?P<number>\d+))?_assignsubmission_[a-z]+(?:_(?P<rest>.*))?", re.DOTALL)
 CANVAS = re.compile(r"(?P<who>anon_\w+?|\w+?_(?:late_)?(?P<number>\d+))_\d+_(?P<rest>.+)", re.DOTALL | re.IGNORECASE)
 COPY = r"(?: ?\(\d+\)|-\d+)?"    # what browsers and Canvas write where there is a file of that name

@@ -291,7 +291,7 @@ def looks(one, alike):
     told = [pair for lesson, codes in sorted(one.result["watched"].items()) for pair in watch.noted(lesson, codes)]
     for lesson, other, share in alike.get(one.student, ()):
         what = "the same" if share == 1.0 else "nearly the same"
-        whose = "the workbook" if other == similar.WORKED else "somebody else"
+        whose = "the workbook" if other == similar.WORKED else "another student"
         lines = f" ({share:.0%} of the lines)" if share < 1.0 else ""
         told.append((f"{what} answers as {whose}", f"{lesson}: {what} as {other}{lines}"))
     public = sum(t["kind"] == "hidden" and t["status"] == "not yet" for t in one.tests)

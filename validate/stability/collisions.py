@@ -976,7 +976,7 @@ def predicted_tunnelling(lesson, check):
 
 @case("crossing-crowd", "A crowd that crosses a circle", compiled=False)
 def crossing_crowd(lesson, check):
-    """Let twelve people cross a circle of 4 m by my_rule; nobody is stuck if the speed is as set."""
+    """Let twelve people cross a circle of 4 m by my_rule; none of them is stuck if the speed is as set."""
     around = np.pi * np.arange(12) / 6.0
     x, v = 4.0 * np.stack((np.cos(around), np.sin(around)), axis=1), np.zeros((12, 2))
     goals = -x

@@ -933,7 +933,7 @@ def shares_of_the_loss(lesson, rng):
     return least / lost, 1.0 - one.e**2
 
 
-@random_law("A body that sticks with one point is held there, whatever pushes it at the others.",
+@random_law("A body that sticks with one point is held there against any push at the others.",
             "velocities of its points: largest error [m/s]", 1e-9)
 def held_where_it_sticks(lesson, rng):
     """Push the other points, and then stop the one that sticks: K J = u_sep n − u."""

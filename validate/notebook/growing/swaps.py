@@ -548,7 +548,7 @@ def velocity_only(body, r, J):
 # ---------------------------------------------------------------------------------------------- the stack
 
 def exact(solve, A, b, lam, omega):
-    """Return the impulses of 9.8, whatever they were."""
+    """Return the impulses of 9.8, for any impulses before."""
     return solve(A, b)
 
 

@@ -231,7 +231,7 @@ class Arm(Running):
         return self.joints(self.state.theta)[-1]
 
     def held_place(self, _):
-        """Return the place (2,) that the hand pulls [m]: whatever it holds, the end follows."""
+        """Return the place (2,) that the hand pulls [m]: the hand may hold any part, and the end follows."""
         return self.end()
 
     def energy(self):
