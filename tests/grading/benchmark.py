@@ -131,16 +131,16 @@ def files_of(results, rules):
         with measured(resource.RUSAGE_SELF) as steps["handing over"]:
             for one in many:
                 cluster.parcel(one, rules)
-        everybody = [{**json.loads(texts[n % len(texts)]), "student": one.student} for n, one in enumerate(many)]
+        all_results = [{**json.loads(texts[n % len(texts)]), "student": one.student} for n, one in enumerate(many)]
         with measured(resource.RUSAGE_SELF) as steps["results"]:
-            for result in everybody:
+            for result in all_results:
                 write_whole(out / "results" / f"{result['student']}.json", result)
         with measured(resource.RUSAGE_SELF) as steps["answers that are alike"]:
             alike = similar.alike(many, rules.lessons)
         with measured(resource.RUSAGE_SELF) as steps["pages, CSV, Gradescope"]:
-            pages.write(out, everybody, {}, rules, {}, terms, pages.Run(alike=alike))
+            pages.write(out, all_results, {}, rules, {}, terms, pages.Run(alike=alike))
         with measured(resource.RUSAGE_SELF) as steps["reading results again"]:
-            for result in everybody:
+            for result in all_results:
                 json.loads((out / "results" / f"{result['student']}.json").read_text())
     return steps
 

@@ -16,7 +16,7 @@ from solutions.checks import BadInput
 from validate.grading import autograder, marking
 from validate.subject.modules import ROOT
 
-SEED = "known to nobody"
+SEED = "a secret of the tests"
 COURSE = ("--seed", SEED, "--lesson", "integrators", "--late", "10", "--dirty")
 
 

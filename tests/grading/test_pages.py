@@ -160,8 +160,8 @@ def test_the_csv_has_the_columns_of_nbgrader_and_a_row_for_every_student_and_les
                                     "raw_score,late_submission_penalty,score,max_score,"
                                     "problems,raw_score_of_tests,by_hand")
     rows = rows_of(tmp_path)
-    everybody = [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
-    assert [(r["student_id"], r["assignment"]) for r in rows] == everybody
+    all_of_them = [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
+    assert [(r["student_id"], r["assignment"]) for r in rows] == all_of_them
     assert [r["score"] for r in rows] == ["6", "0", "0", "0", "", "", "6", "4"]    # a failure of the grader is no zero
     assert [r["max_score"] for r in rows] == ["6", "4"] * 4
     assert rows[0]["timestamp"] and rows[1]["timestamp"] == ""

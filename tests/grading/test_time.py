@@ -495,8 +495,8 @@ class Killer(submissions.Submission):
 def test_a_submission_that_ends_the_grading_process_harms_no_other(settings):
     honest = [submission(f"s{n}", SOLVED) for n in range(3)]
     killers = [Killer(f"k{n}", {}, (), "") for n in range(2)]
-    everybody = [killers[0], *honest, killers[1]]
-    found = {student: (result, why) for student, result, why in local.results(2, everybody, settings)}
+    all_of_them = [killers[0], *honest, killers[1]]
+    found = {student: (result, why) for student, result, why in local.results(2, all_of_them, settings)}
     assert {student: why for student, (_, why) in found.items() if why} == {"k0": local.DIED, "k1": local.DIED}
     for one in honest:
         tests = found[one.student][0]["tests"]

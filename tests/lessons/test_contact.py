@@ -1211,8 +1211,8 @@ def test_a_contact_elsewhere_begins_without_impulse(lesson, draw):
           np.where(far[:, None], 0.0, inherited(new, old, J_old, near)), 0.0)
     close("J of contacts that are not so near [N s]", lesson.kept_impulses(new, old, J_old, 0.05),
           inherited(new, old, J_old, 0.05), 0.0)
-    nobody = contacts_of(lesson, [], [], np.zeros((0, 2)), np.zeros((0, 2)), bodies=BODIES)
-    close("J after a step without contacts [N s]", lesson.kept_impulses(new, nobody, np.zeros((0, 2)), near),
+    none = contacts_of(lesson, [], [], np.zeros((0, 2)), np.zeros((0, 2)), bodies=BODIES)
+    close("J after a step without contacts [N s]", lesson.kept_impulses(new, none, np.zeros((0, 2)), near),
           np.zeros(new.p.shape), 0.0)
 
 

@@ -79,8 +79,8 @@ def made(lesson, x, m, moments, half, planes, mu, sweeps, margin):
     still = np.zeros((p, *I.shape[1:]))
     bodies = bodies_of(lesson, np.append(np.full(n, 1.0 / m), np.zeros(p)), np.concatenate((1.0 / I, still)), half,
                        planes, mu, sweeps, margin)
-    nobody = np.zeros(0, np.int64)
-    contacts = lesson.ContactSet(np.zeros(n + 1, np.int64), nobody, nobody, np.zeros((0, d)), np.zeros((0, d)),
+    none = np.zeros(0, np.int64)
+    contacts = lesson.ContactSet(np.zeros(n + 1, np.int64), none, none, np.zeros((0, d)), np.zeros((0, d)),
                                  np.zeros(0))
     q = np.zeros(n + p) if d == 2 else np.tile(np.eye(4)[0], (n + p, 1))
     spin = np.zeros(n + p) if d == 2 else np.zeros((n + p, 3))

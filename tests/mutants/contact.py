@@ -830,7 +830,7 @@ def solve_lcp(A, b):
 
 wrong("9.8", "does not call check_independent")(murty(check=lambda A, b: None))
 wrong("9.8", "never lets a contact go that pushes once")(murty(sides="on"))
-wrong("9.8", "ends with all λ at 0, whatever b is")(murty(sides="off"))
+wrong("9.8", "ends with all λ at 0, regardless of b")(murty(sides="off"))
 wrong("9.8", "starts with all contacts pushing, drops one that pulls at a time, and takes none back")(
     murty(sides="drops one"))
 wrong("9.8", "starts with all contacts pushing, drops all that pull at once, and takes none back")(
@@ -901,7 +901,7 @@ for old, new in (
         (", right[k] = np.where(pushes, A[k], 0.0), -b[k]", " = np.where(pushes, A[k], 0.0)"),
         ("    if wrong < 0:", "    if True:"),
         ("A @ lam + b, CONVERGED", "A @ lam, CONVERGED")):
-    edit("9.8", "ends with all λ at 0, whatever b is", old, new)
+    edit("9.8", "ends with all λ at 0, regardless of b", old, new)
 
 
 @right("9.8", "tells pushing contacts by a set, and solves for them only")
@@ -1565,7 +1565,7 @@ wrongs("9.12", soft, {
     "uses ζ² in place of ζ": {"law": lambda s, z, gap, dt: (-s * gap / (dt * (2.0 * z * z + s)),
                                                             1.0 / (s * (2.0 * z * z + s)))},
     "takes four times the damping": {"damping": 4.0},
-    "uses critical damping whatever ζ is": {"law": lambda s, z, gap, dt: (-s * gap / (dt * (2.0 + s)),
+    "uses critical damping for every ζ": {"law": lambda s, z, gap, dt: (-s * gap / (dt * (2.0 + s)),
                                                                           1.0 / (s * (2.0 + s)))},
     "uses π in place of 2π": {"angular": np.pi},
     "divides the frequency by 2π": {"angular": 0.5 / np.pi},
@@ -1801,7 +1801,7 @@ edits("9.14", {
     "takes the first old contact that is near enough, not the nearest": ("nearest = squared", "nearest = 0.0"),
     "leaves out the first old contact of a body": ("range(old.first[i], old.first[i + 1])",
                                                    "range(old.first[i] + 1, old.first[i + 1])"),
-    "looks at all old contacts, whatever their a": ("range(old.first[i], old.first[i + 1])", "range(old.a.size)"),
+    "looks at all old contacts, regardless of their a": ("range(old.first[i], old.first[i + 1])", "range(old.a.size)"),
     "never finds an old contact, so that all J are 0": ("old.first[i], old.first[i + 1]",
                                             "old.first[contacts.b[k]], old.first[contacts.b[k] + 1]"),
     "looks at the old contacts of the next body": ("old.first[i], old.first[i + 1]",
@@ -2311,9 +2311,9 @@ edits("9.16", {
 
 # 9.17 -----------------------------------------------------------------------------------------------------------
 edits("9.17", {
-    "uses 1/A_kk for the normal, whatever r is": ("J[n] - r[n] * (A[n] @ J + b[n])",
+    "uses 1/A_kk for the normal, regardless of r": ("J[n] - r[n] * (A[n] @ J + b[n])",
                                                   "J[n] - (A[n] @ J + b[n]) / A[n, n]"),
-    "uses 1/A_kk for friction, whatever r is": ("J[t] - r[t] * (A[t] @ J + b[t])",
+    "uses 1/A_kk for friction, regardless of r": ("J[t] - r[t] * (A[t] @ J + b[t])",
                                                 "J[t] - (A[t] @ J + b[t]) / A[t, t]"),
     "uses the factor of the normal for friction, too": ("r[t] *", "r[n] *"),
     "uses the factor of the first contact for all": ("r[n] *", "r[0] *"),

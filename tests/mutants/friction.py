@@ -40,7 +40,7 @@ edit("3.1", "takes the size of F for the normal force", "np.maximum(0.0, -(F @ n
 edit("3.1", "uses the last coordinate of F only", "-(F @ n)", "-F[-1]")
 edit("3.1", "returns the vector, not its size", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
 edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
-HOLDS_WHAT_LIFTS = edit("3.1", "returns the size of the normal part, whatever its direction",
+HOLDS_WHAT_LIFTS = edit("3.1", "returns the size of the normal part, regardless of its direction",
                         "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)")
 edit("3.1", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
 edit("3.1", "leaves out a force straight into the support", "-(F @ n))", "-(F @ n)) * np.any(tangential(F, n))")
@@ -206,7 +206,7 @@ edit("3.5", "exchanges the two cases", "m * speed <= limit", "m * speed > limit"
 edit("3.5", "returns a change of velocity, not an impulse, when it stops the body", "return -m * v_t", "return -v_t")
 edit("3.5", "divides by the mass", "return -m * v_t", "return -v_t / m")
 edit("3.5", "forgets the mass in the minimum", "np.minimum(limit, m * speed)", "np.minimum(limit, speed)")
-edit("3.5", "stops whatever slides along an axis", "m * speed <= limit", "m * speed <= limit or np.any(v_t == 0.0)")
+edit("3.5", "stops all that slides along an axis", "m * speed <= limit", "m * speed <= limit or np.any(v_t == 0.0)")
 for words, test in partial_tests("v_t"):
     edit("3.5", f"takes a slip for none if {words} is 0", "return -m",
          f"return 0.0 * v_t if {test} == 0.0 else -m")
@@ -271,7 +271,7 @@ edit("3.6", "leaves out a body that slides along one of the tangents", "return -
 for words, test in partial_tests("v_t"):
     edit("3.6", f"takes a slip for none if {words} is 0", "return -first",
          f"return 0.0 * v_t if {test} == 0.0 else -first")
-edit("3.6", "stops whatever is in the circle around the square", "limit = cone_radius(mu, j_n)",
+edit("3.6", "stops all that is in the circle around the square", "limit = cone_radius(mu, j_n)",
      "limit = cone_radius(mu, j_n); first, second = m * (v_t @ t_1), m * (v_t @ t_2)\n"
      "    if np.hypot(first, second) <= np.sqrt(2.0) * limit: return -m * v_t")
 edit("3.6", "treats a body slower than 10 nm/s as at rest", "return -first",
@@ -424,7 +424,7 @@ edit("3.9", "divides the speed by μ g and omits the drive",
      "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
 edit("3.9", "assumes the deceleration at t for the whole step", "moving, stopped = 0.0, dt",
      f"return min(dt, v @ d / abs({BRAKE} - acceleration(t, x, v, p) @ d))")
-edit("3.9", "tests whether the block moves, whatever its direction, so that it never stops",
+edit("3.9", "tests whether the block moves in any direction, so that it never stops",
      "kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
      "np.any(kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1])")
 edit("3.9", "exchanges the two halves", "middle, d, p)[1] @ d > 0.0", "middle, d, p)[1] @ d <= 0.0")
@@ -692,7 +692,8 @@ edit("3.14", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 
 edit("3.16", "leaves a particle at rest inside", "if phi < 0.0:", "if phi < 0.0 and np.any(v):")
 SURFACE = "phi, n = surface(x, p)"
 for number in ("3.14", "3.16"):
-    edit(number, "always takes the plane, whatever surface is passed in", SURFACE, "phi, n = particle_plane_gap(x, p)")
+    edit(number, "always takes the plane, also where another surface is passed in", SURFACE,
+         "phi, n = particle_plane_gap(x, p)")
     edit(number, "takes the normal of the plane on every surface", SURFACE, f"{SURFACE}; n = p.n")
     edit(number, "computes the acceleration of a particle at rest", "acceleration(t, x, v, p)",
          "acceleration(t, x, 0.0 * v, p)")
@@ -809,7 +810,7 @@ edit("3.19", "is the drag of a fluid, which never quite stops the block", FIRST,
 edit("3.19", "turns the block round without slowing it", FIRST, "return -2.0 * m * v_t")
 edit("3.19", "brakes along the blade only", "np.sign(v_t[1]) * across", "0.0")
 edit("3.19", "stops the block at once, even without a load", FIRST, "return -m * v_t")
-edit("3.19", "takes the load of a block of 1 kg, whatever the load is", FIRST,
+edit("3.19", "takes the load of a block of 1 kg, regardless of the load", FIRST,
      "j_n = 0.2; along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))")
 edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * along, np.sign(v_t[1]) * across]",
      "[np.sign(v_t[1]) * across, np.sign(v_t[0]) * along]")

@@ -429,7 +429,7 @@ edit("7.11", "returns a loss for every impact",
      "J @ u + 0.5 * (J @ times(K, J))", "-abs(J @ u + 0.5 * (J @ times(K, J)))")
 edit("7.11", "returns a gain for every impact",
      "J @ u + 0.5 * (J @ times(K, J))", "abs(J @ u + 0.5 * (J @ times(K, J)))")
-edit("7.11", "counts J · u as a loss, whatever its sign", "J @ u +", "-abs(J @ u) +")
+edit("7.11", "counts J · u as a loss, regardless of its sign", "J @ u +", "-abs(J @ u) +")
 edit("7.11", "forgets K in the second term", "J @ times(K, J)", "J @ J")
 edit("7.11", "subtracts the second term", "J @ u + 0.5", "J @ u - 0.5")
 edit("7.11", "halves the first term, too", "J @ u +", "0.5 * (J @ u) +")
@@ -704,7 +704,8 @@ edit("7.16", "stops a ball that starts inside in place of reflecting it", "a, le
      "a, left = acceleration(t, x, v, p), dt\n    if gap(x, p) < 0.0 and v @ p.n < 0.0:\n"
      "        x, v = x - gap(x, p) * p.n, tangential(v, p.n)")
 wrong("7.16", "stops the sliding of a resting ball")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
-edit("7.16", "keeps a resting ball on the plane, whatever lifts it", "return slide_on_plane(x, v, a, left, p.n)",
+edit("7.16", "keeps a resting ball on the plane, also where a force lifts it",
+     "return slide_on_plane(x, v, a, left, p.n)",
      "return free_flight(x, tangential(v, p.n), tangential(a, p.n), left)")
 edit("7.16", "moves a ball back that starts inside and already leaves", "a, left = acceleration(t, x, v, p), dt",
      "a, left = acceleration(t, x, v, p), dt\n    x = x - min(0.0, gap(x, p)) * p.n")

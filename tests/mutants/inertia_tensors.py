@@ -21,7 +21,7 @@ def centre_of_mass(m, x):
     return M, X
 
 
-edit("4.1", "takes the mean of the positions, whatever the masses", "m @ x / M", "np.sum(x, axis=0) / m.size")
+edit("4.1", "takes the mean of the positions, regardless of the masses", "m @ x / M", "np.sum(x, axis=0) / m.size")
 edit("4.1", "forgets to divide by the mass", "m @ x / M", "m @ x")
 edit("4.1", "divides by the number of points", "m @ x / M", "m @ x / m.size")
 edit("4.1", "divides by zero", 'check_positive("total mass [kg]", M)', "pass")
@@ -74,9 +74,9 @@ def angular_momentum(m, x, v, about):
 
 
 V_CROSS_R = edit("4.3", "takes v × r in place of r × v", "cross(x[n] - about, v[n])", "cross(v[n], x[n] - about)")
-ABOUT_THE_ORIGIN = edit("4.3", "takes L about the origin, whatever the point `about` is", "x[n] - about", "x[n]")
+ABOUT_THE_ORIGIN = edit("4.3", "takes L about the origin, regardless of the point `about`", "x[n] - about", "x[n]")
 edit("4.3", "forgets the masses", "m[n] * cross", "cross")
-edit("4.3", "takes L about the centre of mass, whatever the point `about` is",
+edit("4.3", "takes L about the centre of mass, regardless of the point `about`",
      "x[n] - about", "x[n] - m @ x / np.sum(m)")
 edit("4.3", "refuses a total mass of zero or less", "L = np.zeros(3)",
      'check_positive("total mass [kg]", np.sum(m)); L = np.zeros(3)')
@@ -604,7 +604,7 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
 
 
 right("4.16", "counting every edge")(closing())
-wrong("4.16", "counts the triangles at each edge, whatever their direction")(closing(directed=False))
+wrong("4.16", "counts the triangles at each edge, regardless of their direction")(closing(directed=False))
 wrong("4.16", "looks for one reversed edge in place of comparing the counts")(closing(counted=False))
 wrong("4.16", "does not test whether the numbers of the corners exist")(closing(ranged=False))
 wrong("4.16", "names corner 0 in the error, whichever edge is open")(closing(named=lambda edges: 0))
@@ -670,7 +670,7 @@ INSIDE_OUT_MESH = edit("4.17", "accepts a mesh that is inside-out", "volume <= M
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
 edit("4.17", "accepts a flat mesh if its round-off volume is positive",
      "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
-edit("4.17", "refuses what is small, whatever its shape", "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
+edit("4.17", "refuses what is small, regardless of its shape", "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
      "MOMENT_ROUND_OFF")
 edit("4.17", "compares the volume with a length", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
 edit("4.17", "measures the size of the mesh on the positive side of the first corner only",

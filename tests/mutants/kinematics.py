@@ -770,7 +770,7 @@ SEEN = {                                                                  # of a
     "omits the last row of the task": rows(slice(-1)),
     "uses reach_2d in place of the task":
         lambda task: lambda theta, target, arm: worked.reach_2d(theta, target[:2].copy(), arm),
-    "takes target − x for e, whatever the task is":
+    "takes target − x for e, regardless of the task":
         lambda task: lambda theta, target, arm: (target - worked.joint_positions(theta, arm.lengths)[-1],
                                                  worked.jacobian_2d(worked.joint_positions(theta, arm.lengths))),
     "computes J for θ = 0":
@@ -962,9 +962,9 @@ wrongs("11.10", by_systems, {
 edit("11.10", "keeps the last direction only", "J_plus[k, r] += v", "J_plus[k, r] = v")
 edit("11.10", "keeps the small singular values only", "if not sigma[i] <= SINGULAR", "if sigma[i] <= SINGULAR")
 edit("11.10", "divides zero by zero for J = 0", "not sigma[i] <= SINGULAR", "not sigma[i] < SINGULAR")
-edit("11.10", "inverts J Jᵀ, whatever J is", "u, sigma, v = np.linalg.svd(J, False)",
+edit("11.10", "inverts J Jᵀ, regardless of J", "u, sigma, v = np.linalg.svd(J, False)",
      "return J.T @ np.linalg.inv(J @ J.T)")
-edit("11.10", "inverts JᵀJ, whatever J is", "u, sigma, v = np.linalg.svd(J, False)",
+edit("11.10", "inverts JᵀJ, regardless of J", "u, sigma, v = np.linalg.svd(J, False)",
      "return np.linalg.inv(J.T @ J) @ J.T")
 edit("11.10", "inverts J Jᵀ with a small damping", "u, sigma, v = np.linalg.svd(J, False)",
      "return J.T @ np.linalg.inv(J @ J.T + 1e-12 * np.eye(J.shape[0]))")
@@ -1465,8 +1465,8 @@ wrongs("11.15", between_limits, {
     "blocks joints that are pushed inwards": {"out": lambda push: (push > 0.0, push < 0.0)},
     "blocks joints at their upper limit that are pushed inwards": {"out": lambda push: (push < 0.0, push < 0.0)},
     "blocks joints at their lower limit that are pushed inwards": {"out": lambda push: (push > 0.0, push > 0.0)},
-    "blocks joints at an upper limit, whatever the direction": {"out": lambda push: (push < 0.0, push > -np.inf)},
-    "blocks joints at a lower limit, whatever the direction": {"out": lambda push: (push > -np.inf, push > 0.0)},
+    "blocks joints at an upper limit, regardless of the direction": {"out": lambda push: (push < 0.0, push > -np.inf)},
+    "blocks joints at a lower limit, regardless of the direction": {"out": lambda push: (push > -np.inf, push > 0.0)},
     "blocks joints that nothing pushes": {"out": lambda push: (push <= 0.0, push >= 0.0)},
     "asks the damped step, not Jᵀ e, what points out": {"push": damped},
     "asks the pseudo-inverse, not Jᵀ e, what points out": {"push": lambda e, J, weight: np.linalg.pinv(J, 1e-10) @ e},
@@ -1544,7 +1544,7 @@ wrongs("11.16", freedom, {
     "does not project the pull into the null space": {"combine": lambda P, J, e, z: P @ e + z},
     "omits the step towards the target": {"combine": lambda P, J, e, z: z - P @ (J @ z)},
     "omits the pull": {"combine": lambda P, J, e, z: P @ e},
-    "goes to rest, whatever the target is": {"combine": lambda P, J, e, z: z},
+    "goes to rest, regardless of the target": {"combine": lambda P, J, e, z: z},
     "adds what the pull moves to the error, where it is subtracted":
         {"combine": lambda P, J, e, z: P @ e + z + P @ (J @ z)},
     "projects onto what moves the end, not onto what does not": {"combine": lambda P, J, e, z: P @ e + P @ (J @ z)},
@@ -1563,7 +1563,7 @@ wrongs("11.16", freedom, {
         P @ e + np.linalg.svd(J)[2][-1] * (np.linalg.svd(J)[2][-1] @ z)},
     "keeps all vectors v but the first":
         {"combine": lambda P, J, e, z: P @ e + np.linalg.svd(J)[2][1:].T @ (np.linalg.svd(J)[2][1:] @ z)},
-    "takes as many null vectors as there are joints more than rows, whatever the rank is":
+    "takes as many null vectors as there are joints more than rows, regardless of the rank":
         {"combine": lambda P, J, e, z: P @ e + np.linalg.svd(J)[2][len(e):].T @ (np.linalg.svd(J)[2][len(e):] @ z)},
     "uses the null space only where there are more joints than rows":
         {"combine": lambda P, J, e, z: P @ e + (z - P @ (J @ z)) * (len(z) > len(e))},
@@ -1622,7 +1622,7 @@ edit("11.2", "returns zeros where the joint is as high as the end", "return J",
 TURN = "0.5 * np.arctan2(2.0 * b, a - c)"
 edit("11.3", "takes two singular values, which a single joint does not have",
      "return longer, np.sqrt(squared) / longer,", "return longer, np.linalg.svd(J)[1][1],")
-edit("11.3", "takes +45° for a = c, whatever b is", TURN, f"({TURN} if abs(a - c) > 1e-6 else 0.25 * np.pi)")
+edit("11.3", "takes +45° for a = c, regardless of b", TURN, f"({TURN} if abs(a - c) > 1e-6 else 0.25 * np.pi)")
 edit("11.3", "chooses between two arctangents by a > c", TURN,
      "0.5 * np.arctan(2.0 * b / (a - c)) + (0.0 if a > c else 0.5 * np.pi)")
 edit("11.3", "takes a short axis below 1e-10 σ₁ for zero", "np.sqrt(squared) / longer,",
@@ -1943,7 +1943,7 @@ edit("11.12", "returns 1 for the damped step, too, where the gain is 0", FACTORS
 edit("11.12", "limits the gain to 10", "gain * sigma**2", "min(gain, 10.0) * sigma**2")
 edit("11.13", "takes the end from the task, which is not used", ENDS,
      "e, _ = task(theta, target, arm); end_x, end_y = target[0] - e[0], target[1] - e[1]")
-edit("11.13", "does nothing where the end is at the target, whatever the limits are", ENDS,
+edit("11.13", "does nothing where the end is at the target, regardless of the limits", ENDS,
      f"{ENDS}\n    if end_x == target[0] and end_y == target[1]: return theta")
 edit("11.13", "does not move a joint from beyond one limit further than to that limit", NEW,
      f"{NEW} if arm.low[k] <= theta[k] <= arm.high[k] or arm.low[k] <= wish <= arm.high[k] "
@@ -1966,13 +1966,13 @@ edit("11.14", "takes joints nearer than 1e-6 m for one on the way back", "point_
      "point_at(x[k + 1], x[k] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k + 1],")
 edit("11.14", "takes joints nearer than 1e-6 m for one on the way forth", "point_at(x[k], x[k + 1],",
      "point_at(x[k], x[k + 1] if np.sum((x[k] - x[k + 1]) ** 2) > 1e-12 else x[k],")
-edit("11.15", "does nothing where e is 0, whatever the limits are", "wish, J =",
+edit("11.15", "does nothing where e is 0, regardless of the limits", "wish, J =",
      "if not np.any(e): return theta.copy()\n    wish, J =")
 edit("11.15", "adds the step to angles that it has set to the limits", "theta + sum_of_rows",
      "np.clip(theta, arm.low, arm.high) + sum_of_rows")
-edit("11.15", "blocks joints whose two limits are equal, whatever the direction", "if (theta[k] >= arm.high[k]",
+edit("11.15", "blocks joints whose two limits are equal, regardless of the direction", "if (theta[k] >= arm.high[k]",
      "if arm.low[k] == arm.high[k] or (theta[k] >= arm.high[k]")
-edit("11.15", "blocks joints beyond a limit, whatever the direction", "if (theta[k] >= arm.high[k]",
+edit("11.15", "blocks joints beyond a limit, regardless of the direction", "if (theta[k] >= arm.high[k]",
      "if theta[k] > arm.high[k] or theta[k] < arm.low[k] or (theta[k] >= arm.high[k]")
 wrongs("11.15", between_limits, {"sets joints beyond a limit to the limit, without a step": {
     "done": lambda theta, change, arm: np.where(clipped(theta, arm) == theta, clipped(theta + change, arm),
@@ -2122,7 +2122,7 @@ for number, where, what in (("11.9", "arm.gain * (e @ J)", "{} * arm.gain * (e @
                         ("whose first number is 0", "(e[0] != 0.0)"), ("below 1e-14", "(np.abs(e) > 1e-14)"),
                         ("whose largest number is not above 0", "(np.max(e) > 0.0)")):
         edit(number, f"takes an e for zero {story}", where, what.format(test))
-edit("11.10", "takes singular values below 1e-15 for 0, whatever the largest is", CUTOFF, f"max({CUTOFF}, 1e-15)")
+edit("11.10", "takes singular values below 1e-15 for 0, regardless of the largest", CUTOFF, f"max({CUTOFF}, 1e-15)")
 edit("11.10", "adds a small number to what it divides by", "/ sigma[i]", "/ (sigma[i] + 1e-30)")
 for number in ("11.11", "11.15"):
     edit(number, "uses a damping of at least 1e-9 m", "arm.damping * arm.damping", "max(arm.damping, 1e-9) ** 2")

@@ -75,7 +75,7 @@ def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g,
 
 right("8.2", "all points at once")(projecting())
 wrong("8.2", "moves the wrong way")(projecting(sign=1.0))
-wrong("8.2", "moves every point alike, whatever its mass")(projecting(mass=False))
+wrong("8.2", "moves every point alike, regardless of its mass")(projecting(mass=False))
 wrong("8.2", "omits the masses in the denominator")(projecting(total=lambda w, g: np.sum(g * g)))
 wrong("8.2", "takes gradients for unit vectors")(projecting(total=lambda w, g: np.sum(w)))
 wrong("8.2", "corrects half of the error only")(projecting(sign=-0.5))
@@ -308,7 +308,7 @@ def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, 
 
 right("8.6", "with vectors")(sweeping())
 wrong("8.6", "ignores the stiffness: always corrects the whole error")(sweeping(stiff=False))
-wrong("8.6", "moves both ends equally, whatever their masses")(sweeping(by_mass=False))
+wrong("8.6", "moves both ends equally, regardless of their masses")(sweeping(by_mass=False))
 wrong("8.6", "reverses the corrections")(sweeping(sign=-1.0))
 wrong("8.6", "corrects all links at once, from the old positions")(sweeping(jacobi=True))
 wrong("8.6", "visits the links from the last to the first")(sweeping(backwards=True))

@@ -487,7 +487,7 @@ edits("10.5",
 
 
 edits("10.5",
-      ("widens the boxes by 1 m, whatever the margin is", "low - p.margin, high + p.margin", "low - 1.0, high + 1.0"),
+      ("widens the boxes by 1 m, regardless of the margin", "low - p.margin, high + p.margin", "low - 1.0, high + 1.0"),
       ("finds gaps a little larger than the margin", "pairs, p.margin)", "pairs, p.margin * (1.0 + 1e-6))"),
       ("finds gaps a little smaller than the margin only", "pairs, p.margin)", "pairs, p.margin * (1.0 - 1e-6))"),
       ("takes heavy bodies for immovable", ", p.inv_mass)", ", np.where(p.inv_mass > 1e-3, p.inv_mass, 0.0))"),
@@ -682,7 +682,7 @@ for number, name, dimension, moved, apply, sweep in (
           ("makes one sweep only", LOOP, "for _ in range(1):"),
           ("makes one sweep too few", LOOP, "for _ in range(p.sweeps - 1):"),
           ("makes one sweep too many", LOOP, "for _ in range(p.sweeps + 1):"),
-          ("makes ten sweeps, whatever p.sweeps is", LOOP, "for _ in range(10):"),
+          ("makes ten sweeps, regardless of p.sweeps", LOOP, "for _ in range(10):"),
           ("makes twice as many sweeps", LOOP, "for _ in range(2 * p.sweeps):"),
           ("makes no sweep", LOOP, "for _ in range(0):"),
           ("begins each sweep with zero impulses", "omega, J, aim", "omega, 0.0 * J, aim"),
@@ -1190,7 +1190,7 @@ edits("10.12",
        "J = -(v[0] - omega * r[1]) / (inv_mass + inv_inertia * r[1] ** 2); "
        "return v + J * inv_mass * np.array([1.0, 0.0]), omega - inv_inertia * r[1] * J"),
       ("stops only the velocity of the centre along r", ANGULAR, "return v - (v @ r) / (r @ r) * r, omega"),
-      ("divides the velocity of the corner by 1/m + |r|²/I, whatever its direction", ANGULAR,
+      ("divides the velocity of the corner by 1/m + |r|²/I, regardless of its direction", ANGULAR,
        "lever = np.array([-r[1], r[0]]); J = -(v + omega * lever) / (inv_mass + inv_inertia * (r @ r)); "
        "return v + inv_mass * J, omega + inv_inertia * (lever @ J)"),
       ("takes r from the corner to the centre", ANGULAR, f"r = -r; {ANGULAR}"),
@@ -1390,9 +1390,9 @@ edits("10.15",
       ("returns the gain at the end, not the largest one", "np.maximum(gain, rest - lowest)", "rest - lowest"),
       ("returns the largest loss", OVER,
        ALL.format("max(e[j] - e[k] for k in range(e.size) for j in range(k + 1))") + f"\n    {OVER}"),
-      ("returns zero, whatever the histories are", "np.maximum(gain, rest - lowest)",
+      ("returns zero, regardless of the histories", "np.maximum(gain, rest - lowest)",
        "np.maximum(gain, lowest - rest)"),
-      ("returns the largest minus the smallest, whatever their order", DONE,
+      ("returns the largest minus the smallest, regardless of their order", DONE,
        "return np.max(energies - work) - np.min(energies - work)"),
       ("omits the last time", "range(energies.size)", "range(energies.size - 1)"),
       ("omits the first time", "range(energies.size)", "range(1, energies.size)"),
@@ -1635,7 +1635,7 @@ edits("10.9",
       ("takes the velocity of the floor at the old position while the ball slips", SLIP,
        f"{SLIP}; free, _ = stop_slip(v, omega, {AHEAD}, dt, ball._replace(mu=np.inf)); pushed, turned = "
        "(pushed, turned) if norm(free - pushed) < 1e-12 else stop_slip(v, omega, support_velocity(x, ball), dt, ball)"),
-      ("leaves a ball at rest where it is if the floor rests and is level, whatever the load", SLIP,
+      ("leaves a ball at rest where it is if the floor rests and is level, regardless of the load", SLIP,
        "if not (v.any() or omega.any() or ball.gravity[:2].any() or ball.floor_v.any() or ball.floor_omega.any()): "
        f"return x.copy(), q.copy(), v.copy(), omega.copy()\n    {SLIP}"),
       ("omits friction that changes v by less than 0.1 mm/s", SLIP,
@@ -1657,7 +1657,7 @@ edits("10.11",
        GOES_ON.format("slip_time(v, omega, ball) == 0.0")),
       ("leaves a ball at rest where it is, also on a slope", f"first = {UNTIL}",
        GOES_ON.format("not (v.any() or omega.any())")),
-      ("leaves a ball at rest where it is if the floor is level, whatever the load", f"first = {UNTIL}",
+      ("leaves a ball at rest where it is if the floor is level, regardless of the load", f"first = {UNTIL}",
        GOES_ON.format("not (v.any() or omega.any() or ball.gravity[:2].any())")),
       ("evaluates the load at t + dt where the ball does not slip", "load, t + first, x",
        "load, t + (first if first > 0.0 else dt), x"),
@@ -1774,9 +1774,9 @@ edit("10.17", "lets a part of a step count",
      "np.ceil((gap - margin) / (speed * dt))", "(gap - margin) / (speed * dt)")
 edit("10.17", "takes one step, wherever the body begins",
      "np.maximum(0.0, np.ceil((gap - margin) / (speed * dt)))", "1.0 + 0.0 * margin")
-edit("10.17", "takes the worst case, one whole step less the margin, whatever the gap is", "steps * speed * dt - gap",
+edit("10.17", "takes the worst case, one whole step less the margin, regardless of the gap", "steps * speed * dt - gap",
      "speed * dt - margin")
-edit("10.17", "takes one whole step for the depth, whatever the gap is", "steps * speed * dt - gap", "speed * dt")
+edit("10.17", "takes one whole step for the depth, regardless of the gap", "steps * speed * dt - gap", "speed * dt")
 COUNT = "np.ceil((gap - margin) / (speed * dt))"
 edits("10.17",
       ("takes at most 1000 steps", COUNT, f"np.minimum(1000.0, {COUNT})"),

@@ -8,7 +8,7 @@ from datetime import datetime
 import pytest
 
 from validate.book import course, weeks
-from validate.grading import example
+from validate.grading import example, release
 from validate.measure.selection import Plan
 from validate.reference.stored import kept
 from validate.subject import modules
@@ -23,6 +23,10 @@ TEXTS = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for
 README = TEXTS["README.md"]
 
 
+AVOIDED = re.compile(r"\b(no|some|every|any)body\b|\bwh(o|at)ever\b", re.I)      # where a subject exists
+READ = {".py", ".md", ".html", ".js", ".ipynb", ".json", ".toml", ".yml"}       # endings of files that people read
+
+
 @pytest.fixture(scope="module")
 def scenes():
     return {name: modules.bind_scene(name) for name in modules.scene_names()}
@@ -33,6 +37,13 @@ def test_readme_counts_the_lessons_and_has_a_row_for_each():
     assert f"in Python: {NUMBERS[len(names)]} lessons" in README
     assert re.findall(r"^\| (\d+) \| `(\w+)` \|", README, re.M) == [
         (str(number), name) for number, name in enumerate(names, 1)]
+
+
+def test_sentences_name_their_subject():
+    files = (ROOT / name for name in release.tracked(dirty=True))
+    texts = {path: path.read_text(encoding="utf-8") for path in files if path.suffix in READ and path.is_file()}
+    assert len(texts) > 500
+    assert not {path: found[0] for path, text in texts.items() if (found := AVOIDED.search(text))}
 
 
 def test_the_class_of_the_walk_through_was_handed_in_in_time(tmp_path):

@@ -83,7 +83,7 @@ def grade(
     sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})
     with alone_in(writable(out)):
         settings = marking.settings(lessons, secret(out, seed), worth)
-        known = {*people, *intake.unclear, *intake.everybody()}
+        known = {*people, *intake.unclear, *intake.students()}
         given = marks.read(class_, settings, known, lambda told: say([told]))
         say([marks.told(given)] if given else [])
         raise typer.Exit(run(intake, settings, people, terms, jobs, executor, out, given))

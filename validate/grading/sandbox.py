@@ -139,12 +139,12 @@ def command(binds, filter):
         return [*around, "--dir", "/proc", "--remount-ro", "/", *locked]
     # The limit of processes does not bind root.  The program therefore runs as a user who owns nothing and cannot
     # make users.  The inner bwrap needs /proc for that, and hides it.
-    somebody = str(60000 + secrets.randbelow(5000))
+    user = str(60000 + secrets.randbelow(5000))
     capabilities = ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
-    as_somebody = ["setpriv", "--reuid", somebody, "--regid", somebody, "--clear-groups", "--no-new-privs"]
+    as_user = ["setpriv", "--reuid", user, "--regid", user, "--clear-groups", "--no-new-privs"]
     powerless = ["--inh-caps=-all", "--bounding-set=-all"]
     inner = ["bwrap", "--die-with-parent", "--dev-bind", "/", "/", "--tmpfs", "/proc", "--remount-ro", "/proc", *locked]
-    return [*around, "--proc", "/proc", "--remount-ro", "/", *capabilities, *as_somebody, *powerless, *inner]
+    return [*around, "--proc", "/proc", "--remount-ro", "/", *capabilities, *as_user, *powerless, *inner]
 
 
 def in_bubblewrap(binds, filter, program):

@@ -62,7 +62,7 @@ class Intake(NamedTuple):
         """Return all owners of a submission."""
         return self.sharing.get(student, (student,))
 
-    def everybody(self):
+    def students(self):
         """Return all students who submitted something that is read."""
         return [who for one in self.submissions for who in self.owners_of(one.student)]
 

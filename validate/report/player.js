@@ -26,7 +26,7 @@ const add = (parent, tag, more = {}) => {
   return element;
 };
 
-// The bar below a film. runs: [{label, colour, shown}]; draw(frame, magnified) draws. The bar stops while nobody can see the film.
+// The bar below a film. runs: [{label, colour, shown}]; draw(frame, magnified) draws. The bar stops while the film is out of sight.
 function controls(place, { last, seconds, runs, draw, reset, hint }) {
   const bar = document.createElement("div"), showing = Math.min(SECONDS.longest, Math.max(SECONDS.shortest, seconds));
   bar.className = "film-bar";

@@ -1,4 +1,4 @@
-// made from player3d/source.js 56ab95c2cce49f9f by npm run build
+// made from player3d/source.js 40cafbc91ef21ba9 by npm run build
 (()=>{(()=>{"use strict";if(globalThis.filmPlayer){globalThis.filmPlayer.start();return}let i=matchMedia("(prefers-reduced-motion: reduce)"),t=matchMedia("(prefers-color-scheme: dark)"),e={shortest:4,longest:14},n=[1,10,100,1e3,1e4],s=document.createElement("style");s.textContent=`
 .film-bar { display: flex; flex-wrap: wrap; gap: .3rem .8rem; align-items: center; font: 13px/1.5 system-ui, sans-serif; margin: .35rem 0; max-width: 46rem; }
 .film-bar input[type=range] { flex: 1 1 8rem; min-width: 6rem; } .film-bar output { font-variant-numeric: tabular-nums; min-width: 6.2rem; }

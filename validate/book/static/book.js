@@ -1,4 +1,4 @@
-// What the keyboard needs: whatever scrolls sideways can be reached by it.
+// What the keyboard needs: all that scrolls sideways can be reached by it.
 (() => {
 "use strict";
 const reach = () => document.querySelectorAll("pre, div.math, .katex-display, .table-wrapper, .cell_output > *").forEach(part => {

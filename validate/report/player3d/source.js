@@ -41,7 +41,7 @@ function figure(body, run) {
   const line = new LineBasicMaterial({ color: run.look === "engine" ? run.colour : "#1d2429" });
   if (run.look === "truth") line.name = "--ink";                     // a ghost is as dark or light as the page's letters
   group.add(new LineSegments(edges, line));
-  if (body.kind === "sphere" || body.kind === "cylinder" || body.kind === "capsule") {      // a mark, or nobody sees it turn
+  if (body.kind === "sphere" || body.kind === "cylinder" || body.kind === "capsule") {      // a mark shows that it turns
     const reach = body.kind === "sphere" ? body.r : body.r * 1.001, z = body.kind === "sphere" ? 0 : (body.length || 0) / 2;
     const ring = [...Array(33)].map((_, i) => new Vector3(0, reach * Math.cos(i * Math.PI / 16), (z || reach) * Math.sin(i * Math.PI / 16)));
     group.add(new Line(new BufferGeometry().setFromPoints(ring), new LineBasicMaterial({ color: "#1d2429" })));
@@ -152,7 +152,7 @@ function play(place) {
   camera.position.copy(home);
   controls.target.copy(centre);
   controls.update();
-  controls.enableZoom = false;                                         // the wheel scrolls the page until somebody chooses the picture
+  controls.enableZoom = false;                                         // the wheel scrolls the page until a reader chooses the picture
   view.style.touchAction = "pan-y";                                    // and so does a finger that moves up or down
   view.tabIndex = 0;
   view.setAttribute("role", "img");
