@@ -63,11 +63,10 @@ class CachedDispatch:
 
     def __init__(self, twin):
         self.twin, self.known = twin, {}
+        ITS_OWN_KIND.add(type(twin))
 
     def __call__(self, *arguments):
-        # a lesson's function may take another
-        arguments = [a.twin if type(a) in WRAPPED else a for a in arguments]
-        kinds = tuple([_kind(a) for a in arguments])
+        kinds = _kinds(arguments)
         if kinds not in self.known:
             from numba import typeof
             exact = tuple(map(typeof, arguments))
@@ -80,12 +79,12 @@ class CachedDispatch:
 class CheckedFirst:
     """A compiled function whose records are checked in plain Python before it starts."""
 
-    def __init__(self, twin, check, compiled=None):
-        self.twin, self.check, self.compiled = twin, check, compiled or twin
+    def __init__(self, twin, check):
+        self.twin, self.check, self.compiled = twin, check, CachedDispatch(twin)
 
     def __call__(self, *arguments):
         self.check(*arguments)
-        return self.compiled(*(a.twin if isinstance(a, CheckedFirst) else a for a in arguments))
+        return self.compiled(*arguments)
 
     def __getattr__(self, name):                                     # py_func, overloads … are those of the twin
         if name == "twin":
@@ -93,7 +92,8 @@ class CheckedFirst:
         return getattr(self.twin, name)
 
 
-WRAPPED = {CachedDispatch, CheckedFirst}
+NUMBERS = {float, int}
+ITS_OWN_KIND = {CachedDispatch, CheckedFirst}            # and numba's type of compiled functions
 
 
 def passed_over(p, state):
@@ -102,24 +102,20 @@ def passed_over(p, state):
 
 def cached_dispatch(function):
     """Return a compiled function as scenes call it."""
-    if isinstance(function, CheckedFirst):
-        return CheckedFirst(function.twin, function.check, CachedDispatch(function.twin))
-    return CachedDispatch(function)
+    return function if isinstance(function, CheckedFirst) else CachedDispatch(function)
+
+
+def _kinds(arguments):
+    """Return the properties of all arguments that decide which machine code they need.  Every call asks for them."""
+    return tuple([type(a) if type(a) in NUMBERS else a if type(a) in ITS_OWN_KIND else _kind(a) for a in arguments])
 
 
 def _kind(argument):
-    """Return the properties of an argument that decide which machine code it needs.
-
-    Every call asks for them, so what is frequent comes first.
-    """
+    """Return those of one argument that is no number and no function."""
     kind = type(argument)
-    if kind is float or kind is int:
-        return kind
     if kind is np.ndarray:
         return argument.dtype, argument.ndim, argument.flags.num
-    if isinstance(argument, tuple):
-        return kind, *[_kind(one) for one in argument]
-    return argument if hasattr(argument, "py_func") else getattr(argument, "kind_name", kind)
+    return (kind, _kinds(argument)) if isinstance(argument, tuple) else getattr(argument, "kind_name", kind)
 
 
 @cache
