@@ -149,7 +149,7 @@ def number(thing, value):
     """Return value as a float, which may be infinite or NaN.  Raises BadInput for a list, None or text."""
     converted = np.nan
     try:
-        converted = float(value)
+        converted = float(value * 1.0)                                     # float alone takes "1" for a number
     except Exception:
         raise BadInput(thing, "not a number", "give a number")             # noqa: B904   numba knows no `from`
     return converted

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from solutions import checks
 from solutions.checks import BadInput, Diverged
 from validate.subject import modules
 
@@ -23,6 +24,12 @@ def test_a_mesh_of_whole_numbers_moves_as_one_of_floats():
         whole = integrators.advance(step, springs.spring_network_acceleration, 0, x, v, 0.01, 20, mesh)
         floats = integrators.advance(step, springs.spring_network_acceleration, 0.0, 1.0 * x, 1.0 * v, 0.01, 20, mesh)
         assert np.array_equal(whole, floats) and whole[1].any()
+
+
+def test_text_is_no_number():
+    with pytest.raises(BadInput, match="not a number"):
+        checks.finite_number("mass m [kg]", "1")
+    assert checks.finite_number("mass m [kg]", np.int64(1)) == 1.0
 
 
 def test_a_rope_of_whole_numbers_falls():
