@@ -123,6 +123,13 @@ def test_a_zero_for_a_file_that_does_not_load_comes_with_its_reason(tmp_path):
     assert feedback == {"falling": (0.0, f"falling.py does not load: {got}"), "bouncing": (4.0, "")}
 
 
+def test_a_zero_without_a_file_that_can_be_read_says_what_was_handed_in(tmp_path):
+    one = result("ada", handed_in=(), problems=["notes.pdf was not read", "a.zip lies inside, and was not read"])
+    feedback = moodle(written(tmp_path, one)["moodle.csv"])["ada@example.org"]
+    said = "no file of this lesson that can be read: notes.pdf was not read; a.zip lies inside, and was not read"
+    assert feedback == {"falling": (0.0, said), "bouncing": (0.0, said)}
+
+
 def test_nbgrader_has_the_columns_of_its_own_export_first(tmp_path):
     head, *sample = csv.reader(io.StringIO(NBGRADER, newline=""))
     ours, *rows = csv.reader(io.StringIO(written(tmp_path, result("ada"))["grades.csv"], newline=""))

@@ -92,7 +92,8 @@ def entry(person, one, maxima):
         told = [marks.words(hand) for hand in one.hands_in(lesson)]
         late = [f"{number(account.penalty)} off for being late"] * bool(account.penalty)
         scores[lesson] = account.score
-        missing = "no file of this lesson that can be read" if one.problems else "not handed in"
+        why = "; ".join(map(line, one.problems))
+        missing = f"no file of this lesson that can be read: {why}" if why else "not handed in"
         remarks[lesson] = " | ".join([missing] * (not account.handed_in) + unloadable(one, lesson) + late + told)
     if marks.BY_HAND in maxima:
         hand = one.hands.get(marks.TOTAL) if one else None
