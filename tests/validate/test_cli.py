@@ -16,7 +16,7 @@ import pytest
 from solutions.checks import Diverged
 from validate import __main__ as cli
 from validate import measure, report
-from validate.engines.products import PYMUNK, Product
+from validate.engines.products import PYBULLET, PYMUNK, Product
 from validate.measure import record, traces
 from validate.notebook.pytest_process import quiet
 from validate.report import plots, summary
@@ -476,6 +476,7 @@ def turned():
         raise ImportError("initialization failed") from None
 
 
+@pytest.mark.skipif(not PYBULLET.installed(), reason="pybullet is not installed here")
 @pytest.mark.parametrize("interrupted", [lambda: signal.raise_signal(signal.SIGINT), turned],
                          ids=["as it is", "as another error"])
 def test_an_interrupted_recording_says_so(capsys, monkeypatch, interrupted):

@@ -17,7 +17,7 @@ PLAN = Plan(quick=False, speeds=("plain",))
 @functools.cache
 def rolling():
     """What the scene of a rolling ball gives, measured once for all tests."""
-    return parts("slide_then_roll", live=(PYMUNK, PYBULLET))
+    return parts("slide_then_roll")
 
 
 def parts(name, **changes):

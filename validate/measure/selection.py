@@ -26,7 +26,7 @@ class Plan(NamedTuple):
     of: str = "solutions"
     speeds: tuple = ("plain", "compiled")
     quick: bool = True
-    live: tuple = (PYMUNK, PYBULLET)         # engines that are installed; the others come from their records
+    live: tuple = tuple(one for one in (PYMUNK, PYBULLET) if one.installed())     # others come from their records
     overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
     most_steps: int | None = None            # for a notebook: a shorter sweep, of the first case only
     changes: tuple = ()                      # for a notebook: (field, value) pairs that replace fields of the Scene

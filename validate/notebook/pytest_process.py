@@ -15,10 +15,11 @@ import pytest
 from ..subject.modules import ROOT
 
 try:
+    import _multiprocessing  # noqa: F401                            # WebAssembly has none
     import multiprocessing
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
     PROCESSES = True
-except ImportError:                                                  # WebAssembly has none
+except ImportError:
     PROCESSES = False
 
 
