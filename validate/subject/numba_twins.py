@@ -162,7 +162,7 @@ def _count_references_in_one_thread():
     """Let compiled code count the references to its arrays by plain additions.
 
     numba adds with the processor's lock, so that threads may share an array.  A step that passes records of arrays on
-    takes 1.2 to 1.6 times as long by that.  All code here runs in one thread.
+    takes up to three times as long by that.  All code here runs in one thread.
     """
     from numba.core.cgutils import ir
     from numba.core.runtime import nrtdynmod
