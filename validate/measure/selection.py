@@ -19,6 +19,7 @@ from ..subject import modules
 
 REPEATS = 9                  # of a timed run; fewer of long ones
 NOTEBOOK = 0.02              # longest time of a timed run in a notebook [s]
+INSTALLED = tuple(engine for engine in (PYMUNK, PYBULLET) if engine.installed())
 
 
 class Plan(NamedTuple):
@@ -26,7 +27,7 @@ class Plan(NamedTuple):
     of: str = "solutions"
     speeds: tuple = ("plain", "compiled")
     quick: bool = True
-    live: tuple = tuple(one for one in (PYMUNK, PYBULLET) if one.installed())     # others come from their records
+    live: tuple = INSTALLED                  # engines that run here; the others come from their records
     overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
     most_steps: int | None = None            # for a notebook: a shorter sweep, of the first case only
     changes: tuple = ()                      # for a notebook: (field, value) pairs that replace fields of the Scene
