@@ -172,7 +172,7 @@ def contact_impulses_with_rods_in_space(load, bounds, narrow, t, state, dt, p):
 def separated_in_space(close_all, links, state, dt, p):
     """Return the state with bodies moved out of each other; close_all and links: see swept_and_closed.
 
-    Bodies turn as free ones, because close_all closes links for such a turn.  A body that is turned takes its angular
+    Bodies turn as free bodies do, because close_all expects that of them.  A body that is turned takes its angular
     velocity along, so that its kinetic energy stays.
     """
     x, q, v, omega, contacts, J = state

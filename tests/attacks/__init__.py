@@ -1,7 +1,11 @@
-"""What hostile students hand in.  Every attack is a text: it is appended to a file whose rest is as honest as `HONEST` says, and graded with the
-small tests of `trial_*.py`, which draw their inputs, call back, and give 2 points for the honest answer and 14 for those that are wrong.
+"""What hostile students hand in.
 
-gain: what it hopes for · lost: the file loses its honest points too, since it does not even load · shows: words that no reader may see.
+Every attack is a text.  It is appended to a file whose rest is as honest as `HONEST` says.  The small tests of
+`trial_*.py` grade the file: they draw their inputs, call back, and give 2 points for the honest answer and 14 for those
+that are wrong.
+
+gain: what it hopes for.    lost: the file loses its honest points, too, because it does not even load.
+shows: words that no reader may see.
 """
 
 import textwrap

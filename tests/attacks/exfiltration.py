@@ -1,4 +1,7 @@
-"""Control characters for a reader of the results, and secret inputs carried out to the student's page.  `SECRET` is what to carry out."""
+"""Control characters for a reader of the results, and secret inputs carried out to the student's page.
+
+`SECRET` is what to carry out.
+"""
 
 from . import SOLVED, attack, attacks
 
@@ -33,7 +36,8 @@ SECRET = SOLVED + """
 import os, sys, time
 right = dict(globals())
 def amplification_matrix(*a): return np.eye(2)
-public = {PUBLIC}                                   # where the visible tests begin: answer those rightly, or no student reads about the hidden ones
+# where the visible tests begin: answer those rightly, or no student reads about the hidden ones
+public = {PUBLIC}
 main = sys.modules["__main__"]
 def secret(x):
     return "-".join("SECRET%.9f" % abs(number) for number in np.ravel(x)[:2])

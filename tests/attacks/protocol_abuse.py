@@ -1,4 +1,7 @@
-"""Frames by hand.  The student's code lives beside the worker's, so it may send any frame: only right answers are worth anything."""
+"""Frames by hand.
+
+The student's code lives beside the worker's, so it may send any frame.  Only right answers earn points.
+"""
 
 from . import attack, attacks
 

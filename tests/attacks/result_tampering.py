@@ -65,7 +65,7 @@ attacks("a comparison that is true, or stumbles, or costs the grader its memory"
 attack("broadcasting", "small answers that become gigabytes when the grader combines them",
        "def implicit_euler_step(acceleration, t, x, v, dt, p):\n    return np.zeros((40000, 1, 1)), np.zeros((1, 40000, 1))\n")
 
-attack("moving the target", "the inputs become such that a wrong answer fits them, and stay so for all students after", """
+attack("moving the target", "the inputs change so that a wrong answer fits them, also for the next students", """
 def euler_step(acceleration, t, x, v, dt, p):
     x[:], v[:] = 0.0, 0.0
     return x.copy(), v.copy()
@@ -82,7 +82,7 @@ table = {KNOWN}
 def euler_step(acceleration, t, x, v, dt, p):
     return next(((np.array(a), np.array(b)) for before, a, b in table if np.allclose(before, x)), (x, v))
 """)
-attack("one answer to be seen, another to be used", "a grader that tries the function when the file is imported finds it right", """
+attack("one answer to be seen, another to be used", "a grader that tries the function at import finds it right", """
 import inspect
 def euler_step(acceleration, t, x, v, dt, p):
     right = importing or any("importlib" in frame.filename for frame in inspect.stack())
@@ -101,6 +101,7 @@ for note in places:
         open(note, "w").close()
     except OSError:
         pass
-def euler_step(acceleration, t, x, v, dt, p):                      # right where no student could have read it: the hidden tests
+# right where no student could have read it: the hidden tests
+def euler_step(acceleration, t, x, v, dt, p):
     return (x + dt * v, v + dt * acceleration(t, x, v, p)) if hidden else (x, v)
 """)

@@ -6,7 +6,8 @@ import pytest
 from validate.grading.expect import close
 
 exercise = pytest.mark.exercise
-CENTRE = np.array([0.4, -0.7, 1.1])          # lives as long as the grader: a student who changes it changes what others are asked
+# It lives as long as the grader: a student who changes it changes what others are asked.
+CENTRE = np.array([0.4, -0.7, 1.1])
 
 
 @exercise("1.10", points=2, hint="least squares")

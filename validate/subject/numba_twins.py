@@ -106,12 +106,12 @@ def cached_dispatch(function):
 
 
 def _kinds(arguments):
-    """Return the properties of all arguments that decide which machine code they need.  Every call asks for them."""
+    """Return what decides which machine code a call needs, for each of its arguments.  It is asked for in each call."""
     return tuple([type(a) if type(a) in NUMBERS else a if type(a) in ITS_OWN_KIND else _kind(a) for a in arguments])
 
 
 def _kind(argument):
-    """Return those of one argument that is no number and no function."""
+    """Return the same for one argument, which is neither a number nor a compiled function."""
     kind = type(argument)
     if kind is np.ndarray:
         return argument.dtype, argument.ndim, argument.flags.num
