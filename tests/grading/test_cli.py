@@ -1,17 +1,21 @@
 """What an instructor's commands say when something is not as it should be: one sentence, at once, and exit code 2."""
 
+import contextlib
 import errno
 import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import validate
 from validate.grading import __main__ as grade
-from validate.grading import autograder, ending, local, release, sandbox
+from validate.grading import autograder, children, ending, local, release, sandbox
 from validate.run.processes import alone_in
+from validate.subject import modules
 
 pytestmark = pytest.mark.xdist_group("what is handed in")
+check_seed = local.check_seed                            # other tests do not wait for it
 
 
 def run(capsys, program, *arguments):
@@ -28,6 +32,7 @@ def handed_in(tmp_path, monkeypatch, one_reader):
     def results(jobs, todo, settings):
         return ((s.student, *local.marked(s, settings)) for s in todo)
     monkeypatch.setattr(local, "results", results)
+    monkeypatch.setattr(local, "check_seed", lambda settings: None)
     monkeypatch.setattr(sandbox, "unavailable", lambda: "")            # there is no code to run
     (tmp_path / "class" / "cem").mkdir(parents=True)
     (tmp_path / "class" / "bob.zip").write_bytes(b"PK\3\4 no zip")
@@ -46,6 +51,22 @@ def test_without_a_sandbox_nothing_is_graded(capsys, handed_in, monkeypatch):
     assert code == 2 and not said and not handed_in[-1].exists()
     assert error.startswith("grade: the sandbox is not available (bubblewrap is not installed): ")
     assert len(error.splitlines()) == 1
+
+
+def test_a_seed_that_refuses_a_worked_answer_grades_no_class(capsys, tmp_path, handed_in, monkeypatch):
+    """Such a seed would take points from every right answer.  Here a worked answer is wrong in its place."""
+    wrong = SimpleNamespace(**vars(modules.bind("integrators")))
+    wrong.euler_step = wrong.symplectic_euler_step
+    monkeypatch.setattr(modules, "bind", lambda lesson, of="solutions": wrong)
+    monkeypatch.setattr(local, "check_seed", check_seed)
+    monkeypatch.setattr(children, "Child", lambda *begin: contextlib.nullcontext(lambda f, *given, patience: f(*given)))
+    out = tmp_path / "a.zip"
+    for program, arguments in ((grade, handed_in), (autograder, ["gradescope", "--dirty", "--out", out])):
+        code, _, error = run(capsys, program, *arguments, "--exercises", "1.1,1.2", "--seed", "a secret")
+        assert code == 2 and error.endswith(
+            ": the secret seed is one with which a test refuses the worked answer of 1.1: "
+            "give another --seed, and please report this one\n")
+    assert not out.exists() and not [*(tmp_path / "grades" / "results").iterdir()]
 
 
 @pytest.mark.parametrize("given", ["", "  ", "\n"])

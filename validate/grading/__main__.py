@@ -151,7 +151,7 @@ def run(intake, settings, people, terms, jobs, executor, out, given):
 def collected(intake, settings, jobs, executor, out):
     """Return ({student: result}, {student: reason for no result}): of an earlier run, or found and kept now.
 
-    Raises Ended.
+    Raises Ended, and BadInput for a seed with which a test refuses a worked answer.
     """
     kept, results, todo, failed = out / "results", {}, [], dict(intake.unclear)
     kept.mkdir(exist_ok=True)
@@ -161,6 +161,9 @@ def collected(intake, settings, jobs, executor, out):
             results[submission.student] = result
         else:
             todo.append(submission)
+    if todo:
+        with console.status("worked answers, with the secret inputs"):
+            local.check_seed(settings)
     columns = TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     with Progress(*columns, console=console) as bars:
         bar = bars.add_task("submissions", total=len(intake.submissions), completed=len(results))

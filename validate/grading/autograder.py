@@ -17,7 +17,7 @@ from validate.run.command import start
 from validate.run.store import writable, write_text, write_whole
 from validate.subject.modules import ROOT
 
-from . import children, choice, marking, pages, points, sandbox, submissions
+from . import children, choice, local, marking, pages, points, sandbox, submissions
 from .__main__ import Exercises
 from .release import tracked
 
@@ -83,6 +83,7 @@ def gradescope(
     if not seed.strip():
         raise BadInput("--seed", "empty", "give a secret")
     lessons, worth = choice.chosen(lesson or [], exercises)
+    local.check_seed(marking.settings(lessons, seed, worth))
     course = json.dumps({"lessons": lessons, "exercises": worth, "seed": seed, "late": late}, indent=1)
     files = {
         "setup.sh": (SETUP.encode(), 0o755),

@@ -3,9 +3,20 @@
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, wait
 
+from solutions.checks import BadInput
+
 from . import children, marking, sandbox
 
 DIED = "the grading process ended unexpectedly, or hung"
+
+
+def check_seed(settings):
+    """Raise BadInput where a test refuses the worked answer of an exercise with the inputs that this seed draws."""
+    with children.Child(sandbox.keep_out, sandbox.private) as child:
+        refused = child(marking.refused, settings, patience=marking.patience(settings))
+    if refused:
+        raise BadInput("the secret seed", f"one with which a test refuses the worked answer of {', '.join(refused)}",
+                       "give another --seed, and please report this one")
 
 
 def results(jobs, todo, settings):

@@ -99,6 +99,19 @@ def patience(settings):
     return 2.0 * CROWDED * BUDGET * len(settings.lessons)
 
 
+def refused(settings):
+    """Return the exercises of which a graded test refuses the worked answer with the secret inputs.
+
+    There should be none.  Such a test would refuse every right answer in the class.
+    """
+    found = []
+    for lesson in settings.lessons:
+        graded = {row[3] for row in settings.manifest if row[0] == lesson}
+        outcomes = points.grade(lesson, modules.bind(lesson, "solutions"), seed=settings.seed)
+        found += [o.exercise for o in outcomes if o.test in graded and o.status != "passed"]
+    return [*dict.fromkeys(found)]
+
+
 def mark(submission, settings):
     """Return the result of one submission, in types of JSON.
 
