@@ -83,7 +83,7 @@ def convergence(path, result):
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
         # a line has a gap where a run was lost
         seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]
-        order = f": {c['order']:.2f}" if words.shows_order(c) else ""
+        order = f": {words.slope(c)}" if words.shows_order(c) else ""
         own = [(row["dt"], max(error, bottom)) for row, error in words.own_errors(c) if error < TOP]
         if len(lost) < len(seen):
             axes.loglog(*zip(*seen), **look, lw=1.3, label=c["label"] + (order if not own else ""))

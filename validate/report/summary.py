@@ -61,7 +61,7 @@ def best_order(result):
     best = words.best_order(next(iter(result["cases"].values()))["ours"])
     if best is None:
         return "–"
-    return EXACT if best["expected"] == EXACT else f"{best['order']:.2f}"
+    return EXACT if best["expected"] == EXACT else words.slope(best)
 
 
 def faster(result):

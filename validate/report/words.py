@@ -52,7 +52,12 @@ def order(curve):
     """Order of convergence as measured, and in brackets as expected."""
     if curve["expected"] == EXACT:
         return EXACT
-    return f"{format(curve['order'], '.2f') if shows_order(curve) else '–'} ({curve['expected']})"
+    return f"{slope(curve) if shows_order(curve) else '–'} ({curve['expected']})"
+
+
+def slope(curve):
+    """Return the measured order of convergence as text, with a minus sign that is no hyphen."""
+    return f"{curve['order']:.2f}".replace("-", "−")
 
 
 def shows_order(curve):
@@ -311,12 +316,15 @@ def best_order(curves):
 
 def seen_in_steps(result):
     """Return one sentence: the result of the plot of errors against steps."""
-    best = best_order(next(iter(result["cases"].values()))["ours"])
+    case = next(iter(result["cases"].values()))
+    best = best_order(case["ours"])
     if best is None:
         return ""
     if best["expected"] == EXACT:
         return f"“{best['label']}” is exact up to round-off at every step."
-    return f"Of our methods, “{best['label']}” falls fastest, with order {best['order']:.2f}."
+    if len(case["ours"]) == 1:
+        return f"The error of “{best['label']}” falls with order {slope(best)}."
+    return f"Of our methods, “{best['label']}” falls fastest, with order {slope(best)}."
 
 
 # ---------------------------------------------------------------------------------------------- texts of scenes
@@ -461,9 +469,9 @@ def _departures(result):
     for (label, reason, whose), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
-        orders = sorted({f"{c['order']:.2f}" for _, c in found if c["order"]}, key=float)
-        slope = " to ".join(dict.fromkeys(orders[:1] + orders[-1:]))
-        shown = f"converges to that law, with order {slope}" if orders else "agrees with that law"
+        ordered = sorted((c for _, c in found if c["order"]), key=lambda c: c["order"])
+        shown = " to ".join(dict.fromkeys(map(slope, ordered[:1] + ordered[-1:])))
+        shown = f"converges to that law, with order {shown}" if ordered else "agrees with that law"
         yield (f"{label} departs from the truth by {size}{several}, because {reason} ({whose}). "
                f"The scene predicts this; the run {shown}.")
 
@@ -479,7 +487,7 @@ def _ours(result):
     shown = [c for c in next(iter(result["cases"].values()))["ours"]
              if c["order"] is not None and c["expected"] != EXACT and is_right(c)]
     if shown:
-        orders = "; ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown)
+        orders = "; ".join(f"{c['label']} {slope(c)} ({c['expected']})" for c in shown)
         yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
     if exact and result["refinement"]:
@@ -504,7 +512,7 @@ def _engines(case):
         clear = [r for r in c["rows"] if r["error"] is not None]
         if Verdict(c["verdict"]) is Verdict.AGREES and clear:
             known = c["order"] is not None and c["expected"]
-            shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if known else ""
+            shown = f", with order {slope(c)} where {c['expected']} is expected" if known else ""
             yield f"{named(c)} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
 
 
