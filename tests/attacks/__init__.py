@@ -77,14 +77,18 @@ def attack(name, gain, text, lost=False, shows=()):
 
 def attacks(gain, bodies, before="", shows=()):
     """Three at a time in one file, each as the body of a step of its own: {name: body}."""
+    functions = "euler_step", "midpoint_step", "implicit_euler_step"
     for three in [list(bodies.items())[n:n + 3] for n in range(0, len(bodies), 3)]:
         steps = [f"def {step}(acceleration, t, x, v, dt, p):\n{textwrap.indent(body.strip(), '    ')}\n"
-                 for step, (_, body) in zip(("euler_step", "midpoint_step", "implicit_euler_step"), three, strict=False)]
+                 for step, (_, body) in zip(functions, three, strict=False)]
         attack(" · ".join(name for name, _ in three), gain, "\n\n".join([before, *steps]), shows=shows)
 
 
 def looks(name, text):
-    """An attack that looks around when it is imported, and prints FOUND when there is something; all of them in one file."""
+    """An attack that looks around when it is imported, and prints FOUND when there is something.
+
+    All of them are in one file.
+    """
     LOOKS.append((name, text))
 
 
@@ -98,4 +102,9 @@ from . import (  # noqa: E402, F401      each adds its own
     system_calls,
 )
 
-attack("looks around: " + " · ".join(name for name, _ in LOOKS), "the answers, the seed, a way out", "\n".join(text for _, text in LOOKS), shows=("FOUND",))
+attack(
+    "looks around: " + " · ".join(name for name, _ in LOOKS),
+    "the answers, the seed, a way out",
+    "\n".join(text for _, text in LOOKS),
+    shows=("FOUND",),
+)

@@ -14,7 +14,8 @@ os.write(2, b"\\x1b[31m\\xff\\xfe\\x00")
 """)
 attacks("the instructor's terminal or page", {
     "control characters in an error": f'raise ValueError("{UGLY}")',
-    "control characters in the name of an error": f'raise type("{UGLY}".replace("\\x00", "").replace("\\ud800", ""), (Exception,), {{}})("x")',
+    "control characters in the name of an error":
+        f'raise type("{UGLY}".replace("\\x00", "").replace("\\ud800", ""), (Exception,), {{}})("x")',
     "control characters in NotImplementedError": f'raise NotImplementedError("{UGLY}")',
 })
 attack("a huge message", "a result of gigabytes", """
@@ -43,20 +44,34 @@ def secret(x):
     return "-".join("SECRET%.9f" % abs(number) for number in np.ravel(x)[:2])
 """
 
-attacks("the next submission knows them", {f"secret inputs {name}":
-    f"if np.min(np.abs(x[0] - public)) < 1e-12:\n    return right[sys._getframe().f_code.co_name](acceleration, t, x, v, dt, p)\n{text}" for name, text in {
+RIGHT_IF_VISIBLE = (
+    "if np.min(np.abs(x[0] - public)) < 1e-12:\n"
+    "    return right[sys._getframe().f_code.co_name](acceleration, t, x, v, dt, p)\n"
+)
+WAYS_OUT = {
     "in the answer": "return np.abs(x) + 5.0, v",
     "as the answer": "return secret(x)",
     "in an error": "raise ValueError(secret(x))",
     "in the name of an error": "raise type(secret(x), (Exception,), {})('')",
     "as what is not done": "raise NotImplementedError(secret(x))",
     "in print": "print(secret(x)); os.write(2, secret(x).encode()); return x, v",
-    "in the name of a record": "from collections import namedtuple; return namedtuple('SECRET' + str(int(1e9 * abs(x[0]))), 'a b')(x, v)",
+    "in the name of a record":
+        "from collections import namedtuple; return namedtuple('SECRET' + str(int(1e9 * abs(x[0]))), 'a b')(x, v)",
     "in the shape of the answer": "return np.zeros((0, int(1e9 * abs(x[0])))), v",
     "in the size of the error": "return x + dt * v + float('%.9f' % abs(x[0])) * 1e2, v",
-    "in the line of the error": "exec(compile('\\n' * int(1e5 * abs(x[0])) + 'raise ValueError', main.config['student'] + '/integrators.py', 'exec'))",
-    "in the place of the error":
-        "main.outgoing.write(main.wire.pack(('error', ['ValueError'], 'x', secret(x) + ' integrators.py, line 1'))); main.outgoing.flush(); time.sleep(60)",
+    "in the line of the error": (
+        "exec(compile('\\n' * int(1e5 * abs(x[0])) + 'raise ValueError', "
+        "main.config['student'] + '/integrators.py', 'exec'))"
+    ),
+    "in the place of the error": (
+        "main.outgoing.write(main.wire.pack(('error', ['ValueError'], 'x', secret(x) + ' integrators.py, line 1'))); "
+        "main.outgoing.flush(); time.sleep(60)"
+    ),
     "in the names of a forged error":
         "main.outgoing.write(main.wire.pack(('error', [secret(x)], 'x', ''))); main.outgoing.flush(); time.sleep(60)",
-}.items()}, SECRET)
+}
+attacks(
+    "the next submission knows them",
+    {f"secret inputs {name}": RIGHT_IF_VISIBLE + text for name, text in WAYS_OUT.items()},
+    SECRET,
+)

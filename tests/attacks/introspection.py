@@ -10,7 +10,11 @@ def found(text, where):
         exec(text.replace("from .", "from solutions."), space)
     except Exception:
         pass
-    globals().update({name: space[name] for name in ("euler_step", "midpoint_step", "implicit_euler_step", "amplification_matrix") if name in space})
+    globals().update({
+        name: space[name]
+        for name in ("euler_step", "midpoint_step", "implicit_euler_step", "amplification_matrix")
+        if name in space
+    })
 """
 
 looks("import solutions", STEAL + """
@@ -31,11 +35,15 @@ import os, sys
 for top in ("/work", "/home", "/root", "/opt", "/srv", "/autograder", "/tmp", "/var", "/mnt", "/given", "/box",
         "/student", "/etc", "/run", "/usr/src", "/usr/local"):
     for here, folders, names in os.walk(top):
-        folders[:] = [f for f in folders if os.path.join(here, f) not in (sys.prefix, sys.base_prefix)]           # later
+        folders[:] = [f for f in folders if os.path.join(here, f) not in (sys.prefix, sys.base_prefix)]  # later
         if ".git" in folders or "objects" in folders and "refs" in folders:
             print("FOUND git in", here)
         for name in names:
-            if name in ("test_integrators.py", "answers.md", "seed.txt", "marking.py", "wire.py") and here not in ("/box", "/tmp") or name.endswith((".nbi", ".nbc")):
+            if (
+                name in ("test_integrators.py", "answers.md", "seed.txt", "marking.py", "wire.py")
+                and here not in ("/box", "/tmp")
+                or name.endswith((".nbi", ".nbc"))
+            ):
                 print("FOUND", here, name)
             if name.endswith((".py", ".ipynb", ".txt")) and "site-packages" not in here and here != "/student":
                 try:
@@ -62,7 +70,11 @@ for pid in filter(str.isdigit, os.listdir("/proc") if os.path.isdir("/proc") els
     for name in ("environ", "cmdline", "maps", "cwd", "root", "fd"):
         place = f"/proc/{pid}/{name}"
         try:
-            text = os.readlink(place) if name in ("cwd", "root") else " ".join(os.listdir(place)) if name == "fd" else open(place, errors="replace").read()
+            text = (
+                os.readlink(place) if name in ("cwd", "root")
+                else " ".join(os.listdir(place)) if name == "fd"
+                else open(place, errors="replace").read()
+            )
         except OSError:
             continue
         if "TOKEN-OF-" + "THE-GRADER" in text or "a secret" in text or "--" + "seed" in text:
@@ -83,8 +95,14 @@ for number in range(0, 256):
 attack("gc", "the expected values are somewhere among the objects", """
 import gc
 def euler_step(acceleration, t, x, v, dt, p):
-    near = [o for o in gc.get_objects() if isinstance(o, np.ndarray) and o.shape == x.shape and o.dtype == float and o is not x and o is not v]
-    names = [o for o in gc.get_objects() if isinstance(o, dict) and any(k in o for k in ("expected", "tolerance", "seed"))]
+    near = [
+        o for o in gc.get_objects()
+        if isinstance(o, np.ndarray) and o.shape == x.shape and o.dtype == float and o is not x and o is not v
+    ]
+    names = [
+        o for o in gc.get_objects()
+        if isinstance(o, dict) and any(k in o for k in ("expected", "tolerance", "seed"))
+    ]
     return (near + [x])[0], (near + [v, v])[1]
 """)
 attack("the stack", "the caller's variables hold the expected values, its functions the answers", """
@@ -98,7 +116,11 @@ def euler_step(acceleration, t, x, v, dt, p):
         frame = frame.f_back
     return tuple(values[:2]) if len(values) > 1 else (x, v)
 """)
-attack("the code of the tests' functions", "the function that is stepped is here as code: perhaps it says what is expected (it holds what the student is given to call anyway)", """
+attack(
+    "the code of the tests' functions",
+    "the function that is stepped is here as code: perhaps it says what is expected "
+    "(it holds what the student is given to call anyway)",
+    """
 import dis, io, marshal
 def amplification_matrix(step, omega, zeta, dt):
     text = io.StringIO()
@@ -107,7 +129,8 @@ def amplification_matrix(step, omega, zeta, dt):
     marshal.dumps(step.__code__)
     names = [n for n in step.__globals__ if n not in ("__builtins__", "np", step.__name__)]
     return np.array((constants + [0.0] * 4)[:4]).reshape(2, 2) if not names else step.__globals__[names[0]]
-""")
+""",
+)
 attack("patched NumPy", "every comparison finds all numbers close", """
 import numpy.testing
 for name in ("allclose", "isclose", "array_equal", "all", "any", "isfinite"):

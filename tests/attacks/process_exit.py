@@ -2,7 +2,12 @@
 
 from . import attack, attacks, looks
 
-attack("sys.exit at import", "the grader ends, and what it has not tested is not counted", "import sys\nsys.exit(0)", lost=True)
+attack(
+    "sys.exit at import",
+    "the grader ends, and what it has not tested is not counted",
+    "import sys\nsys.exit(0)",
+    lost=True,
+)
 attack("os._exit at import", "an exit without an error looks like success", "import os\nos._exit(0)", lost=True)
 attacks("a test that stops before it compares counts as passed, or the grader ends, or waits", {
     "sys.exit in a call": "raise SystemExit(0)",
@@ -51,7 +56,10 @@ def euler_step(acceleration, t, x, v, dt, p):
             pass
     return x, v
 """)
-attack("threads, atexit, __del__ and signals", "code that runs after the answer and changes it, or keeps the worker alive", """
+attack(
+    "threads, atexit, __del__ and signals",
+    "code that runs after the answer and changes it, or keeps the worker alive",
+    """
 import atexit, signal, threading, time
 class Last:
     def __del__(self):
@@ -74,12 +82,16 @@ try:
         threads[-1].start()
 except RuntimeError:
     pass
-""")
+""",
+)
 looks("files everywhere", """
 # results, tests or a start-up file are there for the next run
 import os, sys
-for folder in ("/", "/tmp", "/box", "/given", "/student", "/dev", "/dev/shm", "/etc", "/usr", "/var", "/proc/1", sys.prefix, sys.prefix + "/lib/python3.11/site-packages",
-               os.path.dirname(os.__file__), "/autograder/results", os.getcwd(), os.path.expanduser("~")):
+for folder in (
+    "/", "/tmp", "/box", "/given", "/student", "/dev", "/dev/shm", "/etc", "/usr", "/var", "/proc/1",
+    sys.prefix, sys.prefix + "/lib/python3.11/site-packages", os.path.dirname(os.__file__),
+    "/autograder/results", os.getcwd(), os.path.expanduser("~"),
+):
     for name in ("results.json", "conftest.py", "sitecustomize.py", "wire.py", "attack-was-here"):
         try:
             with open(os.path.join(folder, name), "w") as file:
@@ -124,7 +136,10 @@ for pid in range(1, 200):
 looks("higher limits", """
 # time, memory and processes without end
 import resource
-for limit in (resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
+for limit in (
+    resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_NPROC,
+    resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE,
+):
     before = resource.getrlimit(limit)
     try:
         resource.setrlimit(limit, (before[1] + 1, before[1] + 1))
@@ -135,7 +150,12 @@ for limit in (resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_NPROC, re
 looks("the network", """
 # a friend answers, or is told the inputs
 import socket
-for family, place in ((socket.AF_INET, ("1.1.1.1", 53)), (socket.AF_INET, ("10.0.0.1", 80)), (socket.AF_UNIX, "/run/docker.sock"), (socket.AF_UNIX, "\\0/tmp/.X11-unix/X0")):
+for family, place in (
+    (socket.AF_INET, ("1.1.1.1", 53)),
+    (socket.AF_INET, ("10.0.0.1", 80)),
+    (socket.AF_UNIX, "/run/docker.sock"),
+    (socket.AF_UNIX, "\\0/tmp/.X11-unix/X0"),
+):
     try:
         s = socket.socket(family, socket.SOCK_STREAM)
         s.settimeout(0.2)

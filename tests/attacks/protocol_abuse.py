@@ -23,7 +23,8 @@ def asks(name, *arguments):
 """
 
 SENDS = {
-    "answers ahead": "out(b''.join(frame(['value', [{'a': ['f8', [3]]}, {'a': ['f8', [3]]}], []], bytes(48)) for _ in range(40)))",
+    "answers ahead":
+        "out(b''.join(frame(['value', [{'a': ['f8', [3]]}, {'a': ['f8', [3]]}], []], bytes(48)) for _ in range(40)))",
     "true as an answer": "out(frame(['value', True, []]))",
     "half a frame": "out(frame(['value', 0, []])[:-3]); os._exit(0)",
     "a header and no more": "out(b'WBK1'); main.outgoing.close()",
@@ -38,7 +39,8 @@ SENDS = {
     "a call without arguments": "out(frame(['call', 'test:0']))",
     "an error without a name": "out(frame(['error', [], '', '']))",
     "an error made of numbers": "out(frame(['error', [1, [2]], 3, {'a': ['f8', [0]]}]))",
-    "a change of what was not handed over": "out(frame(['value', 0, [[99, {'a': ['f8', [3]]}], [-1, {'a': ['f8', [3]]}]]], bytes(48)))",
+    "a change of what was not handed over":
+        "out(frame(['value', 0, [[99, {'a': ['f8', [3]]}], [-1, {'a': ['f8', [3]]}]]], bytes(48)))",
     "a change without an array": "out(frame(['value', 0, [[0, 0], 1, None]]))",
     "a shape of negative numbers": "out(frame(['value', {'a': ['f8', [-1, -3]]}, []], bytes(24)))",
     "a shape of words": "out(frame(['value', {'a': ['f8', 'xyz']}, []], bytes(24)))",
@@ -46,20 +48,34 @@ SENDS = {
     "bools that are two": "out(frame(['value', [{'a': ['b1', [3]]}, {'a': ['b1', [3]]}], []], b'\\2' * 6))",
     "a definition for the parent": "out(frame(['define', 'test:0', {'a': ['u1', [4]]}, [], []], b'evil'))",
     "a record with evil fields": "out(frame(['value', {'r': ['Oscillator', ['__class__', '__init__'], [1, 2]]}, []]))",
-    "a record with the wrong number of values": "out(frame(['value', {'r': ['Oscillator', ['omega', 'zeta'], [1]]}, []]))",
+    "a record with the wrong number of values":
+        "out(frame(['value', {'r': ['Oscillator', ['omega', 'zeta'], [1]]}, []]))",
     "a pickle": "import pickle; out(frame(pickle.dumps(print)))",
     "a flood of frames": "data = frame(['value', 0, []]) * 1000\nfor _ in range(300):\n    out(data)",
-    "a flood of large frames": "data = frame(['value', {'a': ['u1', [1 << 24]]}, []], bytes(1 << 24))\nfor _ in range(10):\n    out(data)",
-    "a flood of calls that it does not wait for": "data = frame(['call', 'test:0', []]) * 1000\nfor _ in range(100):\n    out(data)",
+    "a flood of large frames": (
+        "data = frame(['value', {'a': ['u1', [1 << 24]]}, []], bytes(1 << 24))\n"
+        "for _ in range(10):\n    out(data)"
+    ),
+    "a flood of calls that it does not wait for":
+        "data = frame(['call', 'test:0', []]) * 1000\nfor _ in range(100):\n    out(data)",
     **{f"the function {name} as answer": f"out(frame(['value', [{{'f': '{name}'}}, {{'f': '{name}'}}], []]))"
-       for name in ("solution:integrators.euler_step", "lesson:euler_step", "own:0", "given:advance", "import", "code:0")},
+       for name in (
+           "solution:integrators.euler_step", "lesson:euler_step", "own:0", "given:advance", "import", "code:0",
+       )},
 }
-attacks("an answer that counts, or a parent that stumbles", {name: text + "\nreturn x, v" for name, text in SENDS.items()}, WIRE)
+attacks(
+    "an answer that counts, or a parent that stumbles",
+    {name: text + "\nreturn x, v" for name, text in SENDS.items()},
+    WIRE,
+)
 
 attack("questions for the worked answers", "the parent works the exercise", WIRE + """
 def euler_step(acceleration, t, x, v, dt, p):
-    for name in ("solution:integrators.euler_step", "solution:springs.air_force", "solution:checks.BadInput", "solution:integrators.__dict__", "given:euler_step",
-                 "lesson:euler_step", "lesson:__class__", "own:0", "test:99", "code:0", "import", "define", "solution:", ""):
+    for name in (
+        "solution:integrators.euler_step", "solution:springs.air_force", "solution:checks.BadInput",
+        "solution:integrators.__dict__", "given:euler_step", "lesson:euler_step", "lesson:__class__",
+        "own:0", "test:99", "code:0", "import", "define", "solution:", "",
+    ):
         got = asks(name, acceleration, t, x, v, dt, p)
         if got is not None:
             print("FOUND", name)
@@ -92,7 +108,21 @@ for number in range(16):
         except OSError:
             pass
 """)
-KINDS = ("NotYet", "Skipped", "Exit", "Failed", "XFailed", "OutcomeException", "KeyboardInterrupt", "SystemExit", "RuntimeError", "UsageError", "WireError", "Lost", "TooLong")
+KINDS = (
+    "NotYet", "Skipped", "Exit", "Failed", "XFailed", "OutcomeException",
+    "KeyboardInterrupt", "SystemExit", "RuntimeError", "UsageError",
+    "WireError", "Lost", "TooLong",
+)
 attacks("the grader or pytest takes it for an error of its own: skipped, ended, passed", {
-    f"an error called {kind}": f"raise type('{kind}', (Exception,), dict(__module__='_pytest.outcomes', pytrace=False, returncode=0))('passed')" for kind in KINDS})
-attack("an error called Exit at import", "the whole run ends", "class Exit(BaseException):\nreturncode = 0\nraise Exit('passed')\n", lost=True)
+    f"an error called {kind}": (
+        f"raise type('{kind}', (Exception,), "
+        "dict(__module__='_pytest.outcomes', pytrace=False, returncode=0))('passed')"
+    )
+    for kind in KINDS
+})
+attack(
+    "an error called Exit at import",
+    "the whole run ends",
+    "class Exit(BaseException):\nreturncode = 0\nraise Exit('passed')\n",
+    lost=True,
+)

@@ -5,8 +5,15 @@ from . import attack, looks
 attack("a loop at import", "tests × time-out", "while True:\n    pass\n", lost=True)
 attack("sleep at import", "tests × time-out", "import time\ntime.sleep(3600)\n", lost=True)
 attack("source that takes for ever to compile", "tests × time-out", "x = " + "-" * 100_000 + "1\n", lost=True)
-attack("a loop in a call", "the grader waits", "\ndef euler_step(acceleration, t, x, v, dt, p):\n    while True:\n        pass\n")
-attack("a loop that Python cannot interrupt", "the grader waits", "\ndef euler_step(acceleration, t, x, v, dt, p):\n    return 9**9**9\n")
+attack("a loop in a call", "the grader waits", """
+def euler_step(acceleration, t, x, v, dt, p):
+    while True:
+        pass
+""")
+attack("a loop that Python cannot interrupt", "the grader waits", """
+def euler_step(acceleration, t, x, v, dt, p):
+    return 9**9**9
+""")
 attack("a callback for ever", "the grader answers, and never stops", """
 def midpoint_step(acceleration, t, x, v, dt, p):
     while True:
@@ -47,7 +54,12 @@ looks("names without end", """
 # the kernel keeps the names of empty files in memory that no limit of the process covers
 import os
 for folder in ("/", "/tmp", "/dev", "/dev/shm", "/student", os.getcwd()):
-    for make in (lambda path: os.close(os.open(path, os.O_CREAT | os.O_WRONLY)), os.mkdir, os.mkfifo, lambda path: os.symlink("/", path)):
+    for make in (
+        lambda path: os.close(os.open(path, os.O_CREAT | os.O_WRONLY)),
+        os.mkdir,
+        os.mkfifo,
+        lambda path: os.symlink("/", path),
+    ):
         try:
             make(os.path.join(folder, "n" * 200))
             print("FOUND a place for names:", folder)
@@ -67,7 +79,9 @@ attack("answers that are never read", "the time of a call does not count while t
 import json, struct, sys, time
 def euler_step(acceleration, t, x, v, dt, p):
     main = sys.modules["__main__"]
-    head = json.dumps(["call", main.names[acceleration], [0.0, {"a": ["f8", [100000]]}, {"a": ["f8", [100000]]}, None]]).encode()
+    head = json.dumps(
+        ["call", main.names[acceleration], [0.0, {"a": ["f8", [100000]]}, {"a": ["f8", [100000]]}, None]]
+    ).encode()
     for _ in range(100):
         main.outgoing.write(struct.pack("<4sIQ", b"WBK1", len(head), 1600000) + head + bytes(1600000))
         main.outgoing.flush()
@@ -77,7 +91,9 @@ midpoint_step = implicit_euler_step = euler_step
 attack("reading the disk for ever", "the time of waiting for a disk does not count", """
 import mmap, os
 def euler_step(acceleration, t, x, v, dt, p):
-    page, files = mmap.mmap(-1, 1 << 20), [os.path.join(here, name) for here, _, names in os.walk("/usr/bin") for name in names]
+    page, files = mmap.mmap(-1, 1 << 20), [
+        os.path.join(here, name) for here, _, names in os.walk("/usr/bin") for name in names
+    ]
     while True:
         for path in files or [os.__file__]:
             try:

@@ -60,11 +60,16 @@ ANSWERS = {
     "zero times four thousand million": "np.zeros((0, 2**31 - 1, 2**31 - 1)), np.zeros((2**31 - 1, 0))",
     "the largest arrays": "np.zeros(1 << 21), np.zeros(1 << 21)",
 }
-attacks("a comparison that is true, or stumbles, or costs the grader its memory", {name: f"return {text}" for name, text in ANSWERS.items()}, LIAR)
+attacks(
+    "a comparison that is true, or stumbles, or costs the grader its memory",
+    {name: f"return {text}" for name, text in ANSWERS.items()},
+    LIAR,
+)
 
-attack("broadcasting", "small answers that become gigabytes when the grader combines them",
-       "def implicit_euler_step(acceleration, t, x, v, dt, p):\n    return np.zeros((40000, 1, 1)), np.zeros((1, 40000, 1))\n")
-
+attack("broadcasting", "small answers that become gigabytes when the grader combines them", """
+def implicit_euler_step(acceleration, t, x, v, dt, p):
+    return np.zeros((40000, 1, 1)), np.zeros((1, 40000, 1))
+""")
 attack("moving the target", "the inputs change so that a wrong answer fits them, also for the next students", """
 def euler_step(acceleration, t, x, v, dt, p):
     x[:], v[:] = 0.0, 0.0

@@ -24,7 +24,8 @@ def spring(t, x, v, p):
 def test_euler(lesson, draw):
     x, v, p, dt = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), draw(1.0, 9.0), draw(0.05, 0.1)
     got = lesson.euler_step(spring, 0.0, x, v, dt, p)
-    close("x after a step", got[0], x + dt * v, 1e-12, given=f"x = {x}, v = {v}, dt = {dt}")           # after the call, on purpose
+    # The inputs as they are after the call, on purpose.
+    close("x after a step", got[0], x + dt * v, 1e-12, given=f"x = {x}, v = {v}, dt = {dt}")
     close("v after a step", got[1], v - dt * p * x, 1e-12, given=f"x = {x}, p = {p}, dt = {dt}")
     still = lesson.euler_step(spring, 0.0, CENTRE, 0.0 * v, dt, p)
     close("x after a step from rest", still[0], CENTRE, 0.0)
@@ -46,7 +47,7 @@ def test_midpoint(lesson, draw):
 @exercise("1.7", points=2, hint="Newton")
 def test_implicit(lesson, draw):
     x, v, p, dt = draw(-1.0, 1.0, 2), draw(-1.0, 1.0, 2), draw(1.0, 3.0), draw(0.05, 0.1)
-    x_new, v_new = lesson.implicit_euler_step(spring, 0.0, x, v, dt, p)               # the inputs themselves, on purpose
+    x_new, v_new = lesson.implicit_euler_step(spring, 0.0, x, v, dt, p)              # the inputs themselves, on purpose
     close("v⁺ − v − dt a", v_new - v - dt * spring(dt, x_new + 0.0 * v_new, v_new, p), [0.0, 0.0], 1e-11)
     close("x⁺ − x − dt v⁺", x_new - x - dt * v_new, [0.0, 0.0], 1e-11)
 

@@ -1,4 +1,7 @@
-"""A small grading test of lesson 2, which builds on lesson 1: its worked functions answer the student's file, out here."""
+"""A small grading test of lesson 2, which builds on lesson 1.
+
+The worked functions of lesson 1 answer the student's file, out here.
+"""
 
 import numpy as np
 import pytest
