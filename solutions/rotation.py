@@ -8,9 +8,10 @@ principal moments.
 Vectors are in world coordinates, unless the name ends in _body.  The axes of the body are
 its principal axes, which lesson 4 computes.
 
-Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns
-(3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state contains L itself, so
-without a torque L stays constant to the last digit.
+A method for rotation alone is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body)
+returns (3,) [N m].  body is any record with a field I_body and is passed on unchanged.  Where the state of a step is L
+itself, L stays constant to the last digit without a torque.  Where it is ω (rigid_body_step, gyroscopic_step), it does
+not.  A body that also moves has  step(load, t, x, q, v, omega, dt, body) → (x, q, v, omega).
 Given in solutions/given/rotation.py: make_rigid_body; steps by the other updates of orientation, by ω as the state, and
 by Runge–Kutta; compositions of fourth order; loops over steps.
 *Left out:* contacts, except of a ball on a floor; lesson 6 finds contacts and lesson 7 resolves them.

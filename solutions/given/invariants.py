@@ -1,6 +1,6 @@
 """Given with lesson 10.  How to judge a run of bodies in the plane: energy, momenta, work, overlap.
 
-In the plane neither energy nor momenta depend on the angles q.
+In the plane neither the energy of motion and weight nor the momenta depend on the angles q.
 """
 
 import numpy as np
