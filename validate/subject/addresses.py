@@ -34,6 +34,8 @@ from numba.extending import (
 )
 from numba.np import arrayobj
 
+from .linking import is_linked_only
+
 
 def short(kind, more):
     """Return a short name of a type, which is part of the name of each function that is compiled for it."""
@@ -237,7 +239,11 @@ def machine_code(twin, kind):
     code = twin.overloads[arguments]
     if code.signature.return_type != kind.signature.return_type:
         raise TypeError(f"{twin.__name__} returns {code.signature.return_type} and not {kind.signature.return_type}")
-    return code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
+    was_linked_only = is_linked_only(code.library)
+    place = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
+    if was_linked_only:
+        twin._cache.save_overload(arguments, code)                       # with the machine code that it has now
+    return place
 
 
 def promise(twin, kind):

@@ -47,7 +47,7 @@ from .loading import (
     stand_in,
     unloadable,
 )
-from .numba_twins import CACHE, CheckedFirst, cached_dispatch, compiled, compiled_twins, passed_over, use_cache
+from .numba_twins import CACHE, CachedDispatch, CheckedFirst, compiled, compiled_twins, passed_over, use_cache
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
@@ -260,7 +260,7 @@ def module_set(of="solutions", compiled=False):
 def digest_of(folder):
     """Return a fingerprint of every file of which a module set of this subject consists, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
-    ours = Path(__file__), *map(Path(__file__).with_name, ("numba_twins.py", "addresses.py"))
+    ours = Path(__file__), *map(Path(__file__).with_name, ("numba_twins.py", "addresses.py", "linking.py"))
     return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.rglob("*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
@@ -589,7 +589,6 @@ class CompiledModules(ModuleSet):
     """
 
     speed = "compiled"
-    from_python: tuple[str, ...] | None = None      # names of the functions that Python can call; None: all
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, self.speed)
@@ -618,7 +617,7 @@ class CompiledModules(ModuleSet):
         if (key.startswith(MAKE) or value.py_func.__module__.endswith(COMPOSE)) and plain is not None:
             return plain
         check = checks_of(value.py_func.__code__.co_filename, self.digest).get(value.py_func.__name__)
-        return CheckedFirst(value, check) if check else value
+        return CheckedFirst(value, check) if check else CachedDispatch(value)
 
     def _own_lesson(self, name):
         return self.solution(name) if self.folder == SOLUTIONS else super()._own_lesson(name)
@@ -639,8 +638,8 @@ class CompiledModules(ModuleSet):
         own = {name for name, f in vars(module).items()
                if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
         space = {**vars(module), CHECK: passed_over} if module.__name__.endswith(f".{RECORDS}") else vars(module)
-        cache = os.path.join(self.cache, package if self.from_python is None else f"{self.speed}-{package}")
-        vars(module).update(compiled_twins(module, own, space, cache, self.from_python))
+        cache = os.path.join(self.cache, f"{self.speed}-{package}")
+        vars(module).update(compiled_twins(module, own, space, cache))
 
     def _stays(self, origin):
         return False
@@ -652,13 +651,6 @@ class CompiledModules(ModuleSet):
         super()._finish(package, module)
         self._compile(package, module)
 
-    def lesson_of_scenes(self, name):
-        """Return the same, with functions that find their machine code sooner."""
-        lesson = types.ModuleType(name)
-        vars(lesson).update({key: cached_dispatch(value) if hasattr(value, "py_func") else value
-                             for key, value in vars(super().lesson_of_scenes(name)).items()})
-        return lesson
-
     def _worked(self, name):
         return self._outside(name, self._with_companion(name, self.solution(name)), vars(PLAIN.lesson(name)))
 
@@ -669,11 +661,11 @@ class CompiledModules(ModuleSet):
         """
         law = scene.acceleration and scene.acceleration(Lessons(self.lesson_inside))
         if law is None or hasattr(law, "py_func"):
-            return law
+            return law and CachedDispatch(law)
         source, origin = self._home(law)
         if source == "solutions":
-            return getattr(self.given(origin), law.__name__)
-        return compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes"))
+            return CachedDispatch(getattr(self.given(origin), law.__name__))
+        return CachedDispatch(compiled(law, f"{self.name}.scenes.{name}", os.path.join(self.cache, "scenes")))
 
     def lesson_inside(self, name):
         """Return a lesson as compiled functions call it."""
@@ -683,10 +675,9 @@ class CompiledModules(ModuleSet):
 
 
 class InsideModules(CompiledModules):
-    """The same for a loop that is made of parts: Python must call none of these functions but the loop itself."""
+    """The same for a loop that is made of parts, whose functions are called by their addresses."""
 
     speed = "inside"
-    from_python = ("advance_parts",)
 
     def __init__(self, folder, digest):
         from .addresses import pass_by_address

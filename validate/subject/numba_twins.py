@@ -11,7 +11,7 @@ import types
 import uuid
 import warnings
 from contextlib import suppress
-from functools import cache
+from functools import cache, cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -19,16 +19,17 @@ import numpy as np
 CACHE = Path(__file__).resolve().parents[2] / ".cache" / "compiled"
 INLINED = "vectors"          # its functions become part of their callers: a call would pass whole arrays, and a step of
                              # a spring net would take 2.5 times as long
+FROM_PYTHON = "from python"  # folder of the cache for what Python calls
 SAVE_WITHIN = 10.0           # wait for another process that saves [s]
 CACHED_SETS = 6              # digests kept on disk: some edits back
 IN_USE = 3600.0              # a digest that was asked for so long ago [s] may still be in use by another process
 
 
-def compiled_twins(module, names, space, cache, from_python=None):
+def compiled_twins(module, names, space, cache):
     """Return {name: compiled function}, whose globals are `space`, for those functions of a module.
 
     cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
-    its functions call others there.    from_python: names of those that Python can call, or None: all
+    its functions call others there.
     """
     twins = {}
     for name in names:
@@ -36,60 +37,68 @@ def compiled_twins(module, names, space, cache, from_python=None):
         copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
         inline = "always" if module.__name__.rpartition(".")[2] == INLINED else "never"
-        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, inline,
-                               from_python is None or name in from_python)
+        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, inline)
     return twins
 
 
-def compiled(function, name, cache, inline="never", from_python=True):
+def compiled(function, name, cache, inline="never", from_python=False):
     """Return the twin of a function, which may be a closure that calls other twins.
 
     name: the same in every process, and no other function's.  numba recognises a function argument in its disk cache
-    by the id that is made from it.    from_python: whether Python can call the twin.  What numba compiles for that
-    takes up to nine tenths of the time, because it takes all records apart and makes new ones.
+    by the id that is made from it.    from_python: whether Python can call the twin; CachedDispatch makes such a one.
     """
     from numba import config, njit
-    config.CACHE_DIR = cache
+    config.CACHE_DIR = os.path.join(cache, FROM_PYTHON) if from_python else cache
     twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=not from_python,
                 inline=inline)(function)
-    twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, name)))
+    twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{name} {FROM_PYTHON}" if from_python else name)))
+    twin.from_python = partial(compiled, function, name, cache, inline, from_python=True)
     return twin
 
 
 class CachedDispatch:
-    """A compiled function that looks up its machine code by the kinds of its arguments:
-    numba's own search takes 50 µs per call.
+    """A twin as Python calls it.
+
+    What numba compiles for a call from Python takes up to nine tenths of the time, because it takes all records apart
+    and makes new ones.  So it is compiled for those functions only that Python does call.
+    The machine code is looked up by the kinds of the arguments: numba's own search takes 50 µs per call.
     """
 
     def __init__(self, twin):
         self.twin, self.known = twin, {}
         ITS_OWN_KIND.add(type(twin))
 
+    @cached_property
+    def called(self):
+        """The same function, compiled for calls from Python."""
+        return self.twin.from_python()
+
     def __call__(self, *arguments):
         kinds = _kinds(arguments)
         if kinds not in self.known:
             from numba import typeof
             exact = tuple(map(typeof, arguments))
-            if exact not in self.twin.overloads:
-                self.twin.compile(exact)
-            self.known[kinds] = self.twin.get_overload(exact)
+            if exact not in self.called.overloads:
+                self.called.compile(exact)
+            self.known[kinds] = self.called.get_overload(exact)
         return self.known[kinds](*arguments)
 
-
-class CheckedFirst:
-    """A compiled function whose records are checked in plain Python before it starts."""
-
-    def __init__(self, twin, check):
-        self.twin, self.check, self.compiled = twin, check, CachedDispatch(twin)
-
-    def __call__(self, *arguments):
-        self.check(*arguments)
-        return self.compiled(*arguments)
-
-    def __getattr__(self, name):                                     # py_func, overloads … are those of the twin
+    def __getattr__(self, name):                                     # py_func … are those of the twin
         if name == "twin":
             raise AttributeError(name)
         return getattr(self.twin, name)
+
+
+class CheckedFirst(CachedDispatch):
+    """The same for a function whose records are checked in plain Python before it starts."""
+
+    def __init__(self, twin, check):
+        super().__init__(twin)
+        self.check = check
+
+    def __call__(self, *arguments):
+        self.check(*arguments)
+        return super().__call__(*arguments)
 
 
 NUMBERS = {float, int}
@@ -98,11 +107,6 @@ ITS_OWN_KIND = {CachedDispatch, CheckedFirst}            # and numba's type of c
 
 def passed_over(p, state):
     """Stand in for check_record where compiled code calls it: CheckedFirst has made the call before."""
-
-
-def cached_dispatch(function):
-    """Return a compiled function as scenes call it."""
-    return function if isinstance(function, CheckedFirst) else CachedDispatch(function)
 
 
 def _kinds(arguments):
@@ -131,10 +135,9 @@ def _make_dispatcher_constants_cacheable():
 
 @cache
 def _pass_checked_functions_on():
-    """Let a compiled function take a CheckedFirst or a CachedDispatch as an argument: the twin in it is meant."""
+    """Let a compiled function take a CachedDispatch as an argument: the twin in it is meant."""
     from numba.extending import typeof_impl
 
-    @typeof_impl.register(CheckedFirst)
     @typeof_impl.register(CachedDispatch)
     def _(around, context):
         return typeof_impl(around.twin, context)
@@ -178,6 +181,12 @@ def _count_references_in_one_thread():
     nrtdynmod._define_atomic_inc_dec = count
 
 
+@cache
+def _make_machine_code_on_demand():
+    from .linking import link_only  # imports numba
+    link_only()
+
+
 def use_cache(digest):
     """Return the cache folder of this digest, as text, and delete those that were not used for long."""
     import numba
@@ -186,6 +195,7 @@ def use_cache(digest):
     _pass_checked_functions_on()
     _save_one_at_a_time()
     _count_references_in_one_thread()
+    _make_machine_code_on_demand()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all
     folder = CACHE / digest
