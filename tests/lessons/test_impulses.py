@@ -679,6 +679,7 @@ def test_the_energy_of_an_impact_is_what_both_bodies_gain(lesson, draw):
                       for axis in np.eye(3)], axis=1)
         close("energy gained [J]", lesson.energy_change(u, K, J), gained, 1e-11,
               given=f"u = {u} m/s, K = {K.tolist()}, J = {J} N s")
+    u = draw(-1.0, 1.0, 3)                           # not that of the last case, in which everything may be at rest
     pairs = [(special, drawn) for special in (*arrows(draw, 3), STILL)] + [(u, special) for special in arrows(draw, 3)]
     pairs += [(u, 10.0**-k * drawn) for k in (3, 6, 9)] + [(10.0**k * u, 10.0**k * drawn) for k in (3, 6, 9)]
     pairs += [(size * u, size * drawn) for size in SIZES]
