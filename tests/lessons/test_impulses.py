@@ -503,8 +503,8 @@ def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
         n, K = contact(draw)
         u = meeting(draw, n, 0.05, -draw(2.0, 4.0))
         stick = np.linalg.solve(K, u_sep * n - u)
-        # Only an unusual K makes sticking pull. Then no cone contains the impulse.
-        if stick @ n <= 0.0:
+        # Only an unusual K makes sticking pull, or hardly push. Then this cone does not contain the impulse.
+        if stick @ n <= 1e-3 * np.linalg.norm(stick):
             continue
         # The condition number of K is below 100 here, so K⁻¹ times a vector below 30 has an error below 1e-12.
         close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, u_sep, mu), u_sep * n,
@@ -825,7 +825,7 @@ def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_whatever_th
                     between("least gap before it [m]", least, -known, np.inf, given)
                     if tau < dt:
                         close("gap at that time [m]", gap(tau), 0.0, known, given)
-                        rate = v_n + a_n * (tau + 1e-9 * dt)
+                        rate = v_n + a_n * tau - 1e-9 * abs(a_n) * dt    # round-off may be its sign
                         between("change of the gap shortly after [m/s]", rate, -np.inf, 0.0, given)
 
 
@@ -1222,7 +1222,8 @@ def test_a_ball_lies_on_the_plane_after_its_last_bounce(lesson, draw):
         fall = np.sqrt(2.0 * h / pull)
         rest = fall * (1.0 + e) / (1.0 - e)
         x, v, time = p.point + h * p.n, slip * t, 0.0
-        for dt in (draw(1.01, 1.5) * rest, draw(0.1, 0.5), 1e-6):        # the second and third steps start at rest
+        # The second and third steps start at rest. A round-off of the height, up to 4e-14 m, bounces for 1e-6 s.
+        for dt in (draw(1.01, 1.5) * rest, draw(0.1, 0.5), 1e-5):
             x, v = lesson.backtracking_step(lesson.falling_acceleration, time, x, v, dt, p)
             time += dt
             given = f"dropped from {h} m, after {time} s, {p}"
