@@ -503,8 +503,8 @@ def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
         n, K = contact(draw)
         u = meeting(draw, n, 0.05, -draw(2.0, 4.0))
         stick = np.linalg.solve(K, u_sep * n - u)
-        # Only an unusual K makes sticking pull. Then no cone contains the impulse.
-        if stick @ n <= 0.0:
+        # Only an unusual K makes sticking pull, or hardly push. Then this cone does not contain the impulse.
+        if stick @ n <= 1e-3 * np.linalg.norm(stick):
             continue
         # The condition number of K is below 100 here, so K⁻¹ times a vector below 30 has an error below 1e-12.
         close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, u_sep, mu), u_sep * n,
@@ -679,6 +679,7 @@ def test_the_energy_of_an_impact_is_what_both_bodies_gain(lesson, draw):
                       for axis in np.eye(3)], axis=1)
         close("energy gained [J]", lesson.energy_change(u, K, J), gained, 1e-11,
               given=f"u = {u} m/s, K = {K.tolist()}, J = {J} N s")
+    u = draw(-1.0, 1.0, 3)                           # not that of the last case, in which everything may be at rest
     pairs = [(special, drawn) for special in (*arrows(draw, 3), STILL)] + [(u, special) for special in arrows(draw, 3)]
     pairs += [(u, 10.0**-k * drawn) for k in (3, 6, 9)] + [(10.0**k * u, 10.0**k * drawn) for k in (3, 6, 9)]
     pairs += [(size * u, size * drawn) for size in SIZES]
@@ -824,22 +825,31 @@ def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_whatever_th
                     between("least gap before it [m]", least, -known, np.inf, given)
                     if tau < dt:
                         close("gap at that time [m]", gap(tau), 0.0, known, given)
-                        rate = v_n + a_n * (tau + 1e-9 * dt)
+                        rate = v_n + a_n * tau - 1e-9 * abs(a_n) * dt    # round-off may be its sign
                         between("change of the gap shortly after [m/s]", rate, -np.inf, 0.0, given)
+
+
+def flights_together(e):
+    """Times of 2⁶⁴ flights over that of the first one, summed without round-off.
+
+    2ᵏ flights take 1 + e^(2ᵏ⁻¹) times as long as half of them.
+    """
+    with localcontext(prec=60):
+        flights, power = Decimal(1), Decimal(e)
+        for _ in range(64):
+            flights, power = flights * (1 + power), power * power
+    return float(flights)
 
 
 @exercise("7.14", points=0.5,
           hint="add flights of 2v/|a|, each e times as long as the one before; three cases have no finite sum")
 def test_all_bounces_together_take_a_finite_time(lesson, draw):
-    for v_n, e, flights in ((1e-6 * draw(0.5, 5.0), draw(0.1, 0.9), 600),
-                            (TINY * draw(0.5, 5.0), draw(0.1, 0.9), 600),
-                            (draw(0.5, 5.0), 1e-6 * draw(0.1, 0.9), 10),
-                            (1e-3 * draw(0.5, 5.0), 0.995, 12_000),
-                            (draw(0.5, 5.0), draw(0.1, 0.9), 600)):
+    for v_n, e in ((1e-6 * draw(0.5, 5.0), draw(0.1, 0.9)), (TINY * draw(0.5, 5.0), draw(0.1, 0.9)),
+                   (draw(0.5, 5.0), 1e-6 * draw(0.1, 0.9)), (1e-3 * draw(0.5, 5.0), 0.995),
+                   (draw(0.5, 5.0), draw(0.1, 0.9))):
         a_n = -draw(1.0, 10.0)
-        total, speed = 0.0, v_n
-        for _ in range(flights):                                         # 0.9⁶⁰⁰ is 4e-28, and 0.995¹²⁰⁰⁰ is 8e-27
-            total, speed = total + 2.0 * speed / -a_n, e * speed
+        total = 2.0 * v_n / -a_n * flights_together(e)
+        # at most 400 v_n, with a few round-offs
         close("time of all bounces [s]", lesson.bouncing_time(v_n, a_n, e), total, 1e-11 * v_n,
               given=f"v_n = {v_n} m/s, a_n = {a_n} m/s², e = {e}")
     for size, gravity in itertools.product((1.0, 1e-9, 1e9), repeat=2):
@@ -871,13 +881,8 @@ def nearly_endless(lesson, draw, v_n, a_n):
               times[0] - times[1], 2.0 * v_n / -a_n, 1e-14 * v_n / less,
               given=f"v_n = {v_n} m/s, a_n = {a_n} m/s², e = 1 - {less}")
     for e in (1.0 - 2.0**-40, 1.0 - 2.0**-53):
-        # 2⁶⁴ flights, their times summed exactly: 2ᵏ flights take 1 + e^(2ᵏ⁻¹) times as long as half of them.
-        with localcontext(prec=60):
-            flights, power = Decimal(1), Decimal(e)
-            for _ in range(64):
-                flights, power = flights * (1 + power), power * power
         close("time of all bounces where e is just below 1, over that of the sum of all flights [-]",
-              lesson.bouncing_time(v_n, a_n, e) / (-2.0 * v_n / a_n) / float(flights), 1.0, ROUND_OFF,
+              lesson.bouncing_time(v_n, a_n, e) / (-2.0 * v_n / a_n) / flights_together(e), 1.0, ROUND_OFF,
               given=f"v_n = {v_n} m/s, a_n = {a_n} m/s², e = 1 - {1.0 - e}")
 
 
@@ -1217,7 +1222,8 @@ def test_a_ball_lies_on_the_plane_after_its_last_bounce(lesson, draw):
         fall = np.sqrt(2.0 * h / pull)
         rest = fall * (1.0 + e) / (1.0 - e)
         x, v, time = p.point + h * p.n, slip * t, 0.0
-        for dt in (draw(1.01, 1.5) * rest, draw(0.1, 0.5), 1e-6):        # the second and third steps start at rest
+        # The second and third steps start at rest. A round-off of the height, up to 4e-14 m, bounces for 1e-6 s.
+        for dt in (draw(1.01, 1.5) * rest, draw(0.1, 0.5), 1e-5):
             x, v = lesson.backtracking_step(lesson.falling_acceleration, time, x, v, dt, p)
             time += dt
             given = f"dropped from {h} m, after {time} s, {p}"

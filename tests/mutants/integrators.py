@@ -430,6 +430,18 @@ def forest_ruth_step(acceleration, t, x, v, dt, p):
     return x, v
 
 
+@right("1.13", "fifteen kicks of eighth order: as exact as the reference solution")
+def kahan_li_step(acceleration, t, x, v, dt, p):
+    half = (0.7416703643506129, -0.4091008258000316, 0.1907547102962384, -0.5738624711160822, 0.2990641813036559,
+            0.3346249182452982, 0.3152930923967666)
+    for share in (*half, 1.0 - 2.0 * sum(half), *half[::-1]):
+        h = share * dt
+        x = x + 0.5 * h * v
+        v = v + h * acceleration(t + 0.5 * h, x, v, p)
+        x, t = x + 0.5 * h * v, t + h
+    return x, v
+
+
 edit("1.13", "does not move", "x_mid = x + 0.5 * dt * v", "return x, v")
 edit("1.13", "is velocity Verlet", "x_mid = x + 0.5 * dt * v", "return verlet_step(acceleration, t, x, v, dt, p)")
 edit("1.13", "is symplectic Euler", "x_mid = x + 0.5 * dt * v",
