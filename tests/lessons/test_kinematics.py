@@ -222,8 +222,9 @@ def test_links_add_up_from_the_base(lesson, draw):
         theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
         if n == 9:                                                       # along both axes, and folded back
             theta = 0.5 * np.pi * np.array([-1.0, 2.0, 1.0, -2.0, 0.0, 1.0, 4.0, -1.0, 3.0])
+        rounded = 1.1e-16 * n * np.sum(np.abs(theta))                    # of n sums of angles, up to 450 rad
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
-              size * ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
+              size * ROUND_OFF + rounded * np.sum(lengths), given=f"θ = {theta}, lengths {lengths} m")
 
 
 @exercise("11.1", points=0.5,
