@@ -134,7 +134,7 @@ def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw
             close("gradient of C of a link that has a length [-]", gradient, r / length, ROUND_OFF, given=given)
             C, gradient = lesson.distance_constraint(x_j + SHORT * r, x_j, rest)
             given = f"x_i = x_j + {SHORT * r} m, x_j = {x_j} m, rest = {rest} m"
-            close("constraint C of a link with all but no length [m]", C, -rest, ROUND_OFF * 10.0, given=given)
+            close("constraint C of a link with all but no length [m]", C, SHORT * length - rest, ROUND_OFF, given=given)
             close("gradient of C of a link with all but no length [-]", gradient, r / length, ROUND_OFF, given=given)
         for n in (direction(draw, d), *np.eye(d), *-np.eye(d)):
             length, rest = draw(0.5, 3.0), draw(0.5, 3.0)
