@@ -1704,10 +1704,11 @@ def test_a_newton_step_from_anywhere_solves_for_the_contacts_that_seem_to_push(l
 def slid(mu, v, dt):
     """(gap [m], slip [m/s]) of a block of 1 kg that a force of its own friction has pulled for 300 steps.
 
-    It falls first.  Each step takes the velocity that is nearest to the one without impulses among those that the
+    It falls first: from below the gap at which it floats, the cone would throw it up, and it would fly for many steps.
+    Each step takes the velocity that is nearest to the one without impulses among those that the
     relaxation allows: u_n + gap/dt ≥ μ |u_t|.  This is what the least ½ J·A J + b·J means for the velocity.
     """
-    gap, u_n, u_t = abs(v) * dt, 0.0, v
+    gap, u_n, u_t = (1.0 + mu) * abs(v) * dt, 0.0, v
     for _ in range(300):
         height, slip = u_n - G * dt + gap / dt, u_t + np.sign(v) * mu * G * dt
         if height < mu * abs(slip):
