@@ -906,15 +906,15 @@ def test_each_foot_of_a_pushed_block_rubs_by_its_own_friction(lesson, draw):
               (a_x, 0.0, 0.0), SOLVED, given)
 
 
-@exercise("9.11", points=0.125, hint="every body has its own mass and inertia; both bodies of a contact feel its force")
-def test_pairs_of_bodies_of_any_mass_press_and_rub_as_the_laws_say(lesson, draw):
-    """Two contacts that share no body, and a body without a contact.  Some bodies have a fixed axle.
+def pressed_pairs(draw, lesson, held):
+    """(x, inverse masses, inverse inertias, ContactSet, load, μ) of five bodies: two pairs are pressed together.
 
-    The test's own residual checks the laws, and M a = load + GᵀF the motion.
+    Those that are held can turn only.  Where k_n is below μ |k_nt|, friction presses a contact on by more than its
+    normal force lifts it (Painlevé): it may stick and slide, and sweeps may not end.  Such a scene is drawn again.
     """
-    for held in [[], [1, 4]] * 3:
+    while True:
         x, inv_mass, inv_inertia = draw(-2.0, 2.0, (5, 2)), draw(0.3, 2.0, 5), draw(0.5, 5.0, 5)
-        inv_mass[held] = 0.0                                             # they can turn only
+        inv_mass[held] = 0.0
         n = [unit(draw), unit(draw)]
         c = contacts_of(lesson, [0, 3], [2, 1], 0.5 * (x[[0, 3]] + x[[2, 1]]) + draw(-0.5, 0.5, (2, 2)), n,
                         draw(-0.5, 0.5, 2))                              # forces do not depend on gaps
@@ -922,6 +922,20 @@ def test_pairs_of_bodies_of_any_mass_press_and_rub_as_the_laws_say(lesson, draw)
         for k, (a, b) in enumerate(((0, 2), (3, 1))):                    # press the bodies together
             load[a, :2] -= 9.0 * n[k]
             load[b, :2] += 9.0 * n[k]
+        G_rows = rows(x, c)
+        A = (G_rows * masses_of(inv_mass, inv_inertia)) @ G_rows.T
+        if np.all(mu * np.abs(np.diag(A, 1)[::2]) < 0.9 * np.diag(A)[::2]):
+            return x, inv_mass, inv_inertia, c, load, mu
+
+
+@exercise("9.11", points=0.125, hint="every body has its own mass and inertia; both bodies of a contact feel its force")
+def test_pairs_of_bodies_of_any_mass_press_and_rub_as_the_laws_say(lesson, draw):
+    """Two contacts that share no body, and a body without a contact.  Some bodies have a fixed axle.
+
+    The test's own residual checks the laws, and M a = load + GᵀF the motion.
+    """
+    for held in [[], [1, 4]] * 3:
+        x, inv_mass, inv_inertia, c, load, mu = pressed_pairs(draw, lesson, held)
         G_rows, w = rows(x, c), masses_of(inv_mass, inv_inertia)
         F, a = (np.asarray(part) for part in lesson.contact_forces(x, inv_mass, inv_inertia, c, load, mu))
         given = f"x = {x.tolist()}, inverse masses {inv_mass}, inverse inertias {inv_inertia}, load {load.tolist()}"
