@@ -222,8 +222,9 @@ def test_links_add_up_from_the_base(lesson, draw):
         theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
         if n == 9:                                                       # along both axes, and folded back
             theta = 0.5 * np.pi * np.array([-1.0, 2.0, 1.0, -2.0, 0.0, 1.0, 4.0, -1.0, 3.0])
+        rounded = 1.1e-16 * n * np.sum(np.abs(theta))                    # of n sums of angles, up to 450 rad
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
-              size * ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
+              size * ROUND_OFF + rounded * np.sum(lengths), given=f"θ = {theta}, lengths {lengths} m")
 
 
 @exercise("11.1", points=0.5,
@@ -358,8 +359,9 @@ def test_both_elbows_reach_the_target(lesson, draw):
             other = np.asarray(lesson.solve_2r(target, lengths, -elbow))
             close("end of the arm with the other elbow [m]", joints(other, lengths)[-1], target, SOLVED, given=given)
             close("other elbow [rad]", other[1], -theta[1], SOLVED, given=given)
-    for elbow in (1.0, -1.0):                                            # bearing − (the part due to θ₂) is beyond ±π
-        lengths, bearing, bend = lengths_of(draw, 2), -elbow * draw(2.9, 3.1), elbow * draw(1.0, 2.0)
+    # bearing − (the part due to θ₂) is beyond ±π: for a second link of a quarter of the first that part is only 0.18
+    for elbow in (1.0, -1.0):
+        lengths, bearing, bend = lengths_of(draw, 2), -elbow * draw(3.0, 3.1), elbow * draw(1.0, 2.0)
         way = lengths[0] + lengths[1] * np.exp(1j * bend)
         theta = np.array([bearing - np.angle(way) + elbow * 2.0 * np.pi, bend])
         got = lesson.solve_2r(abs(way) * np.array([np.cos(bearing), np.sin(bearing)]), lengths, elbow)

@@ -38,6 +38,15 @@ def unit(draw, d):
     return n / np.linalg.norm(n)
 
 
+def across(draw, n):
+    """A vector at right angles to n, from 0.1 to 3.5: the round-off along n of a very short one would be no grazing."""
+    y = 0.0 * n
+    while np.linalg.norm(y) < 0.1:
+        y = draw(0.5, 2.0, n.size)
+        y -= (y @ n) * n
+    return y
+
+
 def mostly_zero(draw, *shapes):
     """Arrays of these shapes, one of which is nearly zero: the others are full or all 0 in turn, then nearly zero, too.
 
@@ -511,9 +520,11 @@ def test_the_time_of_an_impact_on_an_oblique_plane_moves_with_all_inputs(lesson,
         got = lesson.event_time_sensitivity(n, 0.0 * n, -c_s, v + tau * a, a, X + tau * V, V)
         close("dtau of an impact", got, expected, ROUND_OFF, given=f"coordinates: {d}, inputs: {m}, n = {n}")
     for gap_x, gap_v, gap_s, v, a, dx, dv, unit_of_s in events(draw):
-        expected = slopes(reaches, gap_x, gap_v, (0.0 * v, dx), (v, dv), a, (gap_v @ v, -gap_s))
+        # per unit, because the square of a complex step of 1e-20 times a unit of 1e12 does not vanish
+        expected = slopes(reaches, gap_x, gap_v, (0.0 * v, dx / unit_of_s), (v, dv / unit_of_s), a,
+                          (gap_v @ v, -gap_s / unit_of_s))
         got = lesson.event_time_sensitivity(gap_x, gap_v, gap_s, v, a, dx, dv)
-        close("dtau of an event, per unit of the inputs", np.asarray(got) / unit_of_s, expected / unit_of_s, ROUND_OFF,
+        close("dtau of an event, per unit of the inputs", np.asarray(got) / unit_of_s, expected, ROUND_OFF,
               given=f"gap_x = {gap_x}, gap_v = {gap_v}, gap_s = {gap_s}, v = {v} m/s, a = {a} m/s²")
 
 
@@ -570,8 +581,7 @@ def test_an_event_that_only_grazes_is_refused(lesson, draw):
     dtau_of, thing = lesson.event_time_sensitivity, "rate of the event"
     for d in (2, 3):
         n, a, still, dx = unit(draw, d), draw(-5.0, 5.0, d), np.zeros(d), draw(-1.0, 1.0, (d, 2))
-        along = draw(0.5, 2.0, d)
-        along -= (along @ n) * n
+        along = across(draw, n)
         for size in (1.0, 1e6, TINY):
             raises("an event whose rate is zero but for round-off", BadInput, dtau_of, n, still, np.zeros(2),
                    size * along, size * a, dx, dx, thing=thing)
@@ -738,8 +748,8 @@ def test_a_ball_that_grazes_a_plane_has_no_sensitivities(lesson, draw):
     """In four dimensions there is a normal whose products with a velocity have no round-off."""
     thing = "rate of the event"
     for d in (2, 3):
-        n, v, a, dx = unit(draw, d), draw(0.5, 1.0, d), draw(-9.0, 9.0, d), draw(-1.0, 1.0, (d, 2))
-        v -= (v @ n) * n
+        n, a, dx = unit(draw, d), draw(-9.0, 9.0, d), draw(-1.0, 1.0, (d, 2))
+        v = across(draw, n)
         raises("a ball that moves along the plane", BadInput, lesson.bounce, v, a, dx, dx, n, draw(0.2, 0.9),
                np.zeros(2), np.zeros(2), thing=thing)
         v_new, _, _ = lesson.bounce(v - n, a, dx, dx, n, 1.0, np.zeros(2), np.zeros(2))
