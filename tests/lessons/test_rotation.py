@@ -155,6 +155,16 @@ def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
         F, tau = lesson.total_load(x, points, forces)
         close("total force, where some forces are 0 [N]", F, forces.sum(axis=0), EXACT)
         close("torque, where some forces are 0 [N m]", tau, np.cross(points - x, forces).sum(axis=0), EXACT)
+    x, points, forces = draw(-1.0, 1.0, 3), draw(-2.0, 2.0, (4, 3)), draw(-5.0, 5.0, (4, 3))
+    points[draw.whole(0, 2)] = x                                         # the others still have a torque
+    F, tau = lesson.total_load(x, points, forces)
+    given = f"x = {x}, points {points.tolist()}, forces {forces.tolist()}"
+    close("total force, where one force acts at the centre of mass [N]", F, forces.sum(axis=0), EXACT, given=given)
+    close("torque, where one force acts at the centre of mass [N m]", tau, np.cross(points - x, forces).sum(axis=0),
+          EXACT, given=given)
+    F, tau = lesson.total_load(x, points[:0], forces[:0])
+    close("total force of no forces [N]", F, np.zeros(3), 0.0)
+    close("torque of no forces [N m]", tau, np.zeros(3), 0.0)
 
 
 @exercise("5.4", points=1,

@@ -73,6 +73,10 @@ edit("5.3", "adds the centre of mass", "points[i] - x", "points[i] + x")
 edit("5.3", "takes the mean of the forces", "return F, tau", "return F / forces.shape[0], tau")
 edit("5.3", "ends at the first force that is 0",
      "F += forces[i]", "if not forces[i].any(): break\n        F += forces[i]")
+edit("5.3", "ends at the first force that acts at the centre of mass",
+     "tau += cross", "if not (points[i] - x).any(): break\n        tau += cross")
+edit("5.3", "begins with the first force, which there need not be",
+     "F, tau = np.zeros(3), np.zeros(3)", "F, tau = forces[0] - forces[0], np.zeros(3)")
 edit("5.3", "takes a force below 1 µN for none", "F, tau =",
      "forces = np.where(np.abs(forces) < 1e-6, 0.0, forces); F, tau =")
 edit("5.3", "takes a point within a micrometre of the centre to be there", "F, tau =",
