@@ -273,8 +273,8 @@ def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
 
 
 @exercise("5.7", points=0.5,
-          hint="the body is at rest only if |ω| = 0; use the whole angle in sin θ and cos θ, also beyond one turn and "
-               "for dt < 0")
+          hint="the body is at rest only if |ω| = 0; use the whole angle in sin θ and cos θ, also beyond one turn, for "
+               "dt < 0 and for a small turn")
 def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
     """The angle |ω| dt is below 30 and has a relative error of 1e-16."""
     for quarter in (0, 1, 2, 3, 4, 7, 15):
@@ -286,6 +286,10 @@ def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
                 got = lesson.axis_angle_update(R, rate * n, side * angle / rate)
                 close("orientation after dt", got, about(side * angle * n) @ R, EXACT,
                       given=f"ω = {rate * n} rad/s, dt = {side * angle / rate} s")
+    for angle in SLOW:                                                   # a small turn is a turn
+        R, n, rate = turn(orientation(draw)), unit_of(spin_of(draw)), draw(0.5, 2.0)
+        close("orientation after a small turn", lesson.axis_angle_update(R, rate * n, angle / rate),
+              about(angle * n) @ R, EXACT, given=f"ω = {rate * n} rad/s, dt = {angle / rate} s")
 
 
 def pauli(q):

@@ -195,6 +195,10 @@ wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
 wrong("5.7", "omits dt")(rodrigues(angle=lambda rate, dt: rate))
 edit("5.7", "changes its input", "turned = float_copy(R)", "turned = R")
 edit("5.7", "returns its input at rest", "turned = float_copy(R)", "turned = float_copy(R) if omega.any() else R")
+edit("5.7", "takes a turn below 1e-3 rad for none", "rate != 0.0", "rate * abs(dt) > 1e-3")
+edit("5.7", "takes a turn below 1e-6 rad for none", "rate != 0.0", "rate * abs(dt) > 1e-6")
+edit("5.7", "takes 1 for cos θ and θ for sin θ in a small turn", "c, s = np.cos(rate * dt), np.sin(rate * dt)",
+     "c, s = (np.cos(rate * dt), np.sin(rate * dt)) if abs(rate * dt) > 1e-2 else (1.0, rate * dt)")
 SLOW_IS_AT_REST = edit("5.7", "treats a milliradian per second as rest", "rate != 0.0", "rate > 1e-3")
 edit("5.7", "drops the sign of the sine", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
 edit("5.7", "limits the angle to half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
