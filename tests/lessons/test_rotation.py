@@ -446,6 +446,9 @@ def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
         m, I_body = size * draw(1.0, 3.0), size * moments(draw)
         state = draw(-1.0, 1.0, 3), orientation(draw), draw(-1.0, 1.0, 3), spin_of(draw)
         check_one_step(lesson, swirling_load, draw(0.5, 1.5), state, draw(0.1, 0.3), Driven(m, I_body, draw(0.5, 2.0)))
+    for pace, dt in ((1.0, draw(2.0, 9.0)), (1e-4, draw(0.1, 0.3)), (1e-7, draw(0.1, 0.3))):     # long, and slow
+        state = draw(-1.0, 1.0, 3), orientation(draw), pace * draw(-1.0, 1.0, 3), pace * spin_of(draw)
+        check_one_step(lesson, unloaded, draw(0.5, 1.5), state, dt, Driven(draw(1.0, 3.0), moments(draw), 1.0))
     general = draw(-1.0, 1.0, (3, 3))
     for x, v, omega in (*one_at_zero(general), *draw.sparse(-1.0, 1.0, (2, 3, 3)), np.zeros((3, 3))):
         for q, I_body in ((orientation(draw), moments(draw)), (STILL, round_bodies(draw)[2])):

@@ -414,6 +414,11 @@ edit("5.12", "does not rotate the body", "quaternion_update(q, omega, dt), v", "
 edit("5.12", "does not move the body", "return x + dt * v,", "return x,")
 edit("5.12", "returns the state unchanged where nothing moves yet",
      "F, tau = load", "if not (v.any() or omega.any()): return x, q, v, omega\n    F, tau = load")
+edit("5.12", "takes a step of at most a second", "F, tau = load", "dt = min(dt, 1.0); F, tau = load")
+edit("5.12", "does not move a body that is slower than 1 mm/s", "return x + dt * v,",
+     "return x + dt * (norm(v) > 1e-3) * v,")
+edit("5.12", "does not rotate a body that turns more slowly than 1 mrad/s", "quaternion_update(q, omega, dt)",
+     "quaternion_update(q, (norm(omega) > 1e-3) * omega, dt)")
 edit("5.12", "uses a mass of at least 1 g", "dt / body.m", "dt / max(body.m, 1e-3)")
 edit("5.12", "uses a mass of at most 1 t", "dt / body.m", "dt / min(body.m, 1e3)")
 edit("5.12", "uses moments of at least 1e-3 kg m²", "tau, body.I_body", "tau, np.maximum(body.I_body, 1e-3)")
