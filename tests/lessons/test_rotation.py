@@ -62,9 +62,9 @@ def orientation_of_few(draw):
     return unit_of(q)
 
 
-def round_bodies(draw):
-    """Moments [kg m²] of three bodies with two equal ones, and of a ball."""
-    across, along = draw(2.0, 3.0), draw(1.0, 1.8)
+def round_bodies(draw, flat=False):
+    """Moments [kg m²] of three bodies with two equal ones, rods or flat discs, and of a ball."""
+    across, along = draw(2.0, 3.0), draw(3.3, 3.9) if flat else draw(1.0, 1.8)
     return *np.where(np.eye(3) > 0.0, along, across), np.full(3, across)
 
 
@@ -688,11 +688,15 @@ def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
 
 
 @exercise("5.17", points=0.5,
-          hint="on the right of q: angles (1/I_a − 1/I_b) L_a dt about a, and likewise about c; on its left: dt/I_b L "
-               "about L; for two equal moments this is exact")
+          hint="b is intermediate_axis(I_body); on the right of q: angles (1/I_a − 1/I_b) L_a dt about a, likewise "
+               "about c; on its left: dt/I_b L about L; for two equal moments this is exact")
 def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
-    dt = draw(0.5, 2.0)
-    bodies = round_bodies(draw)
+    for flat in (False, True):
+        check_turns_of_round_bodies(lesson, draw, round_bodies(draw, flat), draw(0.5, 2.0))
+
+
+def check_turns_of_round_bodies(lesson, draw, bodies, dt):
+    """Compare with a turn about L, times a turn about the body's axis: moments of bodies as round_bodies gives them."""
     across = bodies[3][0]
     for omega, q in ((spin_of(draw), orientation(draw)), *zip(few(draw, 1.5), (STILL, *np.eye(4)[1:]), strict=True)):
         for k, I_body in enumerate(bodies):

@@ -602,6 +602,10 @@ wrong("5.17", "omits the subtraction of 1/I_b")(splitting(slow=lambda I, k, b: 1
 wrong("5.17", "uses differences of the moments, not of their inverses")(
     splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
+edit("5.17", "takes the axis of the largest moment for the middle one",
+     "intermediate_axis(I_body)", "int(np.argmax(I_body))")
+edit("5.17", "takes the axis of the smallest moment for the middle one",
+     "intermediate_axis(I_body)", "int(np.argmin(I_body))")
 edit("5.17", "does not normalise at the end", "unit(quaternion_product(exponential(dt / I_body[b] * L), turned))",
      "quaternion_product(exponential(dt / I_body[b] * L), turned)")
 edit("5.17", "rotates about the outer axis by the whole angle twice",
