@@ -835,6 +835,7 @@ def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
               f"tilt = {tilt:.4g} rad, spin = {limit:.4g} rad/s")
         close("rate of a top that stands on its centre of mass, Mgl = 0 [rad/s]",
               lesson.precession_rate(I_body, 0.0, tilt, limit), 0.0, EXACT, given=f"tilt = {tilt:.4g} rad")
+    check_slow_tops(lesson, draw)
     # Tops of any size, nearly vertical, level and fast ones: Ω (I₃ω₃ − I₁Ω cos θ) = Mgl, and Ω is the smaller root.
     for size, tilt, fast in itertools.product(SIZES, (1e-4, 1.0, 0.5 * np.pi - 1e-3, 0.5 * np.pi + 1e-3, 3.1),
                                               (1.5, 30.0, 1e3)):
@@ -850,6 +851,19 @@ def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
     for spin in (limit, -limit):
         close("rate with a level axis [rad/s]", lesson.precession_rate(I_body, mgl, 0.5 * np.pi, spin),
               mgl / (I_body[2] * spin), 1e-12, given=f"spin = {spin:.4g} rad/s")
+
+
+def check_slow_tops(lesson, draw):
+    """Compare the rate of tops that are too slow to stand upright: a leaning one needs less spin, a hanging one none.
+    """
+    for low, high, least in ((0.9, 1.2, 1.02), (1.9, 2.8, 0.0)):
+        I_body, mgl, tilt = np.array([draw(3.0, 6.0)] * 2 + [draw(0.8, 1.5)]), draw(10.0, 30.0), draw(low, high)
+        limit = np.sqrt(4.0 * I_body[0] * mgl) / I_body[2]
+        least = max(least * np.sqrt(max(0.0, np.cos(tilt))), 0.1)        # of the limit
+        for spin in (draw(least, 0.95) * limit, -draw(least, 0.95) * limit):
+            close("rate of a top that is too slow to stand upright [rad/s]",
+                  lesson.precession_rate(I_body, mgl, tilt, spin), steady_rates(I_body, mgl, tilt, spin)[0], 1e-10,
+                  given=f"I_body = {I_body}, Mgl = {mgl:.4g} N m, tilt = {tilt:.4g} rad, spin = {spin:.4g} rad/s")
 
 
 @exercise("5.20", points=1, hint="a disturbance grows as e^(λt): how much later does a tenth of it reach the same?")

@@ -693,6 +693,10 @@ edit("5.19", "takes the whole torque Mgl sin θ for L = I₃ω₃ along the vert
 edit("5.19", "forgets the 2", "2.0 * mgl / (", "mgl / (")
 edit("5.19", "exchanges the two moments", "along = I_body[2]", "I_body = I_body[::-1]; along = I_body[2]")
 edit("5.19", "adds the weight under the root", "along * along - 4.0", "along * along + 4.0")
+edit("5.19", "finds no rate where the top is too slow to stand upright", "root = np.sqrt",
+     "root = np.nan if along * along < 4.0 * I_body[0] * mgl else np.sqrt")
+edit("5.19", "takes the least spin for an upright top where it is slower", "along = I_body[2] * spin",
+     "along = np.copysign(max(abs(I_body[2] * spin), np.sqrt(4.0 * I_body[0] * mgl)), spin)")
 edit("5.19", "turns the other way", "return 2.0", "return -2.0")
 edit("5.19", "loses the sign of the spin where the axis is level",
      SLOW, f"{SLOW} if abs(np.cos(tilt)) > 1e-9 else mgl / abs(along)")
