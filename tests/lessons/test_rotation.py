@@ -596,7 +596,8 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
 
 
 @exercise("5.16", points=0.25,
-          hint="use Newton's method with the derivative: for long steps fixed-point iteration does not converge")
+          hint="use Newton's method with the derivative, and allow NEWTON_LIMIT corrections: for long steps "
+               "fixed-point iteration does not converge, and ten corrections are too few")
 def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, draw):
     """About an outer axis k, a fixed-point iteration m ← ℓ + ½dt m × w multiplies a small error by ρ > 1: it diverges.
 
@@ -611,13 +612,44 @@ def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, d
         i, j = (k + 1) % 3, (k + 2) % 3
         omega_body[k] = spin
         dt = 2.0 * rho / spin / np.sqrt((I_body[k] - I_body[i]) * (I_body[k] - I_body[j]) / (I_body[i] * I_body[j]))
-        before = I_body * omega_body
-        after = turn(lesson.midpoint_free_rotation(q, turn(q) @ before, I_body, float(dt))).T @ turn(q) @ before
-        m = 0.5 * (before + after)
-        # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 30.
-        close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
-              np.zeros(3), 1e-9,
-              given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
+        check_long_turn(lesson, q, I_body, omega_body, float(dt))
+    for _ in range(2):
+        I_body, omega_body, dt = slow_to_solve(draw, 11)
+        check_long_turn(lesson, orientation(draw), I_body, omega_body, dt)
+
+
+def check_long_turn(lesson, q, I_body, omega_body, dt):
+    before = I_body * omega_body
+    after = turn(lesson.midpoint_free_rotation(q, turn(q) @ before, I_body, dt)).T @ turn(q) @ before
+    m = 0.5 * (before + after)
+    # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 60, and the rotation adds as much again.
+    close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
+          np.zeros(3), 1e-8, given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
+
+
+def corrections(before, I_body, dt):
+    """How many corrections Newton's method needs; 99 if that is more than 24."""
+    m = before.copy()
+    for n in range(1, 25):
+        slope = [e + 0.5 * dt * np.cross(m / I_body - m / I, e) for e, I in zip(np.eye(3), I_body, strict=True)]
+        change = np.linalg.solve(np.stack(slope, axis=1), m - before - 0.5 * dt * np.cross(m, m / I_body))
+        m = m - change
+        if np.max(np.abs(change)) <= 1e-12 * np.max(np.abs(m)):
+            return n
+    return 99
+
+
+def slow_to_solve(draw, least):
+    """(I_body, ω in the body, dt) of a very long step that Newton's method solves, but not before `least` corrections.
+
+    They are about as many from nearby, so round-off does not matter.
+    """
+    while True:
+        I_body, omega_body, dt = moments(draw), spin_of(draw), draw(5.0, 20.0)
+        if least <= corrections(I_body * omega_body, I_body, dt) < 99:
+            near = [corrections(I_body * omega_body * (1.0 + draw(-1e-7, 1e-7, 3)), I_body, dt) for _ in range(4)]
+            if least <= min(near) and max(near) <= min(near) + 1 < 25:
+                return I_body, omega_body, dt
 
 
 def turn_once(lesson, draw):

@@ -553,6 +553,8 @@ wrong("5.16", "fails for a body at rest")(midpoint(enough=lambda n, change, m: c
 edit("5.16", "never raises: rotates by the last iterate",
      'raise Diverged("Newton\'s method did not converge at dt [s]", dt, "take a smaller step")',
      "return unit(quaternion_product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
+edit("5.16", "gives up after five corrections", "range(NEWTON_LIMIT)", "range(5)")
+edit("5.16", "gives up after ten corrections", "range(NEWTON_LIMIT)", "range(10)")
 edit("5.16", "adds the correction δ in place of subtracting it", "m = m - delta", "m = m + delta")
 edit("5.16", "takes a whole step to the middle", "- 0.5 * dt * cross(m, w)", "- dt * cross(m, w)")
 edit("5.16", "takes w × m in place of m × w", "cross(m, w)", "cross(w, m)")
