@@ -219,7 +219,7 @@ def test_links_add_up_from_the_base(lesson, draw):
     for n, size in ((1, 1.0), (2, 1.0), (draw.whole(3, 8), 1.0), (12, TINY), (5, 1e6), (9, 1.0)):
         theta, lengths = draw(-5.0, 5.0, n), size * lengths_of(draw, n)   # up to 1000 km
         theta[6:8] = 0.0                                                 # two links that go straight on
-        theta[1:3] *= (1e-5, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
+        theta[1:3] *= (1e-7, 90.0)[:n - 1]                               # one that hardly turns, and one that winds
         if n == 9:                                                       # along both axes, and folded back
             theta = 0.5 * np.pi * np.array([-1.0, 2.0, 1.0, -2.0, 0.0, 1.0, 4.0, -1.0, 3.0])
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
