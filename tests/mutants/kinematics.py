@@ -506,6 +506,11 @@ def joint_frames(theta, axes, offsets):
     return x, a, q
 
 
+@right("11.6", "brings the angles into [0, 2π), which may lead to −q")
+def frames_of_positive_angles(theta, axes, offsets):
+    return worked.joint_frames(theta % (2.0 * np.pi), axes, offsets)
+
+
 BAR = np.array([1.0, -1.0, -1.0, -1.0])                                  # times q: its conjugate
 
 
