@@ -258,6 +258,9 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
             close("residual beside the answer [m/s]", lesson.complementarity_residual(A, b, off), expected, ROUND_OFF,
                   given=f"A = {A}, b = {b}, λ = {off}")
         close("residual at the answer [m/s]", lesson.complementarity_residual(A, b, lam), 0.0, ROUND_OFF)
+        off = draw(-2.0, 2.0, m) / scale
+        close("residual where b is 0, but not λ [m/s]", lesson.complementarity_residual(A, 0.0 * b, off),
+              np.max(np.abs(np.minimum(np.diag(A) * off, A @ off))), ROUND_OFF, given=f"A = {A}, λ = {off}")
         for k in range(m):                                               # one contact pulls, and all bodies separate
             pull = draw(0.5, 2.0) / A[k, k]
             close("residual where one contact pulls [m/s]",
@@ -289,8 +292,8 @@ def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
                   np.asarray(lesson.gauss_seidel_sweep(A, size * b, size * lam, omega)) / size, expected, 1e-11,
                   given=f"A = {A}, b = {size * b}, λ = {size * lam}, ω = {omega}")
     for m, omega, size in itertools.product((4, 30), (1.0, draw(0.01, 0.1), 10.0 ** draw(-6.0, -3.0)), SIZES):
-        A, b = positive_definite(draw, m), draw(-3.0, 3.0, m)
-        for lam in (draw(-1.0, 2.0, m), balanced(draw, m)):
+        A, drawn = positive_definite(draw, m), draw(-3.0, 3.0, m)
+        for lam, b in ((draw(-1.0, 2.0, m), drawn), (balanced(draw, m), drawn), (draw(-1.0, 2.0, m), np.zeros(m))):
             got = lesson.gauss_seidel_sweep(size * A, b, lam / size, omega)
             close("λ after a sweep, times the size of A [-]", np.asarray(got) * size, relaxed(A, b, lam, omega), 1e-11,
                   given=f"A = {size * A}, b = {b}, λ = {lam / size}, ω = {omega}")
@@ -669,8 +672,9 @@ def test_every_contact_is_judged_by_the_given_impulses(lesson, draw):
     for m in (3,) * 20 + (30,) * 5:
         A, mu = positive_definite(draw, 2 * m), draw(0.1, 2.0, m)
         b, J = draw(-3.0, 3.0, 2 * m), draw(-1.0, 2.0, 2 * m)
-        close("residual of drawn impulses [m/s]", lesson.cone_residual(A, b, J, mu), judged(A, b, J, mu), m * ROUND_OFF,
-              given=f"A = {A}, b = {b}, J = {J}, μ = {mu}")
+        for some in (b, 0.0 * b):
+            close("residual of drawn impulses [m/s]", lesson.cone_residual(A, some, J, mu), judged(A, some, J, mu),
+                  m * ROUND_OFF, given=f"A = {A}, b = {some}, J = {J}, μ = {mu}")
 
 
 @exercise("9.9", points=0.25, hint="in m/s: k_n |J_n' − J_n| and k_t |J_t' − J_t|, the largest of all contacts")
@@ -770,9 +774,10 @@ def test_a_cone_sweep_visits_the_contacts_in_their_order(lesson, draw):
     for m, size in itertools.product((2, 30), SIZES):
         A, mu = positive_definite(draw, 2 * m), 10.0 ** draw(-7.0, 1.0, m)
         b, J = draw(-3.0, 3.0, 2 * m), draw(-1.0, 2.0, 2 * m)
-        got = np.asarray(lesson.cone_sweep(size * A, b, J / size, mu)) * size
-        close("J after a sweep, times the size of A [-]", got, swept(A, b, J, mu), 1e-10,
-              given=f"A = {size * A}, b = {b}, J = {J / size}, μ = {mu}")
+        for some in (b, 0.0 * b):
+            got = np.asarray(lesson.cone_sweep(size * A, some, J / size, mu)) * size
+            close("J after a sweep, times the size of A [-]", got, swept(A, some, J, mu), 1e-10,
+                  given=f"A = {size * A}, b = {some}, J = {J / size}, μ = {mu}")
 
 
 SWEEPS = 500                 # that a drawn scene may need [-]
@@ -1594,8 +1599,9 @@ def test_every_impulse_of_a_proximal_sweep_has_its_own_factor(lesson, draw):
         mu = draw(0.1, 2.0, m)
         mu[::2] = 10.0 ** draw(-7.0, -1.0, len(mu[::2]))
         r = draw(0.05, 1.9, 2 * m) / np.diag(A)
-        close("J after a sweep with other factors [N s]", lesson.proximal_sweep(A, b, J, mu, r),
-              proximal(A, b, J, mu, r), 1e-10, given=f"A = {A}, b = {b}, J = {J}, μ = {mu}, r = {r}")
+        for speeds in (b, 0.0 * b):
+            close("J after a sweep with other factors [N s]", lesson.proximal_sweep(A, speeds, J, mu, r),
+                  proximal(A, speeds, J, mu, r), 1e-10, given=f"A = {A}, b = {speeds}, J = {J}, μ = {mu}, r = {r}")
     J, u, r = draw(2.0, 4.0, 6), np.zeros(6), draw(0.5, 1.0, 6)
     J[1::2], u[1::2] = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     close("J of three contacts that neither approach nor separate, but slip [N s]",
