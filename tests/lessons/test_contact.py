@@ -1602,6 +1602,12 @@ def test_every_impulse_of_a_proximal_sweep_has_its_own_factor(lesson, draw):
         for speeds in (b, 0.0 * b):
             close("J after a sweep with other factors [N s]", lesson.proximal_sweep(A, speeds, J, mu, r),
                   proximal(A, speeds, J, mu, r), 1e-10, given=f"A = {A}, b = {speeds}, J = {J}, μ = {mu}, r = {r}")
+    A, b = np.diag([1.0, 1.0, 16.0, 1.0]), np.array([-draw(1.0, 2.0), 0.0, draw(0.1, 0.5), draw(0.5, 1.0)])
+    A[0, 2] = A[2, 0] = -3.0
+    r = draw(0.5, 1.5, 4) / np.diag(A)
+    close("J of a contact that approaches and one that does not yet, but then approaches faster [N s]",
+          lesson.proximal_sweep(A, b, np.zeros(4), np.ones(2), r), proximal(A, b, np.zeros(4), np.ones(2), r),
+          ROUND_OFF, given=f"A = {A}, b = {b}, J = 0, μ = 1, r = {r}")
     J, u, r = draw(2.0, 4.0, 6), np.zeros(6), draw(0.5, 1.0, 6)
     J[1::2], u[1::2] = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     close("J of three contacts that neither approach nor separate, but slip [N s]",
