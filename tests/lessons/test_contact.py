@@ -46,13 +46,16 @@ def contacts_of(lesson, a, b, p, n, gap=None, bodies=None):
 def scene(draw, lesson, fixed=True):
     """(x, inverse masses, inverse inertias, ContactSet): four drawn bodies and five contacts.
 
-    fixed: the last body is fixed, and number 1 cannot turn; with "axle" that one can do nothing else.
+    fixed: the last body is fixed, and number 1 cannot turn; with "axle" that one can do nothing else.  With "axles" all
+    can turn, and numbers 1 and 2, which touch, can do nothing else.
     """
     a, b = [0, 0, 1, 2, 3], [1, 3, 2, 3, 0]
     p, n = draw(-2.0, 2.0, (5, 2)), [unit(draw) for _ in a]
     n[draw.whole(0, 4)] = np.array([1.0, -1.0]) / np.sqrt(2.0)           # its components add up to exactly 0
     inv_mass, inv_inertia = draw(0.3, 2.0, 4), draw(0.5, 5.0, 4)
-    if fixed:
+    if fixed == "axles":
+        inv_mass[1:3] = 0.0
+    elif fixed:
         inv_mass[3] = inv_inertia[3] = (inv_mass if fixed == "axle" else inv_inertia)[1] = 0.0
     return draw(-2.0, 2.0, (4, 2)), inv_mass, inv_inertia, contacts_of(lesson, a, b, p, n, draw(-0.5, 0.5, 5))
 
@@ -1390,9 +1393,10 @@ def test_the_velocities_after_one_contact_with_the_ground_by_hand(lesson, draw):
 
 def check_sweep_by_matrix(lesson, draw, cases):
     """Compare with a sweep over the Delassus matrix; cases (μ, whether the last body is fixed, which are soft), …"""
-    for mu, fixed, soft in cases:
+    for (mu, fixed, soft), pace in itertools.product(cases, (1.0, 0.0)):              # at rest J may be wrong, too
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed)
-        aim, give = soft * draw(-3.0, 6.0, 5), soft * draw(0.1, 2.0, 5)
+        v, omega = pace * v, pace * omega
+        aim, give = pace * soft * draw(-3.0, 6.0, 5), soft * draw(0.1, 2.0, 5)
         if mu == np.inf:                                                 # the first contact has much to hold
             v[0], aim[0] = 1e5 * np.array([-c.n[0, 1], c.n[0, 0]]), 20.0
         G_rows, w = rows(x, c), masses_of(pile.inv_mass, pile.inv_inertia)
@@ -1426,10 +1430,11 @@ HARD, LOOSE = np.zeros(5), np.array([1.0, 1.0, 0.0, 1.0, 0.0])           # which
 
 @exercise("9.16", points=0.125,
           hint="u from the newest velocities; J_n and J_t from this u; the change acts on both bodies "
-               "at once")
+               "at once; a body with an inverse mass of 0 may still turn, and J of bodies at rest may still be wrong")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
     check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, HARD), (draw(0.1, 0.9), False, HARD),
-                                         (0.0, True, HARD), (draw(0.1, 0.9), "axle", HARD)))
+                                         (0.0, True, HARD), (draw(0.1, 0.9), "axle", HARD),
+                                         (draw(0.1, 0.9), "axles", HARD)))
 
 
 @exercise("9.16", points=0.125,
