@@ -46,13 +46,16 @@ def contacts_of(lesson, a, b, p, n, gap=None, bodies=None):
 def scene(draw, lesson, fixed=True):
     """(x, inverse masses, inverse inertias, ContactSet): four drawn bodies and five contacts.
 
-    fixed: the last body is fixed, and number 1 cannot turn; with "axle" that one can do nothing else.
+    fixed: the last body is fixed, and number 1 cannot turn; with "axle" that one can do nothing else.  With "axles" all
+    can turn, and numbers 1 and 2, which touch, can do nothing else.
     """
     a, b = [0, 0, 1, 2, 3], [1, 3, 2, 3, 0]
     p, n = draw(-2.0, 2.0, (5, 2)), [unit(draw) for _ in a]
     n[draw.whole(0, 4)] = np.array([1.0, -1.0]) / np.sqrt(2.0)           # its components add up to exactly 0
     inv_mass, inv_inertia = draw(0.3, 2.0, 4), draw(0.5, 5.0, 4)
-    if fixed:
+    if fixed == "axles":
+        inv_mass[1:3] = 0.0
+    elif fixed:
         inv_mass[3] = inv_inertia[3] = (inv_mass if fixed == "axle" else inv_inertia)[1] = 0.0
     return draw(-2.0, 2.0, (4, 2)), inv_mass, inv_inertia, contacts_of(lesson, a, b, p, n, draw(-0.5, 0.5, 5))
 
@@ -258,6 +261,9 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
             close("residual beside the answer [m/s]", lesson.complementarity_residual(A, b, off), expected, ROUND_OFF,
                   given=f"A = {A}, b = {b}, λ = {off}")
         close("residual at the answer [m/s]", lesson.complementarity_residual(A, b, lam), 0.0, ROUND_OFF)
+        off = draw(-2.0, 2.0, m) / scale
+        close("residual where b is 0, but not λ [m/s]", lesson.complementarity_residual(A, 0.0 * b, off),
+              np.max(np.abs(np.minimum(np.diag(A) * off, A @ off))), ROUND_OFF, given=f"A = {A}, λ = {off}")
         for k in range(m):                                               # one contact pulls, and all bodies separate
             pull = draw(0.5, 2.0) / A[k, k]
             close("residual where one contact pulls [m/s]",
@@ -289,8 +295,8 @@ def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
                   np.asarray(lesson.gauss_seidel_sweep(A, size * b, size * lam, omega)) / size, expected, 1e-11,
                   given=f"A = {A}, b = {size * b}, λ = {size * lam}, ω = {omega}")
     for m, omega, size in itertools.product((4, 30), (1.0, draw(0.01, 0.1), 10.0 ** draw(-6.0, -3.0)), SIZES):
-        A, b = positive_definite(draw, m), draw(-3.0, 3.0, m)
-        for lam in (draw(-1.0, 2.0, m), balanced(draw, m)):
+        A, drawn = positive_definite(draw, m), draw(-3.0, 3.0, m)
+        for lam, b in ((draw(-1.0, 2.0, m), drawn), (balanced(draw, m), drawn), (draw(-1.0, 2.0, m), np.zeros(m))):
             got = lesson.gauss_seidel_sweep(size * A, b, lam / size, omega)
             close("λ after a sweep, times the size of A [-]", np.asarray(got) * size, relaxed(A, b, lam, omega), 1e-11,
                   given=f"A = {size * A}, b = {b}, λ = {lam / size}, ω = {omega}")
@@ -669,8 +675,9 @@ def test_every_contact_is_judged_by_the_given_impulses(lesson, draw):
     for m in (3,) * 20 + (30,) * 5:
         A, mu = positive_definite(draw, 2 * m), draw(0.1, 2.0, m)
         b, J = draw(-3.0, 3.0, 2 * m), draw(-1.0, 2.0, 2 * m)
-        close("residual of drawn impulses [m/s]", lesson.cone_residual(A, b, J, mu), judged(A, b, J, mu), m * ROUND_OFF,
-              given=f"A = {A}, b = {b}, J = {J}, μ = {mu}")
+        for some in (b, 0.0 * b):
+            close("residual of drawn impulses [m/s]", lesson.cone_residual(A, some, J, mu), judged(A, some, J, mu),
+                  m * ROUND_OFF, given=f"A = {A}, b = {some}, J = {J}, μ = {mu}")
 
 
 @exercise("9.9", points=0.25, hint="in m/s: k_n |J_n' − J_n| and k_t |J_t' − J_t|, the largest of all contacts")
@@ -770,9 +777,10 @@ def test_a_cone_sweep_visits_the_contacts_in_their_order(lesson, draw):
     for m, size in itertools.product((2, 30), SIZES):
         A, mu = positive_definite(draw, 2 * m), 10.0 ** draw(-7.0, 1.0, m)
         b, J = draw(-3.0, 3.0, 2 * m), draw(-1.0, 2.0, 2 * m)
-        got = np.asarray(lesson.cone_sweep(size * A, b, J / size, mu)) * size
-        close("J after a sweep, times the size of A [-]", got, swept(A, b, J, mu), 1e-10,
-              given=f"A = {size * A}, b = {b}, J = {J / size}, μ = {mu}")
+        for some in (b, 0.0 * b):
+            got = np.asarray(lesson.cone_sweep(size * A, some, J / size, mu)) * size
+            close("J after a sweep, times the size of A [-]", got, swept(A, some, J, mu), 1e-10,
+                  given=f"A = {size * A}, b = {some}, J = {J / size}, μ = {mu}")
 
 
 SWEEPS = 500                 # that a drawn scene may need [-]
@@ -1406,9 +1414,10 @@ def test_the_velocities_after_one_contact_with_the_ground_by_hand(lesson, draw):
 
 def check_sweep_by_matrix(lesson, draw, cases):
     """Compare with a sweep over the Delassus matrix; cases (μ, whether the last body is fixed, which are soft), …"""
-    for mu, fixed, soft in cases:
+    for (mu, fixed, soft), pace in itertools.product(cases, (1.0, 0.0)):              # at rest J may be wrong, too
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed)
-        aim, give = soft * draw(-3.0, 6.0, 5), soft * draw(0.1, 2.0, 5)
+        v, omega = pace * v, pace * omega
+        aim, give = pace * soft * draw(-3.0, 6.0, 5), soft * draw(0.1, 2.0, 5)
         if mu == np.inf:                                                 # the first contact has much to hold
             v[0], aim[0] = 1e5 * np.array([-c.n[0, 1], c.n[0, 0]]), 20.0
         G_rows, w = rows(x, c), masses_of(pile.inv_mass, pile.inv_inertia)
@@ -1442,10 +1451,11 @@ HARD, LOOSE = np.zeros(5), np.array([1.0, 1.0, 0.0, 1.0, 0.0])           # which
 
 @exercise("9.16", points=0.125,
           hint="u from the newest velocities; J_n and J_t from this u; the change acts on both bodies "
-               "at once")
+               "at once; a body with an inverse mass of 0 may still turn, and J of bodies at rest may still be wrong")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
     check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, HARD), (draw(0.1, 0.9), False, HARD),
-                                         (0.0, True, HARD), (draw(0.1, 0.9), "axle", HARD)))
+                                         (0.0, True, HARD), (draw(0.1, 0.9), "axle", HARD),
+                                         (draw(0.1, 0.9), "axles", HARD)))
 
 
 @exercise("9.16", points=0.125,
@@ -1616,8 +1626,15 @@ def test_every_impulse_of_a_proximal_sweep_has_its_own_factor(lesson, draw):
         mu = draw(0.1, 2.0, m)
         mu[::2] = 10.0 ** draw(-7.0, -1.0, len(mu[::2]))
         r = draw(0.05, 1.9, 2 * m) / np.diag(A)
-        close("J after a sweep with other factors [N s]", lesson.proximal_sweep(A, b, J, mu, r),
-              proximal(A, b, J, mu, r), 1e-10, given=f"A = {A}, b = {b}, J = {J}, μ = {mu}, r = {r}")
+        for speeds in (b, 0.0 * b):
+            close("J after a sweep with other factors [N s]", lesson.proximal_sweep(A, speeds, J, mu, r),
+                  proximal(A, speeds, J, mu, r), 1e-10, given=f"A = {A}, b = {speeds}, J = {J}, μ = {mu}, r = {r}")
+    A, b = np.diag([1.0, 1.0, 16.0, 1.0]), np.array([-draw(1.0, 2.0), 0.0, draw(0.1, 0.5), draw(0.5, 1.0)])
+    A[0, 2] = A[2, 0] = -3.0
+    r = draw(0.5, 1.5, 4) / np.diag(A)
+    close("J of a contact that approaches and one that does not yet, but then approaches faster [N s]",
+          lesson.proximal_sweep(A, b, np.zeros(4), np.ones(2), r), proximal(A, b, np.zeros(4), np.ones(2), r),
+          ROUND_OFF, given=f"A = {A}, b = {b}, J = 0, μ = 1, r = {r}")
     J, u, r = draw(2.0, 4.0, 6), np.zeros(6), draw(0.5, 1.0, 6)
     J[1::2], u[1::2] = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     close("J of three contacts that neither approach nor separate, but slip [N s]",

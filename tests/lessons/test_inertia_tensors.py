@@ -522,7 +522,8 @@ def test_principal_axes_are_right_handed(lesson, draw):
 
 
 @exercise("4.13", points=0.25,
-          hint="equal moments allow many axes; return any that are orthogonal, right-handed unit vectors")
+          hint="equal moments allow many axes; return any that are orthogonal, right-handed unit vectors; equal "
+               "entries of the diagonal are no equal moments where a product of inertia is not 0")
 def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any_size(lesson, draw):
     """det(I − λ) = −λ³ + tr I λ² − ½(tr² I − tr I²) λ + det I. Roots 0.2 apart are known to about 1e-14."""
     low, middle, high = 0.5 + draw(0.0, 0.3), 1.0 + draw(0.0, 0.3), 1.5 + draw(0.0, 0.3)
@@ -541,6 +542,12 @@ def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any
             close("R diag(moments) Rᵀ over the size [-]", axes @ np.diag(found) @ axes.T, I, ROUNDED, given)
             close("first axis × second axis [-]: the third", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2],
                   ROUNDED, given)
+    for signs in ((1.0, 1.0, 1.0), (1.0, -1.0, 0.0), (0.0, 1.0, 1.0), *np.eye(3)):       # no ball, and not diagonal
+        xy, xz, yz = draw(0.1, 0.3) * np.array(signs)
+        I = np.array([[high, xy, xz], [xy, high, yz], [xz, yz, high]])
+        found, axes = (np.asarray(part) for part in lesson.principal_axes(I))
+        close("R diag(moments) Rᵀ of a body with equal moments about x, y and z [kg m²]",
+              axes @ np.diag(found) @ axes.T, I, ROUNDED, f"I = {I.tolist()}")
     for share in (1e-10, 1e-11, 1e-12):                                  # needles, whose small moment is no round-off
         needle = np.array([share * low, middle, high])
         found, _ = lesson.principal_axes(np.diag(needle))

@@ -62,9 +62,9 @@ def orientation_of_few(draw):
     return unit_of(q)
 
 
-def round_bodies(draw):
-    """Moments [kg m²] of three bodies with two equal ones, and of a ball."""
-    across, along = draw(2.0, 3.0), draw(1.0, 1.8)
+def round_bodies(draw, flat=False):
+    """Moments [kg m²] of three bodies with two equal ones, rods or flat discs, and of a ball."""
+    across, along = draw(2.0, 3.0), draw(3.3, 3.9) if flat else draw(1.0, 1.8)
     return *np.where(np.eye(3) > 0.0, along, across), np.full(3, across)
 
 
@@ -155,6 +155,16 @@ def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
         F, tau = lesson.total_load(x, points, forces)
         close("total force, where some forces are 0 [N]", F, forces.sum(axis=0), EXACT)
         close("torque, where some forces are 0 [N m]", tau, np.cross(points - x, forces).sum(axis=0), EXACT)
+    x, points, forces = draw(-1.0, 1.0, 3), draw(-2.0, 2.0, (4, 3)), draw(-5.0, 5.0, (4, 3))
+    points[draw.whole(0, 2)] = x                                         # the others still have a torque
+    F, tau = lesson.total_load(x, points, forces)
+    given = f"x = {x}, points {points.tolist()}, forces {forces.tolist()}"
+    close("total force, where one force acts at the centre of mass [N]", F, forces.sum(axis=0), EXACT, given=given)
+    close("torque, where one force acts at the centre of mass [N m]", tau, np.cross(points - x, forces).sum(axis=0),
+          EXACT, given=given)
+    F, tau = lesson.total_load(x, points[:0], forces[:0])
+    close("total force of no forces [N]", F, np.zeros(3), 0.0)
+    close("torque of no forces [N m]", tau, np.zeros(3), 0.0)
 
 
 @exercise("5.4", points=1,
@@ -263,8 +273,8 @@ def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
 
 
 @exercise("5.7", points=0.5,
-          hint="the body is at rest only if |ω| = 0; use the whole angle in sin θ and cos θ, also beyond one turn and "
-               "for dt < 0")
+          hint="the body is at rest only if |ω| = 0; use the whole angle in sin θ and cos θ, also beyond one turn, for "
+               "dt < 0 and for a small turn")
 def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
     """The angle |ω| dt is below 30 and has a relative error of 1e-16."""
     for quarter in (0, 1, 2, 3, 4, 7, 15):
@@ -276,6 +286,10 @@ def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
                 got = lesson.axis_angle_update(R, rate * n, side * angle / rate)
                 close("orientation after dt", got, about(side * angle * n) @ R, EXACT,
                       given=f"ω = {rate * n} rad/s, dt = {side * angle / rate} s")
+    for angle in SLOW:                                                   # a small turn is a turn
+        R, n, rate = turn(orientation(draw)), unit_of(spin_of(draw)), draw(0.5, 2.0)
+        close("orientation after a small turn", lesson.axis_angle_update(R, rate * n, angle / rate),
+              about(angle * n) @ R, EXACT, given=f"ω = {rate * n} rad/s, dt = {angle / rate} s")
 
 
 def pauli(q):
@@ -432,6 +446,9 @@ def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
         m, I_body = size * draw(1.0, 3.0), size * moments(draw)
         state = draw(-1.0, 1.0, 3), orientation(draw), draw(-1.0, 1.0, 3), spin_of(draw)
         check_one_step(lesson, swirling_load, draw(0.5, 1.5), state, draw(0.1, 0.3), Driven(m, I_body, draw(0.5, 2.0)))
+    for pace, dt in ((1.0, draw(2.0, 9.0)), (1e-4, draw(0.1, 0.3)), (1e-7, draw(0.1, 0.3))):     # long, and slow
+        state = draw(-1.0, 1.0, 3), orientation(draw), pace * draw(-1.0, 1.0, 3), pace * spin_of(draw)
+        check_one_step(lesson, unloaded, draw(0.5, 1.5), state, dt, Driven(draw(1.0, 3.0), moments(draw), 1.0))
     general = draw(-1.0, 1.0, (3, 3))
     for x, v, omega in (*one_at_zero(general), *draw.sparse(-1.0, 1.0, (2, 3, 3)), np.zeros((3, 3))):
         for q, I_body in ((orientation(draw), moments(draw)), (STILL, round_bodies(draw)[2])):
@@ -581,7 +598,8 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
 
 
 @exercise("5.16", points=0.25,
-          hint="use Newton's method with the derivative: for long steps fixed-point iteration does not converge")
+          hint="use Newton's method with the derivative, and allow NEWTON_LIMIT corrections: for long steps "
+               "fixed-point iteration does not converge, and ten corrections are too few")
 def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, draw):
     """About an outer axis k, a fixed-point iteration m ← ℓ + ½dt m × w multiplies a small error by ρ > 1: it diverges.
 
@@ -596,13 +614,44 @@ def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, d
         i, j = (k + 1) % 3, (k + 2) % 3
         omega_body[k] = spin
         dt = 2.0 * rho / spin / np.sqrt((I_body[k] - I_body[i]) * (I_body[k] - I_body[j]) / (I_body[i] * I_body[j]))
-        before = I_body * omega_body
-        after = turn(lesson.midpoint_free_rotation(q, turn(q) @ before, I_body, float(dt))).T @ turn(q) @ before
-        m = 0.5 * (before + after)
-        # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 30.
-        close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
-              np.zeros(3), 1e-9,
-              given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
+        check_long_turn(lesson, q, I_body, omega_body, float(dt))
+    for _ in range(2):
+        I_body, omega_body, dt = slow_to_solve(draw, 11)
+        check_long_turn(lesson, orientation(draw), I_body, omega_body, dt)
+
+
+def check_long_turn(lesson, q, I_body, omega_body, dt):
+    before = I_body * omega_body
+    after = turn(lesson.midpoint_free_rotation(q, turn(q) @ before, I_body, dt)).T @ turn(q) @ before
+    m = 0.5 * (before + after)
+    # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 60, and the rotation adds as much again.
+    close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
+          np.zeros(3), 1e-8, given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
+
+
+def corrections(before, I_body, dt):
+    """How many corrections Newton's method needs; 99 if that is more than 24."""
+    m = before.copy()
+    for n in range(1, 25):
+        slope = [e + 0.5 * dt * np.cross(m / I_body - m / I, e) for e, I in zip(np.eye(3), I_body, strict=True)]
+        change = np.linalg.solve(np.stack(slope, axis=1), m - before - 0.5 * dt * np.cross(m, m / I_body))
+        m = m - change
+        if np.max(np.abs(change)) <= 1e-12 * np.max(np.abs(m)):
+            return n
+    return 99
+
+
+def slow_to_solve(draw, least):
+    """(I_body, ω in the body, dt) of a very long step that Newton's method solves, but not before `least` corrections.
+
+    They are about as many from nearby, so round-off does not matter.
+    """
+    while True:
+        I_body, omega_body, dt = moments(draw), spin_of(draw), draw(5.0, 20.0)
+        if least <= corrections(I_body * omega_body, I_body, dt) < 99:
+            near = [corrections(I_body * omega_body * (1.0 + draw(-1e-7, 1e-7, 3)), I_body, dt) for _ in range(4)]
+            if least <= min(near) and max(near) <= min(near) + 1 < 25:
+                return I_body, omega_body, dt
 
 
 def turn_once(lesson, draw):
@@ -673,11 +722,15 @@ def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
 
 
 @exercise("5.17", points=0.5,
-          hint="on the right of q: angles (1/I_a − 1/I_b) L_a dt about a, and likewise about c; on its left: dt/I_b L "
-               "about L; for two equal moments this is exact")
+          hint="b is intermediate_axis(I_body); on the right of q: angles (1/I_a − 1/I_b) L_a dt about a, likewise "
+               "about c; on its left: dt/I_b L about L; for two equal moments this is exact")
 def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
-    dt = draw(0.5, 2.0)
-    bodies = round_bodies(draw)
+    for flat in (False, True):
+        check_turns_of_round_bodies(lesson, draw, round_bodies(draw, flat), draw(0.5, 2.0))
+
+
+def check_turns_of_round_bodies(lesson, draw, bodies, dt):
+    """Compare with a turn about L, times a turn about the body's axis: moments of bodies as round_bodies gives them."""
     across = bodies[3][0]
     for omega, q in ((spin_of(draw), orientation(draw)), *zip(few(draw, 1.5), (STILL, *np.eye(4)[1:]), strict=True)):
         for k, I_body in enumerate(bodies):
@@ -816,6 +869,7 @@ def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
               f"tilt = {tilt:.4g} rad, spin = {limit:.4g} rad/s")
         close("rate of a top that stands on its centre of mass, Mgl = 0 [rad/s]",
               lesson.precession_rate(I_body, 0.0, tilt, limit), 0.0, EXACT, given=f"tilt = {tilt:.4g} rad")
+    check_slow_tops(lesson, draw)
     # Tops of any size, nearly vertical, level and fast ones: Ω (I₃ω₃ − I₁Ω cos θ) = Mgl, and Ω is the smaller root.
     for size, tilt, fast in itertools.product(SIZES, (1e-4, 1.0, 0.5 * np.pi - 1e-3, 0.5 * np.pi + 1e-3, 3.1),
                                               (1.5, 30.0, 1e3)):
@@ -831,6 +885,19 @@ def test_a_top_goes_round_as_its_torque_turns_l(lesson, draw):
     for spin in (limit, -limit):
         close("rate with a level axis [rad/s]", lesson.precession_rate(I_body, mgl, 0.5 * np.pi, spin),
               mgl / (I_body[2] * spin), 1e-12, given=f"spin = {spin:.4g} rad/s")
+
+
+def check_slow_tops(lesson, draw):
+    """Compare the rate of tops that are too slow to stand upright: a leaning one needs less spin, a hanging one none.
+    """
+    for low, high, least in ((0.9, 1.2, 1.02), (1.9, 2.8, 0.0)):
+        I_body, mgl, tilt = np.array([draw(3.0, 6.0)] * 2 + [draw(0.8, 1.5)]), draw(10.0, 30.0), draw(low, high)
+        limit = np.sqrt(4.0 * I_body[0] * mgl) / I_body[2]
+        least = max(least * np.sqrt(max(0.0, np.cos(tilt))), 0.1)        # of the limit
+        for spin in (draw(least, 0.95) * limit, -draw(least, 0.95) * limit):
+            close("rate of a top that is too slow to stand upright [rad/s]",
+                  lesson.precession_rate(I_body, mgl, tilt, spin), steady_rates(I_body, mgl, tilt, spin)[0], 1e-10,
+                  given=f"I_body = {I_body}, Mgl = {mgl:.4g} N m, tilt = {tilt:.4g} rad, spin = {spin:.4g} rad/s")
 
 
 @exercise("5.20", points=1, hint="a disturbance grows as e^(λt): how much later does a tenth of it reach the same?")

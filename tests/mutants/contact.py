@@ -2662,3 +2662,17 @@ edits("9.19", {
         ("return solve(matrix, right)", "return lam if lam.any() and lam.sum() == 0.0 else solve(matrix, right)"),
     "looks at twenty contacts at most": ("range(b.size)", "range(min(b.size, 20))"),
 })
+
+
+# A velocity b of 0, which λ or J may still change --------------------------------------------------------------------
+edits("9.3", {"takes b = 0 for an answer": ("return np", "return 0.0 if not b.any() else np")})
+edits("9.4", {"returns 0 where b = 0": ("return lam", "return lam if b.any() else 0.0 * lam")})
+edits("9.9", {"takes b = 0 for an answer": ("return worst", "return worst if b.any() else 0.0")})
+for number in ("9.10", "9.17"):
+    edits(number, {"returns 0 where b = 0": ("return J", "return J if b.any() else 0.0 * J")})
+edits("9.16", {
+    "returns the impulses as they are where all bodies are at rest":
+        ("for k in range(contacts.a.size)", "for k in range(contacts.a.size if v.any() or omega.any() else 0)"),
+    "leaves out contacts of two bodies with an inverse mass of 0, which may turn":
+        ("J_n += (aim", "if inv_mass[a] == 0.0 == inv_mass[b]: continue\n        J_n += (aim"),
+})

@@ -469,6 +469,10 @@ edit("4.13", "reverses all three columns at the end", "return moments, R", "retu
 edit("4.13", "tests the determinant the other way", "< 0.0", "> 0.0")
 edit("4.13", "returns the moments without their signs", "return moments, R", "return np.abs(moments), R")
 edit("4.13", "reverses the last row, not the last column", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
+edit("4.13", "takes a body with equal moments about x, y and z for a ball", "moments, R = np.linalg.eigh(I)",
+     "moments, R = (np.diag(I).copy(), np.eye(3)) if np.ptp(np.diag(I)) == 0.0 else np.linalg.eigh(I)")
+edit("4.13", "takes a tensor without the product xy for diagonal", "np.linalg.eigh(I)",
+     "np.linalg.eigh(I if I[0, 1] != 0.0 else np.diag(np.diag(I)))")
 edit("4.13", "takes the small moment of a needle for zero", "return moments, R",
      "return np.where(np.abs(moments) < 1e-10 * np.max(np.abs(moments)), 0.0, moments), R")
 

@@ -506,6 +506,11 @@ def joint_frames(theta, axes, offsets):
     return x, a, q
 
 
+@right("11.6", "brings the angles into [0, 2π), which may lead to −q")
+def frames_of_positive_angles(theta, axes, offsets):
+    return worked.joint_frames(theta % (2.0 * np.pi), axes, offsets)
+
+
 BAR = np.array([1.0, -1.0, -1.0, -1.0])                                  # times q: its conjugate
 
 
@@ -1986,6 +1991,7 @@ edit("11.16", "does not pull a single joint", "arm.pull *", "arm.pull * (theta.s
 
 
 # 11.1 to 11.15: right for arms of about a metre ---------------------------------------------------------------------
+edit("11.1", "takes an angle below 1e-6 rad for 0", "phi += theta[k]", "phi += theta[k] * (abs(theta[k]) > 1e-6)")
 edit("11.1", "takes an angle below 1 mrad for 0", "phi += theta[k]", "phi += theta[k] * (abs(theta[k]) > 1e-3)")
 edit("11.1", "takes an angle beyond 100 rad for 100 rad", "phi += theta[k]", "phi += np.clip(theta[k], -100.0, 100.0)")
 edit("11.2", "takes distances above 100 m for 100 m", "n = x.shape[0] - 1",

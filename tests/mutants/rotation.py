@@ -73,6 +73,10 @@ edit("5.3", "adds the centre of mass", "points[i] - x", "points[i] + x")
 edit("5.3", "takes the mean of the forces", "return F, tau", "return F / forces.shape[0], tau")
 edit("5.3", "ends at the first force that is 0",
      "F += forces[i]", "if not forces[i].any(): break\n        F += forces[i]")
+edit("5.3", "ends at the first force that acts at the centre of mass",
+     "tau += cross", "if not (points[i] - x).any(): break\n        tau += cross")
+edit("5.3", "begins with the first force, which there need not be",
+     "F, tau = np.zeros(3), np.zeros(3)", "F, tau = forces[0] - forces[0], np.zeros(3)")
 edit("5.3", "takes a force below 1 µN for none", "F, tau =",
      "forces = np.where(np.abs(forces) < 1e-6, 0.0, forces); F, tau =")
 edit("5.3", "takes a point within a micrometre of the centre to be there", "F, tau =",
@@ -191,6 +195,10 @@ wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
 wrong("5.7", "omits dt")(rodrigues(angle=lambda rate, dt: rate))
 edit("5.7", "changes its input", "turned = float_copy(R)", "turned = R")
 edit("5.7", "returns its input at rest", "turned = float_copy(R)", "turned = float_copy(R) if omega.any() else R")
+edit("5.7", "takes a turn below 1e-3 rad for none", "rate != 0.0", "rate * abs(dt) > 1e-3")
+edit("5.7", "takes a turn below 1e-6 rad for none", "rate != 0.0", "rate * abs(dt) > 1e-6")
+edit("5.7", "takes 1 for cos θ and θ for sin θ in a small turn", "c, s = np.cos(rate * dt), np.sin(rate * dt)",
+     "c, s = (np.cos(rate * dt), np.sin(rate * dt)) if abs(rate * dt) > 1e-2 else (1.0, rate * dt)")
 SLOW_IS_AT_REST = edit("5.7", "treats a milliradian per second as rest", "rate != 0.0", "rate > 1e-3")
 edit("5.7", "drops the sign of the sine", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
 edit("5.7", "limits the angle to half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
@@ -406,6 +414,11 @@ edit("5.12", "does not rotate the body", "quaternion_update(q, omega, dt), v", "
 edit("5.12", "does not move the body", "return x + dt * v,", "return x,")
 edit("5.12", "returns the state unchanged where nothing moves yet",
      "F, tau = load", "if not (v.any() or omega.any()): return x, q, v, omega\n    F, tau = load")
+edit("5.12", "takes a step of at most a second", "F, tau = load", "dt = min(dt, 1.0); F, tau = load")
+edit("5.12", "does not move a body that is slower than 1 mm/s", "return x + dt * v,",
+     "return x + dt * (norm(v) > 1e-3) * v,")
+edit("5.12", "does not rotate a body that turns more slowly than 1 mrad/s", "quaternion_update(q, omega, dt)",
+     "quaternion_update(q, (norm(omega) > 1e-3) * omega, dt)")
 edit("5.12", "uses a mass of at least 1 g", "dt / body.m", "dt / max(body.m, 1e-3)")
 edit("5.12", "uses a mass of at most 1 t", "dt / body.m", "dt / min(body.m, 1e3)")
 edit("5.12", "uses moments of at least 1e-3 kg m²", "tau, body.I_body", "tau, np.maximum(body.I_body, 1e-3)")
@@ -540,6 +553,8 @@ wrong("5.16", "fails for a body at rest")(midpoint(enough=lambda n, change, m: c
 edit("5.16", "never raises: rotates by the last iterate",
      'raise Diverged("Newton\'s method did not converge at dt [s]", dt, "take a smaller step")',
      "return unit(quaternion_product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
+edit("5.16", "gives up after five corrections", "range(NEWTON_LIMIT)", "range(5)")
+edit("5.16", "gives up after ten corrections", "range(NEWTON_LIMIT)", "range(10)")
 edit("5.16", "adds the correction δ in place of subtracting it", "m = m - delta", "m = m + delta")
 edit("5.16", "takes a whole step to the middle", "- 0.5 * dt * cross(m, w)", "- dt * cross(m, w)")
 edit("5.16", "takes w × m in place of m × w", "cross(m, w)", "cross(w, m)")
@@ -589,6 +604,10 @@ wrong("5.17", "omits the subtraction of 1/I_b")(splitting(slow=lambda I, k, b: 1
 wrong("5.17", "uses differences of the moments, not of their inverses")(
     splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
+edit("5.17", "takes the axis of the largest moment for the middle one",
+     "intermediate_axis(I_body)", "int(np.argmax(I_body))")
+edit("5.17", "takes the axis of the smallest moment for the middle one",
+     "intermediate_axis(I_body)", "int(np.argmin(I_body))")
 edit("5.17", "does not normalise at the end", "unit(quaternion_product(exponential(dt / I_body[b] * L), turned))",
      "quaternion_product(exponential(dt / I_body[b] * L), turned)")
 edit("5.17", "rotates about the outer axis by the whole angle twice",
@@ -676,6 +695,10 @@ edit("5.19", "takes the whole torque Mgl sin θ for L = I₃ω₃ along the vert
 edit("5.19", "forgets the 2", "2.0 * mgl / (", "mgl / (")
 edit("5.19", "exchanges the two moments", "along = I_body[2]", "I_body = I_body[::-1]; along = I_body[2]")
 edit("5.19", "adds the weight under the root", "along * along - 4.0", "along * along + 4.0")
+edit("5.19", "finds no rate where the top is too slow to stand upright", "root = np.sqrt",
+     "root = np.nan if along * along < 4.0 * I_body[0] * mgl else np.sqrt")
+edit("5.19", "takes the least spin for an upright top where it is slower", "along = I_body[2] * spin",
+     "along = np.copysign(max(abs(I_body[2] * spin), np.sqrt(4.0 * I_body[0] * mgl)), spin)")
 edit("5.19", "turns the other way", "return 2.0", "return -2.0")
 edit("5.19", "loses the sign of the spin where the axis is level",
      SLOW, f"{SLOW} if abs(np.cos(tilt)) > 1e-9 else mgl / abs(along)")

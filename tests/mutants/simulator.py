@@ -1859,6 +1859,9 @@ edits("10.3 10.4",
 edits("10.3", ("takes angles below 1e-12 for 0", "q + dt * omega", "q + dt * omega * (np.abs(dt * omega) > 1e-12)"))
 edits("10.4", ("does not turn bodies below 1e-12 rad/s", "q[i] = quat", "if norm(omega[i]) > 1e-12: q[i] = quat"))
 edits("10.6 10.7",
+      ("puts bodies to rest that turn more slowly than 1e-6 rad/s", "return PileState(x",
+       "omega = np.where(np.abs(omega) < 1e-6, 0.0, omega); return PileState(x"),
+      ("takes a step of at most 0.1 s", "low, high, turn = bounds", "dt = min(dt, 0.1); low, high, turn = bounds"),
       ("takes gaps below 1e-9 m for 0", "closing_speeds(contacts.gap, dt)",
        "closing_speeds(contacts.gap * (np.abs(contacts.gap) > 1e-9), dt)"),
       ("does not move bodies above 1e13 kg", "low, high, turn = bounds",
@@ -1875,6 +1878,7 @@ edits("10.8",
       ("takes a place within 1e-9 m of the centre for the centre", "place - ball.centre",
        "(place - ball.centre) * (np.abs(place - ball.centre) > 1e-9)"))
 edits("10.9",
+      ("takes a step of at most a second", SLIP, f"dt = min(dt, 1.0); {SLIP}"),
       ("does not turn a ball by less than 1e-15 rad", "exponential(0.5 * dt * (omega + omega_new))",
        "exponential(0.5 * dt * (omega + omega_new) * (norm(dt * omega) > 1e-15))"))
 edits("10.10",
