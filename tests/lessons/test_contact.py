@@ -1061,7 +1061,7 @@ def test_soft_contacts_of_any_depth_stiffness_and_damping_are_implicit_euler_ste
 
 
 @exercise("9.12", points=0.25, hint="at rest aim = give k_n J_n, with J_n = F dt: the step must cancel")
-def test_a_soft_contact_sags_by_its_force_whatever_the_step(lesson, draw):
+def test_a_soft_contact_sags_by_its_force_for_any_step(lesson, draw):
     hertz, zeta, k_n, F = draw(5.0, 60.0), draw(0.1, 10.0), draw(0.3, 3.0), draw(1.0, 30.0)
     sag = k_n * F / (2.0 * np.pi * hertz) ** 2
     for dt in (draw(0.0005, 0.002), draw(0.01, 0.03)):

@@ -809,7 +809,7 @@ def test_the_impact_time_is_dt_without_an_impact_and_zero_for_a_ball_pressed_in(
 
 @exercise("7.13", points=0.25,
           hint="φ, v_n and a_n may have any sign: draw the parabola and find where it first falls to zero")
-def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_whatever_the_signs(lesson, draw):
+def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_for_all_signs(lesson, draw):
     """Evaluate the parabola at 400 times. Its round-off is 1e-15 of its terms, and 1e-14 of them is allowed."""
     for side in (1.0, 0.0, -1.0):
         for up in (1.0, 0.0, -1.0):
@@ -1422,7 +1422,7 @@ def close_pair(draw, lesson, m, height):
 @exercise("7.17", points=0.125,
           hint="at most MAX_SWEEPS sweeps; the residual is the largest |component| of Kᵢ (J − Jᵢ) of all "
                "points; compare it with CONVERGED largest_speed(body, r)")
-def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_however_it_moves(lesson, draw):
+def test_points_close_together_take_many_sweeps_for_any_body_and_any_motion(lesson, draw):
     """Two points stick: u⁺ = u_sep n at both.
 
     The light body also has points that leave by themselves and change nothing. The second body rolls, so that u is

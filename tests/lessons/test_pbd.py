@@ -1036,7 +1036,7 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
 
 @exercise("8.14", points=1,
           hint="at every step Λ starts with a zero for each link, and is passed from sweep to sweep within the step")
-def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, draw):
+def test_one_spring_is_implicit_euler_for_any_step_and_any_number_of_sweeps(lesson, draw):
     """Implicit Euler of m ÿ = k s − m g along a line: v⁺ = (v + dt (k/m) s − dt g)/(1 + dt² k/m).
 
     v is the velocity ẏ, and s the stretch of the spring, from which the weight hangs.

@@ -10,8 +10,7 @@ Importing this module imports numba.
 import ctypes
 from contextlib import suppress
 
-import llvmlite.binding as llvm
-from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary, JITCPUCodegen, RuntimeLinker
+from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary, JITCPUCodegen, RuntimeLinker, ll
 from numba.core.environment import lookup_environment
 
 ENVIRONMENT = "_ZN08NumbaEnv"            # begins the names in machine code of where a function finds Python's objects
@@ -74,7 +73,7 @@ class LinkedLibrary(JITCodeLibrary):
             return super()._unserialize(codegen, state)
         self = codegen.create_library(name)
         self.enable_object_caching()
-        self._final_module = llvm.parse_bitcode(data)
+        self._final_module = ll.parse_bitcode(data)
         self._finalize_final_module()
         return self
 
