@@ -141,7 +141,7 @@ def run(modules_of_loop, model):
     """Return the state of a Model after two steps of a compiled loop, and of a plain one."""
     lesson = lesson_of("solutions")
     loop = lesson.compose(model)
-    advance = modules_of_loop.inside.advance(loop, [part.__name__ for part in lesson.padded(loop)])
+    advance = modules_of_loop.advance(loop, [part.__name__ for part in lesson.padded(loop)])
     return advance(0.0, loop.state, 1e-3, 2), lesson.run_parts(loop, 0.0, loop.state, 1e-3, 2)
 
 

@@ -86,7 +86,7 @@ from validate.subject.modules import bind
 lesson, write = bind("lower", sys.argv[1], compiled=True), IndexDataCacheFile._save_index
 # one process is in the middle of its save when the other begins
 IndexDataCacheFile._save_index = lambda index, entries: (sleep(2.0), write(index, entries))
-print(lesson.base(eval(sys.argv[2])), sum(lesson.base.stats.cache_misses.values()))
+print(lesson.base(eval(sys.argv[2])), sum(lesson.base.called.stats.cache_misses.values()))
 """
     with ThreadPoolExecutor(2) as pool:
         assert list(pool.map(lambda x: in_a_new_process(ask, tmp_path, x), ("3", "1.5"))) == ["6 1", "3.0 1"]

@@ -304,11 +304,9 @@ def compiled_twice(of="solutions"):
     try:
         for _ in range(2):
             forget_modules(f"_compiled_{digest}")
-            forget_modules(f"_inside_{digest}")
             yield CompiledModules(subject_folder(of), digest)
     finally:
         forget_modules(f"_compiled_{digest}")
-        forget_modules(f"_inside_{digest}")
         shutil.rmtree(CACHE / digest, ignore_errors=True)
 
 
@@ -588,16 +586,11 @@ class CompiledModules(ModuleSet):
     seconds for every kind of record, and in plain Python microseconds.
     """
 
-    speed = "compiled"
-
     def __init__(self, folder, digest):
-        super().__init__(folder, digest, self.speed)
+        from .addresses import pass_by_address
+        super().__init__(folder, digest, "compiled")
         self.cache, self.digest, self.outside = use_cache(digest), digest, {}
-
-    @cached_property
-    def inside(self):
-        """Return the set whose functions are called by their addresses, from compiled code only."""
-        return InsideModules(self.folder, self.digest)
+        pass_by_address(original("given.rows").Composed)
 
     def lesson(self, name):
         """Return a lesson with plain make_* and with loops that check their record first."""
@@ -638,7 +631,7 @@ class CompiledModules(ModuleSet):
         own = {name for name, f in vars(module).items()
                if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
         space = {**vars(module), CHECK: passed_over} if module.__name__.endswith(f".{RECORDS}") else vars(module)
-        cache = os.path.join(self.cache, f"{self.speed}-{package}")
+        cache = os.path.join(self.cache, package)
         vars(module).update(compiled_twins(module, own, space, cache))
 
     def _stays(self, origin):
@@ -672,17 +665,6 @@ class CompiledModules(ModuleSet):
         if (self.folder / f"{name}.py").is_file():
             return self.inner_lesson(name)
         return self._with_companion(name, self.solution(name))
-
-
-class InsideModules(CompiledModules):
-    """The same for a loop that is made of parts, whose functions are called by their addresses."""
-
-    speed = "inside"
-
-    def __init__(self, folder, digest):
-        from .addresses import pass_by_address
-        pass_by_address(original("given.rows").Composed)
-        super().__init__(folder, digest)
 
     def advance(self, loop, names):
         """Return the function (t, state, dt, steps) → PileState of a Loop whose parts have these names."""

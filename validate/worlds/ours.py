@@ -44,7 +44,7 @@ def build(model, dt, of="solutions", compiled=False, **settings):
 def compiled_advance(loop, of="solutions"):
     """Return the function (t, state, dt, steps) → PileState of a Loop, with the compiled twins of its functions."""
     names = [function.__name__ for function in lesson_of(of).padded(loop)]
-    return modules.module_set(of, True).inside.advance(loop, names)
+    return modules.module_set(of, True).advance(loop, names)
 
 
 def pushes(lesson, loop, steps, before, after, dt):
