@@ -322,7 +322,7 @@ def seen_in_steps(result):
         return ""
     if best["expected"] == EXACT:
         return f"“{best['label']}” is exact up to round-off at every step."
-    if len(case["ours"]) == 1:
+    if not any(shows_order(c) for c in case["ours"] if c is not best):
         return f"The error of “{best['label']}” falls with order {slope(best)}."
     return f"Of our methods, “{best['label']}” falls fastest, with order {slope(best)}."
 
