@@ -29,7 +29,7 @@ console = Console(highlight=False, soft_wrap=True)
 @app.command()
 def main(lessons: Annotated[list[str] | None, typer.Argument(help="Lessons; all without one.")] = None,
          jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
-         sample: Annotated[int | None, typer.Option(min=1, help="Only so many faults, drawn at random.")] = None,
+         sample: Annotated[int | None, typer.Option(min=1, help="Only so many, drawn at random.")] = None,
          seed: Annotated[int, typer.Option(help="Of that draw; the first honest run.")] = 0,
          steps: Annotated[int | None, typer.Option(min=1, help="Most steps of a scene's sweep: a first look.")] = None,
          honest: Annotated[int | None, typer.Option(min=1, help="In place of faults, so many honest runs.")] = None):
@@ -50,7 +50,10 @@ def chosen(lessons, sample, seed):
         if lesson not in known:
             raise BadInput(f"lesson {lesson!r}", "unknown", f"choose from: {', '.join(known)}")
     faults = [fault for lesson in known if not lessons or lesson in lessons for fault in faults_of(lesson)]
-    return random.Random(seed).sample(faults, min(sample, len(faults))) if sample else faults
+    if not sample:
+        return faults
+    noticeable = [fault for fault in faults if not fault.missed]         # one other of eight would be below ENOUGH
+    return random.Random(seed).sample(noticeable, min(sample, len(noticeable)))
 
 
 def seeded(faults, steps, pool):
