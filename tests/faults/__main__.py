@@ -52,7 +52,7 @@ def chosen(lessons, sample, seed):
     faults = [fault for lesson in known if not lessons or lesson in lessons for fault in faults_of(lesson)]
     if not sample:
         return faults
-    noticeable = [fault for fault in faults if not fault.missed]         # one other of eight would be below ENOUGH
+    noticeable = [fault for fault in faults if not fault.missed]         # one of the others fails a sample of eight
     return random.Random(seed).sample(noticeable, min(sample, len(noticeable)))
 
 

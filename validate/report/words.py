@@ -470,8 +470,8 @@ def _departures(result):
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
         ordered = sorted((c for _, c in found if c["order"]), key=lambda c: c["order"])
-        shown = " to ".join(dict.fromkeys(map(slope, ordered[:1] + ordered[-1:])))
-        shown = f"converges to that law, with order {shown}" if ordered else "agrees with that law"
+        slopes = " to ".join(dict.fromkeys(map(slope, ordered[:1] + ordered[-1:])))
+        shown = f"converges to that law, with order {slopes}" if ordered else "agrees with that law"
         yield (f"{label} departs from the truth by {size}{several}, because {reason} ({whose}). "
                f"The scene predicts this; the run {shown}.")
 

@@ -653,8 +653,10 @@ class CompiledModules(ModuleSet):
         One of its own is compiled here.
         """
         law = scene.acceleration and scene.acceleration(Lessons(self.lesson_inside))
-        if law is None or hasattr(law, "py_func"):
-            return law and CachedDispatch(law)
+        if law is None:
+            return None
+        if hasattr(law, "py_func"):
+            return CachedDispatch(law)
         source, origin = self._home(law)
         if source == "solutions":
             return CachedDispatch(getattr(self.given(origin), law.__name__))

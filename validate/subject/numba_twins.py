@@ -181,21 +181,17 @@ def _count_references_in_one_thread():
     nrtdynmod._define_atomic_inc_dec = count
 
 
-@cache
-def _make_machine_code_on_demand():
-    from .linking import link_only  # imports numba
-    link_only()
-
-
 def use_cache(digest):
     """Return the cache folder of this digest, as text, and delete those that were not used for long."""
     import numba
     from numba.core.config import _OptLevel
+
+    from .linking import link_only
     _make_dispatcher_constants_cacheable()
     _pass_checked_functions_on()
     _save_one_at_a_time()
     _count_references_in_one_thread()
-    _make_machine_code_on_demand()
+    link_only()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all
     folder = CACHE / digest
