@@ -6,16 +6,15 @@ from ..checks import check_end, float_copy
 from ..contact import *  # noqa: F403    one import has a lesson and its given functions
 from ..contact import (
     fischer_burmeister,
+    friction_disc,
     gauss_seidel_sweep,
     has_left_margin,
     kept_impulses,
     soft_contact,
     solve,
-    velocity_sweep,
     velocity_sweep_2d,
 )
 from ..support.arms import (
-    apply_impulses,
     apply_impulses_2d,
     arms_2d,
     arms_3d,
@@ -24,25 +23,69 @@ from ..support.arms import (
     loads,
     move,
     move_2d,
-    normal_velocities,
     normal_velocities_2d,
     turn_freely,
     world_inertia,
 )
 from ..support.broad_phase import Pairs, near_pairs
-from ..support.contact_points import put_back, reordered, sorted_rows, spread_order, with_gaps
-from ..support.kept_contacts import begin_ways, forget_deep, have_moved, moved_pairs, unknown_ways, with_kept
+from ..support.contact_points import places_of, put_back, reordered, sorted_rows, spread_order, with_gap, with_gaps
+from ..support.kept_contacts import (
+    begin_ways,
+    forget_deep,
+    have_moved,
+    moved_pairs,
+    places_in,
+    replace_contacts,
+    replace_in_plane,
+    unknown_ways,
+    with_kept,
+)
+from ..support.lanes import (
+    AIM,
+    ARM_A,
+    ARM_B,
+    FASTEST,
+    GAP,
+    GIVE,
+    IMPULSE,
+    INERTIA_A,
+    INERTIA_B,
+    K_N,
+    K_T,
+    MASS_A,
+    MASS_B,
+    NORMAL,
+    OMEGA_A,
+    OMEGA_B,
+    ROWS,
+    V_A,
+    V_B,
+    WIDE,
+    contact_velocity,
+    gaps_and_impulses,
+    lanes_for,
+    pushed,
+    put_contacts,
+    put_three,
+    read_velocities,
+    three,
+    turned,
+    write_velocities,
+)
 from ..support.records import check_record
-from ..support.scenes import PileState, check_overlap, checked_pile, smaller_half
+from ..support.scenes import PileState, check_overlap, checked_pile, smallest_halves
+from ..support.tuples import minus, plus
+from ..vectors import dot
 
 SEPARATION = 0.03            # half sizes in 1/hertz [-] by which bodies part that begin inside each other: gently
 
 
 def separation_speeds(contacts, pile):
     """Given.  The largest speeds (m,) [m/s] at which contacts part: SEPARATION of the smaller half size times hertz."""
-    speeds = np.empty(contacts.a.size)
+    speeds, least, n = np.empty(contacts.a.size), smallest_halves(pile.half), pile.half.shape[0]
     for k in range(speeds.size):
-        speeds[k] = SEPARATION * pile.hertz * smaller_half(contacts, k, pile.half)
+        a, b = contacts.a[k], contacts.b[k]
+        speeds[k] = SEPARATION * pile.hertz * (min(least[a], least[b]) if b < n else least[a])
     return speeds
 
 
@@ -58,17 +101,22 @@ def contact_targets(gap, load, fastest, dt, pile):
     return aim, give
 
 
-def _found_anew(find_contacts, x, turn, pairs, moved, known, gap, order, J, ways, pile):
-    """Given.  (contacts, the same in the order of sweeps, that order, J (m, d) [N s] in it) at the beginning of a step.
+def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, searched):
+    """Given.  (contacts, J (m, d) [N s], new, J_new, at, changed) at the beginning of a step.
 
     Contacts of pairs of which a body has moved are found anew.  The others are kept, with the gaps that they have now.
+    Where the same bodies touch in as many points as before, and their pairs have not been `searched` anew, new contacts
+    take the places `at` of the old ones in `known` and J.  Otherwise all have changed, and `new` are all contacts.
     """
-    old, J = with_gaps(known, gap, order), put_back(J, order)
     new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
-    contacts, J = with_kept(old, J, new, kept_impulses(new, old, J, pile.margin), moved)
+    J_new = kept_impulses(new, known, J, pile.margin)
     begin_ways(ways, moved)
-    order = spread_order(contacts.a.size)
-    return contacts, reordered(contacts, order), order, sorted_rows(J, order)
+    at, whole = places_in(known, new, moved)
+    if whole and not searched:
+        replace_contacts(known, J, at, new, J_new)
+        return known, J, new, J_new, at, False
+    contacts, J = with_kept(known, J, new, J_new, moved)
+    return contacts, J, contacts, J, np.arange(contacts.a.size), True
 
 
 def _substep_2d(x, q, v, omega, J, gap, contacts, arms, fastest, ways, h, pile):
@@ -105,14 +153,23 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
         moved = have_moved(ways)
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
-            if has_left_margin(low, high, wide_low, wide_high):
+            searched = has_left_margin(low, high, wide_low, wide_high)
+            if searched:
                 wide_low, wide_high = low - pile.margin, high + pile.margin
                 pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
-            contacts, spread, order, J = _found_anew(find_contacts, x, turn, pairs, moved, contacts, gap, order, J,
-                                                     ways, pile)
+            contacts, J_found, new, J_new, at, changed = _found_anew(
+                find_contacts, x, turn, pairs, moved, with_gaps(contacts, gap, order), put_back(J, order), ways, pile,
+                searched)
             allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-            gap, fastest = spread.gap, separation_speeds(spread, pile)
-            arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
+            if changed:
+                order = spread_order(contacts.a.size)
+                place = places_of(order)
+                spread, J = reordered(contacts, order), sorted_rows(J_found, order)
+                gap, fastest = spread.gap, separation_speeds(spread, pile)
+                arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
+            else:
+                arms_new = arms_2d(x, pile.inv_mass, pile.inv_inertia, new)
+                replace_in_plane(spread, gap, J, arms, place[at], new, J_new, arms_new)
         found = gap
         forget_deep(ways, spread, gap)
         for _ in range(pile.substeps):
@@ -121,49 +178,119 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     return PileState(x, q, v, omega, with_gaps(contacts, found, order), put_back(J, order))
 
 
-def _substep(x, q, v, omega, J, gap, contacts, arms, fastest, ways, turn, inv_inertia, h, pile):
-    """Given.  The same as _substep_2d in space, with the axes `turn` of the bodies and inv_inertia in the world."""
-    aim, give = contact_targets(gap, loads(J, contacts, arms), fastest, h, pile)
+def _aim_eight(s, h, pile):
+    """Given.  The targets of a group of contacts, and the velocities after their last impulses, in place."""
+    for k in range(WIDE):
+        n, J = three(s, NORMAL, k), three(s, IMPULSE, k)
+        aim, give = soft_contact(s[WIDE * GAP + k], pile.hertz, pile.zeta, h)
+        s[WIDE * AIM + k] = min(aim, s[WIDE * FASTEST + k] + give * s[WIDE * K_N + k] * dot(n, J))
+        s[WIDE * GIVE + k] = give
+        put_three(s, V_A, k, pushed(s, V_A, MASS_A, k, 1.0, J))
+        put_three(s, OMEGA_A, k, turned(s, OMEGA_A, INERTIA_A, ARM_A, k, 1.0, J))
+        put_three(s, V_B, k, pushed(s, V_B, MASS_B, k, -1.0, J))
+        put_three(s, OMEGA_B, k, turned(s, OMEGA_B, INERTIA_B, ARM_B, k, -1.0, J))
+
+
+def _visit_eight(s, mu):
+    """Given.  Visit a group of contacts, as velocity_sweep visits one, in place."""
+    for k in range(WIDE):
+        n, old, u = three(s, NORMAL, k), three(s, IMPULSE, k), contact_velocity(s, k)
+        k_n, give, J_n = s[WIDE * K_N + k], s[WIDE * GIVE + k], dot(n, old)
+        J_n += (s[WIDE * AIM + k] - dot(n, u) - give * k_n * J_n) / (k_n * (1.0 + give))
+        J_n = 0.0 if J_n <= 0.0 else J_n                                 # a NaN stays one
+        stick = plus(old, -1.0 / s[WIDE * K_T + k], u)
+        J = plus(friction_disc(plus(stick, -dot(n, stick), n), mu * J_n if J_n > 0.0 else 0.0), J_n, n)
+        put_three(s, IMPULSE, k, J)
+        J = minus(J, old)
+        put_three(s, V_A, k, pushed(s, V_A, MASS_A, k, 1.0, J))
+        put_three(s, OMEGA_A, k, turned(s, OMEGA_A, INERTIA_A, ARM_A, k, 1.0, J))
+        put_three(s, V_B, k, pushed(s, V_B, MASS_B, k, -1.0, J))
+        put_three(s, OMEGA_B, k, turned(s, OMEGA_B, INERTIA_B, ARM_B, k, -1.0, J))
+
+
+def _follow_eight(s, h):
+    """Given.  The gaps of a group of contacts after h, and targets that push nothing apart, in place."""
+    for k in range(WIDE):
+        s[WIDE * GAP + k] += h * dot(three(s, NORMAL, k), contact_velocity(s, k))
+        s[WIDE * AIM + k], s[WIDE * GIVE + k] = min(s[WIDE * AIM + k], 0.0), 0.0
+
+
+def _press_in_lanes(v, omega, lanes, h, pile):
+    """Given.  Set the targets of all contacts, and apply their last impulses, in place."""
+    for group in range(lanes.number.size):
+        s = lanes.rows[group]
+        read_velocities(s, v, omega, lanes, group)
+        _aim_eight(s, h, pile)
+        write_velocities(s, v, omega, lanes, group)
+
+
+def _sweep_in_lanes(v, omega, lanes, pile):
+    """Given.  Visit all contacts, in place."""
+    for group in range(lanes.number.size):
+        s = lanes.rows[group]
+        read_velocities(s, v, omega, lanes, group)
+        _visit_eight(s, pile.mu)
+        write_velocities(s, v, omega, lanes, group)
+
+
+def _rest_in_lanes(before, spin, v, omega, lanes, h, pile):
+    """Given.  Let the gaps follow the velocities `before` and `spin`, and visit all contacts at rest, in place."""
+    for group in range(lanes.number.size):
+        s = lanes.rows[group]
+        read_velocities(s, before, spin, lanes, group)
+        _follow_eight(s, h)
+        read_velocities(s, v, omega, lanes, group)
+        _visit_eight(s, pile.mu)
+        write_velocities(s, v, omega, lanes, group)
+
+
+def _substep(x, q, v, omega, lanes, ways, turn, h, pile):
+    """Given.  (x, q, v, omega) and the largest change, as _substep_2d returns them, in space; lanes change in place.
+
+    turn: the axes of the bodies.
+    """
     v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), turn_freely(turn, omega, pile.inv_inertia, h)
-    apply_impulses(v, omega, J, contacts, arms, pile.inv_mass, inv_inertia)
-    v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
-    (x, q), before = move(x, q, v, omega, ways, h), v
-    gap = gap + h * normal_velocities(v, omega, contacts, arms)
-    aim, give = np.minimum(aim, 0.0), np.zeros(aim.size)
-    v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
-    return x, q, v, omega, J, gap, largest_change(v, before)
+    _press_in_lanes(v, omega, lanes, h, pile)
+    _sweep_in_lanes(v, omega, lanes, pile)
+    (x, q), before = move(x, q, v, omega, ways, h), v.copy()
+    _rest_in_lanes(before, omega.copy(), v, omega, lanes, h, pile)
+    return x, q, v, omega, largest_change(v, before)
 
 
 def advance_pile(bounds, find_contacts, state, dt, steps, pile):
     """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts.
 
-    Axes and inertia in the world are kept with the contacts.
+    Axes and inertia in the world are kept with the contacts.  Contacts are visited in the order of their Lanes.
     """
     check_record(pile, state)
     (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
-    order, gap, found = np.arange(contacts.a.size), contacts.gap, contacts.gap
+    gap, found, room = contacts.gap, contacts.gap, np.empty((0, WIDE * ROWS))
     for _ in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
-            if has_left_margin(low, high, wide_low, wide_high):
+            searched = has_left_margin(low, high, wide_low, wide_high)
+            if searched:
                 wide_low, wide_high = low - pile.margin, high + pile.margin
                 pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
-            contacts, spread, order, J = _found_anew(find_contacts, x, turn, pairs, moved, contacts, gap, order, J,
-                                                     ways, pile)
+            contacts, J, new, J_new, at, changed = _found_anew(find_contacts, x, turn, pairs, moved,
+                                                               with_gap(contacts, gap), J, ways, pile, searched)
             allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-            gap, fastest = spread.gap, separation_speeds(spread, pile)
-            inv_inertia = world_inertia(turn, pile.inv_inertia)
-            arms = arms_3d(x, pile.inv_mass, inv_inertia, spread)
+            gap, inv_inertia = contacts.gap, world_inertia(turn, pile.inv_inertia)
+            if changed:
+                lanes = lanes_for(contacts, pile.half.shape[0], room)
+                room = lanes.rows
+            put_contacts(lanes, at, new, J_new, arms_3d(x, pile.inv_mass, inv_inertia, new),
+                         separation_speeds(new, pile), pile.inv_mass, inv_inertia)
         found = gap
-        forget_deep(ways, spread, gap)
+        forget_deep(ways, contacts, gap)
         for _ in range(pile.substeps):
-            x, q, v, omega, J, gap, residual = _substep(x, q, v, omega, J, gap, spread, arms, fastest, ways, turn,
-                                                       inv_inertia, h, pile)
+            x, q, v, omega, residual = _substep(x, q, v, omega, lanes, ways, turn, h, pile)
+        gap, J = gaps_and_impulses(lanes)
     check_end(x, v, dt)
-    return PileState(x, q, v, omega, with_gaps(contacts, found, order), put_back(J, order))
+    return PileState(x, q, v, omega, with_gap(contacts, found), J)
 
 
 def pile_trajectory(advance, bounds, find_contacts, state, dt, steps, pile):

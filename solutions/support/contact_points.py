@@ -90,9 +90,22 @@ def put_back(J, order):
     return back
 
 
+def places_of(order):
+    """(m,) the place at which each row is in an order."""
+    place = np.empty(order.size, np.int64)
+    for i in range(order.size):
+        place[order[i]] = i
+    return place
+
+
+def with_gap(c, gap):
+    """The contacts with other gaps."""
+    return ContactSet(c.first, c.a, c.b, c.n, c.p, gap)
+
+
 def with_gaps(c, gap, order):
     """The contacts with other gaps, which are sorted by `order`."""
-    return ContactSet(c.first, c.a, c.b, c.n, c.p, put_back(gap.reshape(-1, 1), order).ravel())
+    return with_gap(c, put_back(gap.reshape(-1, 1), order).ravel())
 
 
 # ------------------------------------------------------------------------------------------ what is round, in 2D and 3D

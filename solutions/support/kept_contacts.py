@@ -95,3 +95,44 @@ def with_kept(old, J_old, new, J_new, moved):
             m = copy_contact(c, J, m, new, J_new, k)
         c.first[i + 1] = m
     return first_of(c, m), J[:m]
+
+
+def places_in(old, new, moved):
+    """Return (at (m,), whole): the old contact whose place each new one takes, one of the same two bodies.
+
+    whole: whether each new contact has such a place, and each old one of a body that has moved is replaced.
+    """
+    at = np.empty(new.a.size, np.int64)
+    for i in range(new.first.size - 1):
+        begin, end, left = old.first[i], old.first[i + 1], new.first[i + 1] - new.first[i]
+        for k in range(begin, end):
+            left -= moved[i] or moved[old.b[k]]
+        if left != 0:
+            return at, False
+        k = begin
+        for s in range(new.first[i], new.first[i + 1]):
+            if s > new.first[i] and new.b[s] != new.b[s - 1]:            # those of one pair lie side by side
+                k = begin
+            while k < end and old.b[k] != new.b[s]:
+                k += 1
+            if k == end:
+                return at, False
+            at[s] = k
+            k += 1
+    return at, True
+
+
+def replace_contacts(c, J, at, new, J_new):
+    """Write new contacts and their impulses into their places, in place."""
+    for k in range(at.size):
+        copy_contact(c, J, at[k], new, J_new, k)
+
+
+def replace_in_plane(c, gap, J, arms, at, new, J_new, arms_new):
+    """The same for contacts in the plane in another order, with their gaps and Arms, in place."""
+    for k in range(at.size):
+        i = at[k]
+        gap[i], arms.k_n[i], arms.k_t[i] = new.gap[k], arms_new.k_n[k], arms_new.k_t[k]
+        for e in range(2):
+            c.n[i, e], c.p[i, e], J[i, e] = new.n[k, e], new.p[k, e], J_new[k, e]
+            arms.r_a[i, e], arms.r_b[i, e] = arms_new.r_a[k, e], arms_new.r_b[k, e]

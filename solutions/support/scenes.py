@@ -264,6 +264,16 @@ def checked_pile(state, dt, steps, pile):
     return PileState(x, q, v, omega, state.contacts, finite_array("impulse J [N s]", state.J)), dt, steps
 
 
+def smallest_halves(half):
+    """The smallest half size (n,) [m] of each body."""
+    smallest = np.empty(half.shape[0])
+    for i in range(smallest.size):
+        smallest[i] = half[i, 0]
+        for c in range(1, half.shape[1]):
+            smallest[i] = min(smallest[i], half[i, c])
+    return smallest
+
+
 def smaller_half(contacts, k, half):
     """The smallest half size [m] of both bodies of contact k; planes have none."""
     size, n = np.inf, half.shape[0]
@@ -280,13 +290,15 @@ def deepest_contact(contacts, v, dt, half):
     What moves fast may go as far in during a step as the bodies move in it: that part does not count.  Raises Diverged
     where a velocity is no number.
     """
-    deepest, share, fastest = -1, 0.0, np.max(np.abs(v))
+    deepest, share, fastest, least = -1, 0.0, np.max(np.abs(v)), np.min(half)
     if not np.isfinite(fastest):
         raise Diverged("the largest velocity of a body [m/s]", fastest, "take shorter steps, substeps or more sweeps")
     for k in range(contacts.a.size):
         sunk = -contacts.gap[k] - 2.0 * dt * fastest
-        if sunk > 0.0 and sunk / smaller_half(contacts, k, half) > share:
-            deepest, share = k, sunk / smaller_half(contacts, k, half)
+        if sunk > share * least:                                         # or it is no deeper than the deepest so far
+            size = smaller_half(contacts, k, half)
+            if sunk > share * size:
+                deepest, share = k, sunk / size
     return deepest, share
 
 

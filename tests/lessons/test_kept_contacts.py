@@ -5,7 +5,9 @@ import pytest
 
 from solutions.given import contact
 from solutions.support import kept_contacts
+from solutions.support.arms import normal_velocities
 from solutions.support.broad_phase import near_pairs
+from solutions.support.contact_points import ContactSet
 
 G, DT, TILT = 9.81, 1.0 / 240.0, 1e-3
 FIND = {2: (contact.box_bounds_2d, contact.box_contacts_2d), 3: (contact.box_bounds, contact.box_contacts)}
@@ -65,7 +67,7 @@ def test_kept_contacts_are_those_of_a_new_search_to_the_second_order(d):
             u_n = contact.normal_velocities_2d(v, omega, old, arms)
         else:
             arms = contact.arms_3d(state.x, pile.inv_mass, contact.world_inertia(turn, pile.inv_inertia), old)
-            u_n = contact.normal_velocities(v, omega, old, arms)
+            u_n = normal_velocities(v, omega, old, arms)
         new = found(d, x, q, pile)[0]
         assert len(old.a) >= 3 * 2 ** (d - 1) and np.max(np.abs(u_n)) > 1e-5
         for k in range(len(old.a)):
@@ -77,8 +79,13 @@ def test_kept_contacts_are_those_of_a_new_search_to_the_second_order(d):
             assert abs(old.gap[k] + u_n[k] - new.gap[near]) < 7.0 * way**2 / least + 2.0 * way * TILT
 
 
+def copied(contacts):
+    return contacts._replace(**{name: array.copy() for name, array in contacts._asdict().items()})
+
+
+@pytest.mark.parametrize("searched", [True, False])
 @pytest.mark.parametrize("d", [2, 3])
-def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d):
+def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d, searched):
     rng = np.random.default_rng(6)
     state, pile = tower(rng, d)
     old = found(d, state.x, state.q, pile)[0]
@@ -86,17 +93,44 @@ def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d):
     new, pairs, turn = found(d, x, q, pile)
     J, moved = rng.normal(size=old.p.shape), np.array([True, False, False, False])
     ways = kept_contacts.unknown_ways(pile.half, pile.planes.shape[0], pile.margin)
-    every = np.arange(len(old.a))
-    c, spread, order, J_c = contact._found_anew(FIND[d][1], x, turn, pairs, moved, old, old.gap, every, J, ways, pile)
-    assert np.array_equal(spread.gap, c.gap[order])
-    J_c = contact.put_back(J_c, order)
+    c, J_c, part, J_part, at, changed = contact._found_anew(FIND[d][1], x, turn, pairs, moved, copied(old), J.copy(),
+                                                            ways, pile, searched)
     assert np.all(np.diff(c.a) >= 0) and np.array_equal(c.first, np.searchsorted(c.a, np.arange(4)))
     ours, of_old, of_new = ((one.a == 0) | (one.b == 0) for one in (c, old, new))
     for field in ("a", "b", "n", "p", "gap"):
         assert np.array_equal(getattr(c, field)[ours], getattr(new, field)[of_new])
         assert np.array_equal(getattr(c, field)[~ours], getattr(old, field)[~of_old])
-    assert np.array_equal(J_c[~ours], J[~of_old])
+        assert np.array_equal(getattr(c, field)[at], getattr(part, field))
+    assert np.array_equal(J_c[~ours], J[~of_old]) and np.array_equal(J_c[at], J_part)
     assert np.array_equal(J_c[ours], contact.kept_impulses(new, old, J, pile.margin)[of_new])
+    assert changed == searched and len(at) == (len(c.a) if searched else np.sum(ours))
+
+
+def contacts_of(bodies):
+    """A ContactSet of these (a, b), whose other numbers are their places in the list."""
+    a, b = np.array(bodies, dtype=np.int64).reshape(-1, 2).T
+    numbers = np.arange(len(a), dtype=float)
+    return ContactSet(np.searchsorted(a, np.arange(5)), a, b, np.stack([numbers] * 2, axis=1),
+                      np.stack([numbers] * 2, axis=1), numbers)
+
+
+@pytest.mark.parametrize(("then", "now", "at"), [
+    ([(0, 1), (0, 1), (0, 3)], [(0, 1), (0, 1), (0, 3)], [0, 1, 2]),
+    ([(0, 3), (0, 1), (0, 1)], [(0, 1), (0, 1), (0, 3)], [1, 2, 0]),     # in another order
+    ([(0, 1), (1, 2), (2, 3)], [(0, 1)], [0]),                           # 1–2 and 2–3 have not moved
+    ([(0, 1), (0, 1)], [(0, 1)], None),                                  # one less
+    ([(0, 1)], [(0, 1), (0, 1)], None),                                  # one more
+    ([(0, 1)], [(0, 3)], None),                                          # as many, and another body
+    ([(0, 1), (0, 1), (0, 3)], [(0, 1), (0, 3), (0, 3)], None),
+    ([(0, 1)], [], None),
+    ([], [(0, 1)], None),
+    ([], [], []),
+])
+def test_new_contacts_take_the_places_of_as_many_old_ones_of_the_same_bodies(then, now, at):
+    found, whole = kept_contacts.places_in(contacts_of(then), contacts_of(now), np.array([True, False, False, False]))
+    assert whole == (at is not None)
+    if whole:
+        assert found.tolist() == at
 
 
 def test_a_way_is_that_of_the_farthest_point_and_a_way_that_is_no_number_has_moved():

@@ -18,6 +18,7 @@ FOR_PYTHON = "_ZN7cpython"               # begins the names of what Python calls
 CALLED_BY_NAME = {"nrt", "multi3"}       # numba's own libraries whose functions are called by their names
 REFUSE = ctypes.cast(ctypes.pythonapi.PyErr_BadArgument, ctypes.c_void_p).value    # raises a TypeError
 LINKED = "linked"                        # kind of what is saved without machine code
+SIDE_BY_SIDE = "_eight"                  # ends the names of functions that compute with eight numbers at once
 
 
 class LinkedLibrary(JITCodeLibrary):
@@ -30,7 +31,15 @@ class LinkedLibrary(JITCodeLibrary):
     _compiled_object = None              # the machine code, to be saved, or loaded and not yet called
 
     def _optimize_final_module(self):
-        """Leave it to _make_machine_code: what calls this function optimises its own copy."""
+        """Leave it to _make_machine_code: what calls this function optimises its own copy.
+
+        Only what computes with eight numbers at once is optimised here: first what it calls becomes part of it, and
+        then its loop becomes vector instructions.
+        """
+        if self.name.endswith(SIDE_BY_SIDE):
+            for vectorize in (False, True):
+                passes, builder = self.codegen._module_pass_manager(loop_vectorize=vectorize)
+                passes.run(self._final_module, builder)
 
     def _finalize_final_module(self):
         self._finalize_dynamic_globals()
