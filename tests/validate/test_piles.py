@@ -1,8 +1,11 @@
 """Piles against engines: settings, and what is printed and drawn of measured times."""
 
+from concurrent.futures.process import BrokenProcessPool
+
 import numpy as np
 import pytest
 
+from solutions.checks import BadInput
 from solutions.support.scenes import HIGHEST
 from validate.engines.contact import DT, KINDS, fallen
 from validate.speed import piles
@@ -57,3 +60,55 @@ def test_a_pile_of_thirty_thousand_bodies_lands_without_bodies_that_pass_each_ot
     pile = piles.landed(piles.compiled_lesson(), name, 31_623)
     assert len(pile.state.contacts.a) > 1.5 * 31_623
     assert np.ptp(pile.state.x[:31_623, 1]) < piles.ROWS[2] * KINDS[name].pitch
+
+
+def test_an_engine_whose_process_ends_is_named_and_the_others_are_timed(monkeypatch, capsys):
+    one = piles.Race(np.full(9, 0.5), 1.0, 2.0, (1.0, 0.1), (2.0, 0.2))
+
+    def ended(function, name, bodies, rival, rounds, threads):
+        if rival is piles.PLANE[0]:
+            raise BrokenProcessPool
+        return one
+    monkeypatch.setattr(piles, "alone", ended)
+    monkeypatch.setattr(piles.Product, "installed", lambda product: True)
+    assert [rival for rival, _ in piles.compare(["discs"], 100, 9)["discs"]] == list(piles.PLANE[1:])
+    assert "pymunk" in capsys.readouterr().err
+
+
+def test_only_engines_with_threads_are_compared_on_two(monkeypatch):
+    asked = []
+    monkeypatch.setattr(piles, "alone", lambda function, name, bodies, rival, rounds, threads: asked.append(
+        (rival.product, threads)))
+    monkeypatch.setattr(piles.Product, "installed", lambda product: True)
+    piles.compare(["discs", "bricks"], 100, 9, 2)
+    assert asked == [(piles.BOX2D, 2)] * 3 + [(piles.RAPIER, 2)] * 3
+
+
+@pytest.mark.parametrize(("threads", "growth"), [(100_000, False), (2, True)])
+def test_threads_that_are_not_there_or_not_timed_are_refused(monkeypatch, threads, growth):
+    monkeypatch.setattr(piles.os, "cpu_count", lambda: 2)
+    with pytest.raises(BadInput, match="--threads"):
+        piles.measure(["spheres"], 100, 3, growth, False, threads=threads)
+
+
+def test_a_pile_of_ten_thousand_is_no_higher_than_bodies_can_fall():
+    rows = {name: 10_000 / max(kind.across, piles.across_in_rows(kind, 10_000)) ** (kind.d - 1)
+            for name, kind in KINDS.items()}
+    assert all(rows[name] <= 1.1 * piles.ROWS[kind.d] for name, kind in KINDS.items())
+    assert all(piles.across_in_rows(kind, 900) <= kind.across for kind in KINDS.values())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["spheres", "bricks"])
+def test_any_number_of_threads_gives_the_result_of_one_to_the_last_bit(name):
+    from validate.speed.threads import on_threads
+    lesson, kind = piles.compiled_lesson(), KINDS[name]._replace(across=5)
+    one = piles.Ours(lesson, kind, *fallen(kind, 100))
+    one.run(120)
+    ends = []
+    for advance in (lesson.advance_pile, on_threads(lesson, 1), on_threads(lesson, 2)):
+        ends.append(advance(*one.shape, one.state, DT, 20, one.pile))
+    assert len(ends[0].contacts.a) > 100
+    for end in ends[1:]:
+        assert all(np.array_equal(a, b) for a, b in zip(ends[0][:4], end[:4], strict=True))
+        assert np.array_equal(ends[0].J, end.J) and np.array_equal(ends[0].contacts.gap, end.contacts.gap)

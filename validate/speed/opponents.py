@@ -1,9 +1,9 @@
 """Engines in the piles of lesson 9 that are only timed: Box2D 3, Rapier and MuJoCo, beside pymunk and pybullet.
 
 All get the same bodies, places, walls, friction and step, and start from our settled state.  No body may sleep, one
-thread works, and continuous detection is off where the binding has a switch.  An engine is imported when its pile is
-made, so this module loads without any of them.  Nothing is built from a Model here: the adapters of `validate/worlds/`
-look at every pair of bodies, and a pile may have 100,000.
+thread works unless more are asked for, and continuous detection is off where the binding has a switch.  An engine is
+imported when its pile is made, so this module loads without any of them.  Nothing is built from a Model here: the
+adapters of `validate/worlds/` look at every pair of bodies, and a pile may have 100,000.
 """
 
 import numpy as np
@@ -32,10 +32,11 @@ class Box2DPile:
     unit: the length [m] of which Box2D's slop is 0.5 %.  It holds for the whole process and can be set once only.
     """
 
-    def __init__(self, kind, state, pile, substeps=4, hertz=None, unit=1.0):
+    def __init__(self, kind, state, pile, substeps=4, hertz=None, unit=1.0, threads=1):
         import pyb2d3 as b2
         b2.set_length_units_per_meter(unit)
-        self.world, self.substeps, self.bodies = b2.World(gravity=(0.0, -G)), substeps, []
+        pool = {"thread_pool": b2.ThreadPool(threads)} if threads > 1 else {}
+        self.world, self.substeps, self.bodies = b2.World(gravity=(0.0, -G), **pool), substeps, []
         self.world.sleeping_enabled = self.world.continuous_enabled = False
         if hertz:
             self.world.set_contact_tuning(hertz, DAMPING, PUSH_OUT)
@@ -62,10 +63,10 @@ class Box2DPile:
 class RapierPile:
     """Rapier, which computes with 32-bit floats."""
 
-    def __init__(self, kind, state, pile, iterations=4, hertz=None, slop=None):
+    def __init__(self, kind, state, pile, iterations=4, hertz=None, slop=None, threads=1):
         import rapier3d as rapier
         self.world, self.handles = rapier.PhysicsWorld(gravity=(0.0, 0.0, -G)), []
-        self.world.set_num_threads(1)
+        self.world.set_num_threads(threads)
         set_rapier(self.world.integration_parameters, iterations, hertz, slop)
         for centre, half in slabs(pile.planes[1, 3], 3):
             self.add(rapier.RigidBody.fixed().translation(tuple(centre)), rapier.Collider.cuboid(*half))

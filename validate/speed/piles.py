@@ -6,15 +6,20 @@ of all its threads.  An engine runs with its defaults, and tuned so that its bod
 ours takes the fewest substeps with which its bodies overlap no more than the engine's.
 Overlaps are judged by `reference/overlaps.py`, which uses no code of the lessons.
 
+With `--threads` ours shares its work in space among threads (`threads.py`), and Box2D and Rapier get as many; the other
+engines have no such switch.  Times are then those of a clock on the wall.
+
 The cost of a step should grow as n to the power of 1, within a tenth, from 100 to 10,000 bodies; all sizes are timed in
 turn.  Larger piles do not fit into the processor's memory, and a contact costs more there.  The memory shown is that of
 the whole process, compiler included: with 10,000 spheres at most 4 GiB.
 """
 
+import os
 import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from multiprocessing import get_context
 from typing import NamedTuple
@@ -23,6 +28,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 from scipy.spatial.transform import Rotation
+
+from solutions.checks import BadInput
 
 from ..engines.contact import DT, KINDS, bullet_pile, fallen, pymunk_pile
 from ..engines.products import BOX2D, MUJOCO, PYBULLET, PYMUNK, RAPIER, Product
@@ -72,6 +79,7 @@ SPACE = (
     Rival(MUJOCO, "20 iterations of CG, contacts as stiff as two steps allow", MuJoCoPile, {}, {}),
 )
 RIVALS = {2: PLANE, 3: SPACE}            # {dimension: engines}
+THREADED = {BOX2D, RAPIER}               # engines whose threads can be counted
 SETTLE_RIVAL = 480           # steps in which an engine settles from our state [-]
 
 
@@ -91,8 +99,11 @@ def compiled_lesson():
 class Ours:
     """The lesson's pile."""
 
-    def __init__(self, lesson, kind, state, pile):
+    def __init__(self, lesson, kind, state, pile, threads=1):
         (self.advance, *self.shape), self.state, self.pile = functions(lesson, kind), state, pile
+        if threads > 1 and kind.d == 3:
+            from .threads import on_threads  # imports numba
+            self.advance = on_threads(lesson, threads)
 
     def run(self, steps):
         self.state = self.advance(*self.shape, self.state, DT, steps, self.pile)
@@ -115,11 +126,11 @@ def directions(q):
     return Rotation.from_quat(q[:, [1, 2, 3, 0]]).as_matrix()
 
 
-def cpu_time(work, steps=BLOCK):
-    """Return milliseconds per step of one block, of all threads of this process."""
-    began = time.process_time()
+def cpu_time(work, steps=BLOCK, clock=time.process_time):
+    """Return milliseconds per step of one block, of all threads of this process or by another clock."""
+    began = clock()
     work.run(steps)
-    return 1e3 * (time.process_time() - began) / steps
+    return 1e3 * (clock() - began) / steps
 
 
 class Race(NamedTuple):
@@ -137,17 +148,19 @@ def with_settings(pile, rival, name):
     return pile._replace(substeps=substeps, hertz=hertz)
 
 
-def race(name, n, rival, rounds):
-    """Return the Race of one kind of pile against one engine."""
+def race(name, n, rival, rounds, threads=1):
+    """Return the Race of one kind of pile against one engine, each on so many threads."""
     kind = KINDS[name]
+    kind = kind._replace(across=max(kind.across, across_in_rows(kind, n)))
     state, pile = fallen(kind, n)
-    ours = Ours(compiled_lesson(), kind, state, pile)
+    ours = Ours(compiled_lesson(), kind, state, pile, threads)
     ours.run(round(SETTLE / DT))
-    other = rival.make(kind, ours.state, pile)
+    other = rival.make(kind, ours.state, pile, **({"threads": threads} if threads > 1 else {}))
     ours.pile = with_settings(pile, rival, name)
     ours.run(SETTLE_RIVAL)
     other.run(SETTLE_RIVAL)
-    times = np.array([(cpu_time(ours), cpu_time(other)) for _ in range(rounds)])
+    clock = time.perf_counter if threads > 1 else time.process_time
+    times = np.array([(cpu_time(ours, clock=clock), cpu_time(other, clock=clock)) for _ in range(rounds)])
     return Race(np.sort(times[:, 0] / times[:, 1]), *np.median(times, axis=0).tolist(),
                 found_overlaps(kind, pile, *ours.places()), found_overlaps(kind, pile, *other.places()))
 
@@ -158,11 +171,15 @@ def alone(function, *arguments):
         return process.submit(function, *arguments).result()
 
 
+def across_in_rows(kind, n):
+    """Return how many bodies a pile has across if n bodies lie in ROWS rows."""
+    return round((n / ROWS[kind.d]) ** (1.0 / (kind.d - 1)))
+
+
 def landed(lesson, name, n):
     """Return the lesson's pile of n bodies after a while: as wide as it is high, but of at most ROWS rows."""
     kind = KINDS[name]
-    wide, low = n ** (1.0 / kind.d), (n / ROWS[kind.d]) ** (1.0 / (kind.d - 1))
-    kind = kind._replace(across=max(2, round(wide), round(low)))
+    kind = kind._replace(across=max(2, round(n ** (1.0 / kind.d)), across_in_rows(kind, n)))
     ours = Ours(lesson, kind, *fallen(kind, n))
     ours.run(round(LANDING / DT))
     return ours
@@ -262,15 +279,21 @@ def remember(lesson, n=10_000):
           f"{before:.2f} GiB before; goal: {ROOM:g} GiB")
 
 
-def compare(names, bodies, rounds):
-    """Return {kind: [(rival, its Race)]} of all engines that are installed; name those that are not."""
+def compare(names, bodies, rounds, threads=1):
+    """Return {kind: [(rival, its Race)]} of all engines that are installed; name those that are not, or that end."""
     found = {}
     for name in names:
-        rivals = RIVALS[KINDS[name].d]
+        rivals = [rival for rival in RIVALS[KINDS[name].d] if threads == 1 or rival.product in THREADED]
         for product in dict.fromkeys(rival.product for rival in rivals if not rival.product.installed()):
             print(f"{name}: {product} is not installed here, so it is skipped: {product.remedy}", file=sys.stderr)
-        found[name] = [(rival, alone(race, name, bodies, rival, rounds))
-                       for rival in rivals if rival.product.installed()]
+        found[name] = []
+        for rival in rivals:
+            if rival.product.installed():
+                try:
+                    found[name].append((rival, alone(race, name, bodies, rival, rounds, threads)))
+                except BrokenProcessPool:
+                    print(f"{name}: the process of {rival.product}, {rival.settings}, was ended, as the system does "
+                          f"where memory runs out; it is left out", file=sys.stderr)
     return found
 
 
@@ -280,8 +303,10 @@ def our_settings(rival, name):
     return f"{substeps} × {hertz:g} Hz"
 
 
-def show(races, bodies):
+def show(races, bodies, threads=1):
     """Print the time of a step and the overlap, ours and each engine's."""
+    if threads > 1:
+        print(f"Times by the clock on the wall, {threads} threads; in the plane ours has one.")
     table = Table("pile", "engine", "settings", "ours", "time, ours / engine", "middle half", "goal", "ours [ms]",
                   "engine [ms]", "overlap, ours [mm]", "engine [mm]")
     for name, rows in races.items():
@@ -316,18 +341,23 @@ def draw(races, bodies, path):
     plt.close(figure)
 
 
-def measure(kinds, bodies, rounds, growth, memory, figure=None, most=10_000):
+def measure(kinds, bodies, rounds, growth, memory, figure=None, most=10_000, threads=1):
     """Print the memory, the growth up to `most` bodies, or else the races of some kinds of piles; of all without names.
 
-    figure: a file for a picture of the growth or of the races.  Raises BadInput for an unknown kind.
+    figure: a file for a picture of the growth or of the races.  Raises BadInput for an unknown kind, and for more
+    threads than there are, or threads where one is timed.
     """
     check_known("pile", kinds, KINDS)
+    if threads > (os.cpu_count() or 1):
+        raise BadInput("--threads", threads, f"this machine has {os.cpu_count()}")
+    if threads > 1 and (growth or memory):
+        raise BadInput("--threads", threads, "leave it out with --growth and --memory: they look at one thread")
     if memory:
         remember(compiled_lesson())
     if growth:
         grow(kinds or KINDS, most, rounds, figure)
     if not (memory or growth):
-        races = compare(kinds or KINDS, bodies, rounds)
-        show(races, bodies)
+        races = compare(kinds or KINDS, bodies, rounds, threads)
+        show(races, bodies, threads)
         if figure:
             draw(races, bodies, figure)
