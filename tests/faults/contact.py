@@ -73,3 +73,27 @@ fault("velocity_sweep", "aim[k] - dot(n, u) - give[k] * k_n * J_n", "aim[k] - do
       "in space contacts do not give under their load")
 fault("velocity_sweep", "mu * J_n if J_n > 0.0 else 0.0", "mu * dot(n, old) if J_n > 0.0 else 0.0",
       "in space friction is limited by the old J_n")
+fault("_aim_eight", "min(aim, s[WIDE * FASTEST + k]", "max(aim, s[WIDE * FASTEST + k]",
+      "in a pile in space bodies part as fast as their overlap wants", of="given.contact")
+fault("_aim_eight", "s[WIDE * GIVE + k] = give", "s[WIDE * GIVE + k] = 0.0",
+      "in a pile in space contacts are stiff", of="given.contact")
+fault("_visit_eight", "- give * k_n * J_n)", ")",
+      "in a pile in space contacts do not give under their load", of="given.contact")
+fault("_visit_eight", "mu * J_n if J_n > 0.0", "mu * 0.8 * J_n if J_n > 0.0",
+      "in a pile in space friction is a fifth too small", of="given.contact")
+fault("_follow_eight", "min(s[WIDE * AIM + k], 0.0), 0.0", "s[WIDE * AIM + k], s[WIDE * GIVE + k]",
+      "in a pile in space the velocity that pushes bodies apart stays", of="given.contact")
+fault("_follow_eight", "+= h *", "+= 2.0 * h *", "gaps change twice as fast as bodies move", of="given.contact")
+fault("turned", "plus(three(s, omega, k), sign,", "plus(three(s, omega, k), 1.0,",
+      "both bodies of a contact turn the same way", of="support.lanes")
+fault("inertia_times", "xy * b[0] + s", "xz * b[0] + s", "one product of inertia stands for another",
+      of="support.lanes")
+fault("colours_of", "taken[b] |= 1 << free", "taken[b] |= 0",
+      "contacts of one group share a body, which loses impulses", of="support.lanes")
+fault("put_contacts", "s[WIDE * (ARM_B + e) + i] = arms.r_a[k, e], arms.r_b[k, e]",
+      "s[WIDE * (ARM_B + e) + i] = arms.r_a[k, e], arms.r_a[k, e]", "both arms begin at the first body",
+      of="support.lanes")
+fault("places_in", "old.b[k] != new.b[s]:", "False:", "a new contact takes the place of one with another body",
+      of="support.kept_contacts")
+fault("replace_in_plane", "gap[i], arms.k_n[i]", "_, arms.k_n[i]", "a contact that is found anew keeps its old gap",
+      of="support.kept_contacts")

@@ -449,6 +449,61 @@ def separation(lesson, rng):
             0.03 * np.min(radius) * hertz / (1.0 + 1.0 / (s * (2.0 + s))))
 
 
+@random_law("A step changes momentum and angular momentum of two boxes by gravity and by the impulses that it returns.",
+            "impulses of a step in space: largest error of the velocities [m/s, rad/s]", EXACT)
+def balance_in_space(lesson, rng):
+    """Two boxes with three moments each touch and approach, in one substep, where arms and tensors are those before."""
+    boxes, dt = touching_boxes(rng, rng.integers(3))[:2], 0.004
+    x, half = (np.array([box[k] for box in boxes]) for k in (0, 2))
+    m, moments = rng.uniform(0.5, 2.0, 2), rng.uniform(0.05, 0.09, (2, 3))
+    state, pile = lesson.make_pile(x, [quaternion_of(R) for _, R, _ in boxes], m, moments, half,
+                                   [(0.0, 0.0, 1.0, 50.0)], rng.normal(size=3), rng.uniform(0.2, 0.8), 1, 30.0, 1.0,
+                                   2.0 * REACH)
+    v, omega = np.zeros((3, 3)), np.append(rng.normal(size=(2, 3)), np.zeros((1, 3)), axis=0)
+    v[:2] = rng.normal(size=(2, 3)) + 30.0 * (x[::-1] - x)
+    end = lesson.advance_pile(lesson.box_bounds, lesson.box_contacts, state._replace(v=v, omega=omega), dt, 1, pile)
+    v_new, omega_new = v + dt * np.append(np.tile(pile.gravity, (2, 1)), np.zeros((1, 3)), axis=0), omega.copy()
+    for i, (place, R, _) in enumerate(boxes):
+        I = R @ np.diag(moments[i]) @ R.T
+        J = end.J * (1.0 * (end.contacts.a == i) - 1.0 * (end.contacts.b == i))[:, None]
+        v_new[i] += np.sum(J, axis=0) / m[i]
+        turning = np.sum(np.cross(end.contacts.p - place, J), axis=0) - dt * np.cross(omega[i], I @ omega[i])
+        omega_new[i] += np.linalg.solve(I, turning)
+    assert np.max(np.abs(end.J)) > 1e-2
+    return (end.v, end.omega), (v_new, omega_new)
+
+
+@random_law("At each contact of a box that slides, friction is μ J_n.",
+            "a box that slides in space: largest |J_t| − μ J_n [N s]", EXACT)
+def friction_in_space(lesson, rng):
+    mu, half = rng.uniform(0.2, 0.8), np.append(rng.uniform(0.3, 0.5, 2), 0.1)
+    state, pile = lesson.make_pile([(0.0, 0.0, half[2])], [(1.0, 0.0, 0.0, 0.0)], 1.0, [np.ones(3)], [half],
+                                   [(0.0, 0.0, 1.0, 0.0)], (0.0, 0.0, -9.81), mu, 4, 60.0, 10.0, 0.01)
+    v = np.append(rng.normal(size=2), 0.0)
+    v = np.stack((5.0 * v / np.linalg.norm(v), np.zeros(3)))
+    J = lesson.advance_pile(lesson.box_bounds, lesson.box_contacts, state._replace(v=v), 0.004, 5, pile).J
+    assert len(J) == 4 and np.sum(J[:, 2]) > 1e-3
+    return np.linalg.norm(J[:, :2], axis=1), mu * J[:, 2]
+
+
+@random_law("Contacts of bodies that pass each other are found at the places of the beginning of a step.",
+            "bodies that pass each other: largest error of the gap and the normal [m, -]", EXACT)
+def passing_bodies(lesson, rng):
+    """Without gravity, by more than 1/500 of their size in each step.  Gaps that follow velocities err by 1e-5 m."""
+    d, steps, dt = rng.choice((2, 3)), rng.integers(2, 6), 0.004
+    make, advance = (lesson.make_pile_2d, lesson.advance_pile_2d) if d == 2 else (lesson.make_pile, lesson.advance_pile)
+    radius, q = rng.uniform(0.2, 0.4, 2), np.zeros(2) if d == 2 else [(1.0, 0.0, 0.0, 0.0)] * 2
+    n, along = np.linalg.qr(rng.normal(size=(d, 2)))[0].T
+    x = np.stack(((np.sum(radius) + 0.01) * n, np.zeros(d)))
+    state, pile = make(x, q, 1.0, 0.1 if d == 2 else np.full((2, 3), 0.1), np.repeat(radius[:, None], d, axis=1),
+                       [(*-np.eye(d)[0], 50.0)], np.zeros(d), 0.3, 2, 30.0, 1.0, 0.1)
+    v = np.stack((rng.uniform(0.5, 1.0) * along, np.zeros(d), np.zeros(d)))
+    bounds = lesson.disc_bounds if d == 2 else lesson.ball_bounds
+    found = advance(bounds, lesson.round_contacts, state._replace(v=v), dt, steps, pile).contacts
+    way = x[0] + (steps - 1) * dt * v[0]
+    return (found.gap, found.n[0]), (np.linalg.norm(way) - np.sum(radius), way / np.linalg.norm(way))
+
+
 @random_law("Forces of contacts under loads with torques obey Newton, Euler, and the laws of contact and friction.",
             "forces and torques: largest violation [N, m/s², rad/s²]", EXACT)
 def forces_under_torques(lesson, rng):
@@ -503,6 +558,6 @@ def ways_of_bodies(lesson, rng):
 
 @case("steps-of-a-pile", "A step of a pile, and forces under torques", compiled=False)
 def steps_of_a_pile(lesson, check):
-    """Compare flights, margins, separation, ways and forces with Euler's equation and with the laws of contact."""
-    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies), seed=32,
-               times=15)
+    """Compare flights, margins, separation, impulses, gaps and forces with Euler's equation and the laws of contact."""
+    check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies,
+                        balance_in_space, friction_in_space, passing_bodies), seed=32, times=15)
