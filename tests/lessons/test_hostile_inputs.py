@@ -57,6 +57,7 @@ TRUSTED = {
     "steps, round-off and errors above 0, as their docstrings ask": (
         "central_difference", "complex_step", "best_step", "remainder_orders", "predicted_horizon"),
     "a first throw of two numbers, and a course that a person has built": ("aim",),
+    "the response K of a ball, which is regular": ("my_impulse",),
     "lengths, masses, speeds and frictions above 0, as the questions give them": (
         "sliding_distance", "rolling_time", "circling_speed", "precession_rate", "my_mesh", "my_thrown_body"),
 }

@@ -488,7 +488,7 @@ def run_compiled():
             print(course, name, getattr(call[0], "__name__", ""), flush=True)
             getattr(modules.bind(course, compiled=True), name)(*map(twin, call))
     call = (simulator.contact_step_2d, *WITH_CONTACT, flat[1]._replace(inv_inertia=np.ones(1)))
-    unchecked = vars(modules.module_set(compiled=True).solution("simulator"))["advance_contact"]
+    unchecked = vars(modules.module_set(compiled=True).solution("simulator"))["advance_contact"].from_python()
     with pytest.raises(IndexError):
         unchecked(*map(twin, call))
     print("all ran", flush=True)
