@@ -220,7 +220,6 @@ NOT_IN_CI = {                    # files with long tests, and why CI does not ru
     "tests/attacks/test_watch.py": "each of its copies is compared with a class; the attacks themselves are run",
     "tests/grading/test_cluster.py": "it starts a scheduler of Dask and its workers",
     "tests/grading/test_scale.py": "it grades a class of two hundred",
-    "tests/lessons/test_records.py": "it compiles all loops anew with a check of every index",
     "tests/validate/test_agreement.py": "it refines the dominoes for minutes",
     "tests/validate/test_book.py": "it executes all notebooks; CI builds the book with one of them",
     "tests/validate/test_cluster.py": "it starts a scheduler of Dask and its workers",
