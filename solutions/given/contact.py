@@ -63,6 +63,7 @@ from ..support.lanes import (
     WIDE,
     contact_velocity,
     gaps_and_impulses,
+    in_any_order,
     lanes_for,
     pushed,
     put_contacts,
@@ -73,7 +74,7 @@ from ..support.lanes import (
     write_velocities,
 )
 from ..support.records import check_record
-from ..support.scenes import PileState, check_overlap, checked_pile, smallest_halves
+from ..support.scenes import PileState, check_overlap, checked_pile, smaller_half, smallest_halves
 from ..support.tuples import minus, plus
 from ..vectors import dot
 
@@ -82,10 +83,9 @@ SEPARATION = 0.03            # half sizes in 1/hertz [-] by which bodies part th
 
 def separation_speeds(contacts, pile):
     """Given.  The largest speeds (m,) [m/s] at which contacts part: SEPARATION of the smaller half size times hertz."""
-    speeds, least, n = np.empty(contacts.a.size), smallest_halves(pile.half), pile.half.shape[0]
+    speeds, least = np.empty(contacts.a.size), smallest_halves(pile.half)
     for k in range(speeds.size):
-        a, b = contacts.a[k], contacts.b[k]
-        speeds[k] = SEPARATION * pile.hertz * (min(least[a], least[b]) if b < n else least[a])
+        speeds[k] = SEPARATION * pile.hertz * smaller_half(contacts, k, least)
     return speeds
 
 
@@ -217,31 +217,34 @@ def _follow_eight(s, h):
 
 def _press_in_lanes(v, omega, lanes, h, pile):
     """Given.  Set the targets of all contacts, and apply their last impulses, in place."""
-    for group in range(lanes.number.size):
-        s = lanes.rows[group]
-        read_velocities(s, v, omega, lanes, group)
-        _aim_eight(s, h, pile)
-        write_velocities(s, v, omega, lanes, group)
+    for turn in range(lanes.turns.size - 1):
+        for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
+            s = lanes.rows[group]
+            read_velocities(s, v, omega, lanes, group)
+            _aim_eight(s, h, pile)
+            write_velocities(s, v, omega, lanes, group)
 
 
 def _sweep_in_lanes(v, omega, lanes, pile):
     """Given.  Visit all contacts, in place."""
-    for group in range(lanes.number.size):
-        s = lanes.rows[group]
-        read_velocities(s, v, omega, lanes, group)
-        _visit_eight(s, pile.mu)
-        write_velocities(s, v, omega, lanes, group)
+    for turn in range(lanes.turns.size - 1):
+        for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
+            s = lanes.rows[group]
+            read_velocities(s, v, omega, lanes, group)
+            _visit_eight(s, pile.mu)
+            write_velocities(s, v, omega, lanes, group)
 
 
 def _rest_in_lanes(before, spin, v, omega, lanes, h, pile):
     """Given.  Let the gaps follow the velocities `before` and `spin`, and visit all contacts at rest, in place."""
-    for group in range(lanes.number.size):
-        s = lanes.rows[group]
-        read_velocities(s, before, spin, lanes, group)
-        _follow_eight(s, h)
-        read_velocities(s, v, omega, lanes, group)
-        _visit_eight(s, pile.mu)
-        write_velocities(s, v, omega, lanes, group)
+    for turn in range(lanes.turns.size - 1):
+        for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
+            s = lanes.rows[group]
+            read_velocities(s, before, spin, lanes, group)
+            _follow_eight(s, h)
+            read_velocities(s, v, omega, lanes, group)
+            _visit_eight(s, pile.mu)
+            write_velocities(s, v, omega, lanes, group)
 
 
 def _substep(x, q, v, omega, lanes, ways, turn, h, pile):

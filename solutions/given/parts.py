@@ -19,7 +19,7 @@ from ..simulator import find_contacts, new_velocities_2d, weight
 from ..support.arms import apply_impulses_2d, arms_2d, normal_velocities_2d
 from ..support.contact_points import ContactSet
 from ..support.networks import pull_per_length
-from ..support.scenes import PileState, smaller_half
+from ..support.scenes import PileState, smaller_half, smallest_halves
 from .joints import close_joints_2d, hold_joints_2d, without_joined
 from .rods import close_links, impulses_at_rest, no_link_impulses
 
@@ -360,8 +360,9 @@ def is_calm(J, before, v, free, contacts, arms, island, most, p):
 
 def are_deep(contacts, p):
     """Return whether two bodies are so deep in each other that impulses seem not to hold them apart."""
+    least = smallest_halves(p.half.half)
     for k in range(contacts.gap.size):
-        if contacts.gap[k] < -p.slop and contacts.gap[k] < -SQUEEZED * smaller_half(contacts, k, p.half.half):
+        if contacts.gap[k] < -p.slop and contacts.gap[k] < -SQUEEZED * smaller_half(contacts, k, least):
             return True
     return False
 

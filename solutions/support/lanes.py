@@ -1,7 +1,7 @@
-"""Contacts in space, eight side by side, because a processor computes with eight numbers as fast as with one.
+"""Contacts in space, eight side by side: a processor computes with four or eight numbers as fast as with one.
 
-It can do so where no contact of the eight waits for another one, so no two of them may share a body that moves.  Each
-contact gets the first colour that none of its bodies has yet, and a group holds contacts of one colour.
+It can do so only if no contact of the eight waits for another one, so no two of them may share a body that moves.
+Each contact gets the first colour that none of its bodies has yet, and a group holds contacts of one colour.
 *Source:* graph colouring, as in Box2D 3.
 """
 
@@ -12,8 +12,9 @@ import numpy as np
 from .tuples import across, minus, plus
 
 WIDE = 8                     # contacts of a group [-]
-SPARE = 8                    # groups for which there is room for one more [-]: new memory costs a fifth of a step
-COLOURS = 62                 # [-]; a contact that needs another one, as on a body that carries a hundred, is a group
+SPARE = 8                    # groups for which one more row is asked for [-]: new memory in each step takes time
+COLOURS = 62                 # [-]; a contact for which none is free is a group of its own
+in_any_order = range         # over the groups of a turn; several threads may share them
 
 # Rows of a group: what begins a line of three is a vector, an inertia has six rows, and a number has one.
 NORMAL, ARM_A, ARM_B, IMPULSE = 0, 3, 6, 9
@@ -29,7 +30,7 @@ class Lanes(NamedTuple):
     bodies: np.ndarray       # (groups, 16) their bodies a, and then their bodies b
     rows: np.ndarray         # (groups or more, 8 ROWS) their numbers
     place: np.ndarray        # (m,) where each contact is: 8 times its group, and its number in it
-    turns: np.ndarray        # from turns[k] to turns[k + 1] − 1 no two groups share a body that moves
+    turns: np.ndarray        # groups turns[k] to turns[k + 1] − 1 share no body that moves
 
 
 def three(s, r, k):
@@ -65,10 +66,7 @@ def colours_of(c, moving):
 
 
 def lanes_for(c, moving, room):
-    """The Lanes of a ContactSet, without their numbers, in `room` if that has enough rows.
-
-    Where a group has fewer than eight, the others are zero, but for what a visit divides by.
-    """
+    """The Lanes of a ContactSet, in `room` if that has enough rows.  Their numbers are still to be written."""
     colour, m = colours_of(c, moving), c.a.size
     groups, count = np.zeros(COLOURS + 2, np.int64), np.zeros(COLOURS + 1, np.int64)
     for k in range(m):
@@ -88,11 +86,16 @@ def lanes_for(c, moving, room):
         lanes.number[group] = i + 1
         if i + 1 == WIDE or colour[k] == COLOURS:
             groups[colour[k]] = group + 1
-    for group in range(total):
+    clear_unused(lanes)
+    return lanes
+
+
+def clear_unused(lanes):
+    """Write zeros where a group has fewer than eight contacts, and ones where a visit divides, in place."""
+    for group in range(lanes.number.size):
         for i in range(lanes.number[group], WIDE):
             for r in range(ROWS):
-                room[group, WIDE * r + i] = 1.0 if r == K_N or r == K_T else 0.0
-    return lanes
+                lanes.rows[group, WIDE * r + i] = 1.0 if r == K_N or r == K_T else 0.0
 
 
 def put_contacts(lanes, at, c, J, arms, fastest, inv_mass, inv_inertia):

@@ -274,14 +274,10 @@ def smallest_halves(half):
     return smallest
 
 
-def smaller_half(contacts, k, half):
-    """The smallest half size [m] of both bodies of contact k; planes have none."""
-    size, n = np.inf, half.shape[0]
-    for c in range(half.shape[1]):
-        size = min(size, half[contacts.a[k], c])
-        if contacts.b[k] < n:
-            size = min(size, half[contacts.b[k], c])
-    return size
+def smaller_half(contacts, k, least):
+    """The smallest half size [m] of both bodies of contact k, from smallest_halves `least`; planes have none."""
+    a, b = contacts.a[k], contacts.b[k]
+    return min(least[a], least[b]) if b < least.size else least[a]
 
 
 def deepest_contact(contacts, v, dt, half):
@@ -290,15 +286,16 @@ def deepest_contact(contacts, v, dt, half):
     What moves fast may go as far in during a step as the bodies move in it: that part does not count.  Raises Diverged
     where a velocity is no number.
     """
-    deepest, share, fastest, least = -1, 0.0, np.max(np.abs(v)), np.min(half)
+    deepest, share, fastest, least = -1, 0.0, np.max(np.abs(v)), smallest_halves(half)
+    smallest = np.min(least)
     if not np.isfinite(fastest):
         raise Diverged("the largest velocity of a body [m/s]", fastest, "take shorter steps, substeps or more sweeps")
     for k in range(contacts.a.size):
         sunk = -contacts.gap[k] - 2.0 * dt * fastest
-        if sunk > share * least:                                         # or it is no deeper than the deepest so far
-            size = smaller_half(contacts, k, half)
-            if sunk > share * size:
-                deepest, share = k, sunk / size
+        if sunk > share * smallest:                                      # otherwise it is not the deepest
+            this = sunk / smaller_half(contacts, k, least)
+            if this > share:
+                deepest, share = k, this
     return deepest, share
 
 
