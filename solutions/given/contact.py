@@ -15,12 +15,14 @@ from ..contact import (
     velocity_sweep_2d,
 )
 from ..support.arms import (
+    add_push,
+    apply_impulses,
     apply_impulses_2d,
     arms_2d,
     arms_3d,
     fallen_on,
+    find_push,
     largest_change,
-    loads,
     move,
     move_2d,
     normal_velocities_2d,
@@ -33,12 +35,15 @@ from ..support.kept_contacts import (
     begin_ways,
     forget_deep,
     have_moved,
+    leave_places,
     moved_pairs,
+    of_moved,
     places_in,
     replace_contacts,
     replace_in_plane,
     unknown_ways,
     with_kept,
+    without_gone,
 )
 from ..support.lanes import (
     AIM,
@@ -61,14 +66,18 @@ from ..support.lanes import (
     V_A,
     V_B,
     WIDE,
+    WORK_ROWS,
     contact_velocity,
     gaps_and_impulses,
     in_any_order,
     lanes_for,
+    leave_lanes,
+    number_of_threads,
     pushed,
     put_contacts,
     put_three,
     read_velocities,
+    this_thread,
     three,
     turned,
     write_velocities,
@@ -89,51 +98,61 @@ def separation_speeds(contacts, pile):
     return speeds
 
 
-def contact_targets(gap, load, fastest, dt, pile):
+def contact_targets(gap, J, contacts, arms, fastest, dt, pile):
     """Given.  (aim, give), each (m,), of soft_contact for all contacts, of which none parts faster than its `fastest`.
 
-    A contact that already carries J_n pushes bodies apart with aim − give k_n J_n.  load: k_n J_n.  All (m,) [m/s].
+    A contact that already carries J_n pushes bodies apart with aim − give k_n J_n.  fastest (m,) [m/s], J (m, 2).
     """
     aim, give = np.empty(gap.size), np.empty(gap.size)
     for k in range(gap.size):
         aim[k], give[k] = soft_contact(gap[k], pile.hertz, pile.zeta, dt)
-        aim[k] = min(aim[k], fastest[k] + give[k] * load[k])
+        J_n = J[k, 0] * contacts.n[k, 0] + J[k, 1] * contacts.n[k, 1]
+        aim[k] = min(aim[k], fastest[k] + give[k] * arms.k_n[k] * J_n)
     return aim, give
 
 
-def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, searched):
-    """Given.  (contacts, J (m, d) [N s], new, J_new, at, changed) at the beginning of a step.
+def follow(gap, aim, give, u_n, h):
+    """Given.  The gaps after h with the velocities u_n, and targets that push nothing apart, (m,), in place."""
+    for k in range(gap.size):
+        gap[k] += h * u_n[k]
+        aim[k], give[k] = min(aim[k], 0.0), 0.0
 
-    Contacts of pairs of which a body has moved are found anew.  The others are kept, with the gaps that they have now.
-    Where the same bodies touch in as many points as before, and their pairs have not been `searched` anew, new contacts
-    take the places `at` of the old ones in `known` and J.  Otherwise all have changed, and `new` are all contacts.
+
+def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, searched):
+    """Given.  (new, J_new (m, d) [N s], at, left, changed): contacts of pairs of which a body has moved.
+
+    Where no pair touches in more points than before, and pairs have not been `searched` anew, the new contacts take the
+    places `at` of old ones in `known` and J, after all old ones of these bodies, with the numbers `left`, have left.
+    Otherwise all places have changed.
     """
     new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
-    J_new = kept_impulses(new, known, J, pile.margin)
+    J_new, left, (at, whole) = kept_impulses(new, known, J, pile.margin), of_moved(known, moved), places_in(known, new)
     begin_ways(ways, moved)
-    at, whole = places_in(known, new, moved)
-    if whole and not searched:
+    changed = searched or not whole
+    if not changed:
+        leave_places(known, known.gap, J, left)
         replace_contacts(known, J, at, new, J_new)
-        return known, J, new, J_new, at, False
-    contacts, J = with_kept(known, J, new, J_new, moved)
-    return contacts, J, contacts, J, np.arange(contacts.a.size), True
+    return new, J_new, at, left, changed
 
 
-def _substep_2d(x, q, v, omega, J, gap, contacts, arms, fastest, ways, h, pile):
-    """Given.  (x, q, v, omega, J, gap) after h in the plane, and the largest velocity that the sweep at rest changed.
+def _substep_2d(x, q, v, omega, push, spin, J, gap, contacts, arms, fastest, ways, h, pile):
+    """Given.  (x, q, v, omega, J) after h in the plane, and the largest velocity that the sweep at rest changed.
 
-    Gravity and the last impulses; a sweep of soft contacts; motion; a sweep at rest, which takes back the velocity that
-    only served to push bodies apart.
+    Gravity and the last impulses, which change velocities by `push` and `spin`; a sweep of soft contacts; motion; a
+    sweep at rest, which takes back the velocity that only served to push bodies apart.  push, spin and gap change in
+    place.
     """
-    aim, give = contact_targets(gap, loads(J, contacts, arms), fastest, h, pile)
     v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), float_copy(omega)
-    apply_impulses_2d(v, omega, J, contacts, arms, pile.inv_mass, pile.inv_inertia)
+    add_push(v, push)
+    add_push(omega, spin)
+    aim, give = contact_targets(gap, J, contacts, arms, fastest, h, pile)
     v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
     (x, q), before = move_2d(x, q, v, omega, ways, h), v
-    gap = gap + h * normal_velocities_2d(v, omega, contacts, arms)
-    aim, give = np.minimum(aim, 0.0), np.zeros(aim.size)
+    follow(gap, aim, give, normal_velocities_2d(v, omega, contacts, arms), h)
     v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
-    return x, q, v, omega, J, gap, largest_change(v, before)
+    find_push(v, push)
+    find_push(omega, spin)
+    return x, q, v, omega, J, largest_change(v, before)
 
 
 def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
@@ -148,7 +167,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
-    order, gap, found = np.arange(contacts.a.size), contacts.gap, contacts.gap
+    order, gap, found, push, spin = np.arange(contacts.a.size), contacts.gap, contacts.gap, v, omega
     for _ in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
@@ -157,106 +176,106 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
             if searched:
                 wide_low, wide_high = low - pile.margin, high + pile.margin
                 pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
-            contacts, J_found, new, J_new, at, changed = _found_anew(
-                find_contacts, x, turn, pairs, moved, with_gaps(contacts, gap, order), put_back(J, order), ways, pile,
-                searched)
-            allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
+            J_known = put_back(J, order)
+            new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J_known, ways,
+                                                        pile, searched)
+            allowed = check_overlap(new, v, dt, pile.half, allowed, residual)
             if changed:
+                contacts, J_known = with_kept(with_gaps(contacts, gap, order), J_known, new, J_new, moved)
                 order = spread_order(contacts.a.size)
                 place = places_of(order)
-                spread, J = reordered(contacts, order), sorted_rows(J_found, order)
+                spread, J = reordered(contacts, order), sorted_rows(J_known, order)
                 gap, fastest = spread.gap, separation_speeds(spread, pile)
                 arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
             else:
                 arms_new = arms_2d(x, pile.inv_mass, pile.inv_inertia, new)
+                leave_places(spread, gap, J, place[left])
                 replace_in_plane(spread, gap, J, arms, place[at], new, J_new, arms_new)
-        found = gap
+            push, spin = np.zeros(v.shape), np.zeros(omega.size)
+            apply_impulses_2d(push, spin, J, spread, arms, pile.inv_mass, pile.inv_inertia)
+        found = gap.copy()
         forget_deep(ways, spread, gap)
         for _ in range(pile.substeps):
-            x, q, v, omega, J, gap, residual = _substep_2d(x, q, v, omega, J, gap, spread, arms, fastest, ways, h, pile)
+            x, q, v, omega, J, residual = _substep_2d(x, q, v, omega, push, spin, J, gap, spread, arms, fastest, ways,
+                                                      h, pile)
     check_end(x, v, dt)
-    return PileState(x, q, v, omega, with_gaps(contacts, found, order), put_back(J, order))
+    return PileState(x, q, v, omega, *without_gone(with_gaps(contacts, found, order), put_back(J, order)))
 
 
-def _aim_eight(s, h, pile):
-    """Given.  The targets of a group of contacts, and the velocities after their last impulses, in place."""
+def _aim_eight(s, w, h, pile):
+    """Given.  The targets of a group of contacts, as contact_targets sets them, in place."""
     for k in range(WIDE):
-        n, J = three(s, NORMAL, k), three(s, IMPULSE, k)
         aim, give = soft_contact(s[WIDE * GAP + k], pile.hertz, pile.zeta, h)
-        s[WIDE * AIM + k] = min(aim, s[WIDE * FASTEST + k] + give * s[WIDE * K_N + k] * dot(n, J))
-        s[WIDE * GIVE + k] = give
-        put_three(s, V_A, k, pushed(s, V_A, MASS_A, k, 1.0, J))
-        put_three(s, OMEGA_A, k, turned(s, OMEGA_A, INERTIA_A, ARM_A, k, 1.0, J))
-        put_three(s, V_B, k, pushed(s, V_B, MASS_B, k, -1.0, J))
-        put_three(s, OMEGA_B, k, turned(s, OMEGA_B, INERTIA_B, ARM_B, k, -1.0, J))
+        load = s[WIDE * K_N + k] * dot(three(s, NORMAL, k), three(s, IMPULSE, k))
+        w[WIDE * AIM + k], w[WIDE * GIVE + k] = min(aim, s[WIDE * FASTEST + k] + give * load), give
 
 
-def _visit_eight(s, mu):
+def _visit_eight(s, w, mu):
     """Given.  Visit a group of contacts, as velocity_sweep visits one, in place."""
     for k in range(WIDE):
-        n, old, u = three(s, NORMAL, k), three(s, IMPULSE, k), contact_velocity(s, k)
-        k_n, give, J_n = s[WIDE * K_N + k], s[WIDE * GIVE + k], dot(n, old)
-        J_n += (s[WIDE * AIM + k] - dot(n, u) - give * k_n * J_n) / (k_n * (1.0 + give))
+        n, old, u = three(s, NORMAL, k), three(s, IMPULSE, k), contact_velocity(s, w, k)
+        k_n, give, J_n = s[WIDE * K_N + k], w[WIDE * GIVE + k], dot(n, old)
+        J_n += (w[WIDE * AIM + k] - dot(n, u) - give * k_n * J_n) / (k_n * (1.0 + give))
         J_n = 0.0 if J_n <= 0.0 else J_n                                 # a NaN stays one
         stick = plus(old, -1.0 / s[WIDE * K_T + k], u)
         J = plus(friction_disc(plus(stick, -dot(n, stick), n), mu * J_n if J_n > 0.0 else 0.0), J_n, n)
         put_three(s, IMPULSE, k, J)
         J = minus(J, old)
-        put_three(s, V_A, k, pushed(s, V_A, MASS_A, k, 1.0, J))
-        put_three(s, OMEGA_A, k, turned(s, OMEGA_A, INERTIA_A, ARM_A, k, 1.0, J))
-        put_three(s, V_B, k, pushed(s, V_B, MASS_B, k, -1.0, J))
-        put_three(s, OMEGA_B, k, turned(s, OMEGA_B, INERTIA_B, ARM_B, k, -1.0, J))
+        put_three(w, V_A, k, pushed(s, w, V_A, MASS_A, k, 1.0, J))
+        put_three(w, OMEGA_A, k, turned(s, w, OMEGA_A, INERTIA_A, ARM_A, k, 1.0, J))
+        put_three(w, V_B, k, pushed(s, w, V_B, MASS_B, k, -1.0, J))
+        put_three(w, OMEGA_B, k, turned(s, w, OMEGA_B, INERTIA_B, ARM_B, k, -1.0, J))
 
 
-def _follow_eight(s, h):
+def _follow_eight(s, w, h):
     """Given.  The gaps of a group of contacts after h, and targets that push nothing apart, in place."""
     for k in range(WIDE):
-        s[WIDE * GAP + k] += h * dot(three(s, NORMAL, k), contact_velocity(s, k))
-        s[WIDE * AIM + k], s[WIDE * GIVE + k] = min(s[WIDE * AIM + k], 0.0), 0.0
+        gap = s[WIDE * GAP + k]
+        s[WIDE * GAP + k] = gap + h * dot(three(s, NORMAL, k), contact_velocity(s, w, k))
+        w[WIDE * AIM + k], w[WIDE * GIVE + k] = min(-gap / h, 0.0), 0.0
 
 
-def _press_in_lanes(v, omega, lanes, h, pile):
-    """Given.  Set the targets of all contacts, and apply their last impulses, in place."""
+SIDE_BY_SIDE = contact_targets, follow, _aim_eight, _visit_eight, _follow_eight  # their loops: vector instructions
+
+
+def _sweep_in_lanes(v, omega, lanes, h, pile):
+    """Given.  Set the targets of all contacts, and visit them, in place."""
+    work = np.empty((number_of_threads(), WIDE * WORK_ROWS))
     for turn in range(lanes.turns.size - 1):
         for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
-            s = lanes.rows[group]
-            read_velocities(s, v, omega, lanes, group)
-            _aim_eight(s, h, pile)
-            write_velocities(s, v, omega, lanes, group)
-
-
-def _sweep_in_lanes(v, omega, lanes, pile):
-    """Given.  Visit all contacts, in place."""
-    for turn in range(lanes.turns.size - 1):
-        for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
-            s = lanes.rows[group]
-            read_velocities(s, v, omega, lanes, group)
-            _visit_eight(s, pile.mu)
-            write_velocities(s, v, omega, lanes, group)
+            s, w, bodies = lanes.rows[group], work[this_thread()], lanes.bodies[group]
+            read_velocities(w, v, omega, bodies)
+            _aim_eight(s, w, h, pile)
+            _visit_eight(s, w, pile.mu)
+            write_velocities(w, v, omega, bodies, lanes.number[group])
 
 
 def _rest_in_lanes(before, spin, v, omega, lanes, h, pile):
     """Given.  Let the gaps follow the velocities `before` and `spin`, and visit all contacts at rest, in place."""
+    work = np.empty((number_of_threads(), WIDE * WORK_ROWS))
     for turn in range(lanes.turns.size - 1):
         for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
-            s = lanes.rows[group]
-            read_velocities(s, before, spin, lanes, group)
-            _follow_eight(s, h)
-            read_velocities(s, v, omega, lanes, group)
-            _visit_eight(s, pile.mu)
-            write_velocities(s, v, omega, lanes, group)
+            s, w, bodies = lanes.rows[group], work[this_thread()], lanes.bodies[group]
+            read_velocities(w, before, spin, bodies)
+            _follow_eight(s, w, h)
+            read_velocities(w, v, omega, bodies)
+            _visit_eight(s, w, pile.mu)
+            write_velocities(w, v, omega, bodies, lanes.number[group])
 
 
-def _substep(x, q, v, omega, lanes, ways, turn, h, pile):
-    """Given.  (x, q, v, omega) and the largest change, as _substep_2d returns them, in space; lanes change in place.
+def _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile):
+    """Given.  (x, q, v, omega) and the largest change, as _substep_2d returns them, in space.
 
-    turn: the axes of the bodies.
+    turn: the axes of the bodies.  push, spin and lanes change in place.
     """
     v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), turn_freely(turn, omega, pile.inv_inertia, h)
-    _press_in_lanes(v, omega, lanes, h, pile)
-    _sweep_in_lanes(v, omega, lanes, pile)
+    add_push(v, push)
+    add_push(omega, spin)
+    _sweep_in_lanes(v, omega, lanes, h, pile)
     (x, q), before = move(x, q, v, omega, ways, h), v.copy()
     _rest_in_lanes(before, omega.copy(), v, omega, lanes, h, pile)
+    find_push(v, push)
+    find_push(omega, spin)
     return x, q, v, omega, largest_change(v, before)
 
 
@@ -269,7 +288,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
     (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
-    gap, found, room = contacts.gap, contacts.gap, np.empty((0, WIDE * ROWS))
+    gap, found, room, push, spin = contacts.gap, contacts.gap, np.empty((0, WIDE * ROWS)), v, omega
     for _ in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
@@ -278,22 +297,26 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
             if searched:
                 wide_low, wide_high = low - pile.margin, high + pile.margin
                 pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
-            contacts, J, new, J_new, at, changed = _found_anew(find_contacts, x, turn, pairs, moved,
-                                                               with_gap(contacts, gap), J, ways, pile, searched)
-            allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-            gap, inv_inertia = contacts.gap, world_inertia(turn, pile.inv_inertia)
+            contacts, inv_inertia = with_gap(contacts, gap), world_inertia(turn, pile.inv_inertia)
+            new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J, ways, pile,
+                                                        searched)
+            allowed = check_overlap(new, v, dt, pile.half, allowed, residual)
             if changed:
-                lanes = lanes_for(contacts, pile.half.shape[0], room)
-                room = lanes.rows
-            put_contacts(lanes, at, new, J_new, arms_3d(x, pile.inv_mass, inv_inertia, new),
-                         separation_speeds(new, pile), pile.inv_mass, inv_inertia)
+                contacts, J = new, J_new = with_kept(contacts, J, new, J_new, moved)
+                lanes, at = lanes_for(contacts, pile.half.shape[0], room), np.arange(contacts.a.size)
+                room, push, spin = lanes.rows, np.zeros(v.shape), np.zeros(v.shape)
+            else:
+                leave_lanes(push, spin, lanes, contacts, left)
+            gap, arms = contacts.gap, arms_3d(x, pile.inv_mass, inv_inertia, new)
+            put_contacts(lanes, at, new, J_new, arms, separation_speeds(new, pile), pile.inv_mass, inv_inertia)
+            apply_impulses(push, spin, J_new, new, arms, pile.inv_mass, inv_inertia)
         found = gap
         forget_deep(ways, contacts, gap)
         for _ in range(pile.substeps):
-            x, q, v, omega, residual = _substep(x, q, v, omega, lanes, ways, turn, h, pile)
+            x, q, v, omega, residual = _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile)
         gap, J = gaps_and_impulses(lanes)
     check_end(x, v, dt)
-    return PileState(x, q, v, omega, with_gap(contacts, found), J)
+    return PileState(x, q, v, omega, *without_gone(with_gap(contacts, found), J))
 
 
 def pile_trajectory(advance, bounds, find_contacts, state, dt, steps, pile):

@@ -105,17 +105,6 @@ def normal_velocities(v, omega, c, arms):
     return u_n
 
 
-def loads(J, c, arms):
-    """k_n J_n (m,) [m/s] of all contacts: by how much their impulses change the velocity with which they part."""
-    load = np.empty(c.a.size)
-    for k in range(c.a.size):
-        J_n = 0.0
-        for e in range(J.shape[1]):
-            J_n += J[k, e] * c.n[k, e]
-        load[k] = arms.k_n[k] * J_n
-    return load
-
-
 def fallen_on(v, inv_mass, gravity, dt):
     """v + dt g of all bodies that can move."""
     v = float_copy(v)
@@ -123,6 +112,21 @@ def fallen_on(v, inv_mass, gravity, dt):
         for c in range(v.shape[1]):
             v[i, c] += dt * gravity[c] if inv_mass[i] > 0.0 else 0.0
     return v
+
+
+def add_push(v, push):
+    """Add push to v, and write what v was into push, in place.  One shape, whose rows lie side by side."""
+    total, kept = v.ravel(), push.ravel()
+    for k in range(total.size):
+        before = total[k]
+        total[k], kept[k] = before + kept[k], before
+
+
+def find_push(v, push):
+    """Write what has been added to v since add_push into push, in place."""
+    total, kept = v.ravel(), push.ravel()
+    for k in range(total.size):
+        kept[k] = total[k] - kept[k]
 
 
 def largest_change(v, before):
@@ -193,3 +197,6 @@ def turn_quaternions(q, omega, dt):
         size = np.sqrt(w_new * w_new + dot(a_new, a_new))
         q[i, 0], q[i, 1], q[i, 2], q[i, 3] = w_new / size, a_new[0] / size, a_new[1] / size, a_new[2] / size
     return q
+
+
+SIDE_BY_SIDE = add_push, find_push       # their loops become vector instructions; their arrays share no memory

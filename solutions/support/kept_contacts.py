@@ -15,6 +15,7 @@ from .contact_points import first_of, room_for
 KEPT = 2e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
 DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-]
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
+GONE = 1e30                  # gap of a contact that is gone and keeps its place [m]
 
 
 class Ways(NamedTuple):
@@ -68,9 +69,8 @@ def moved_pairs(pairs, moved):
     first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
     for i in range(first.size - 1):
         for k in range(pairs.first[i], pairs.first[i + 1]):
-            if moved[i] or moved[pairs.partner[k]]:
-                partner[m] = pairs.partner[k]
-                m += 1
+            partner[m] = pairs.partner[k]                                # a branch here would be guessed wrong often
+            m += moved[i] | moved[pairs.partner[k]]
         first[i + 1] = m
     return Pairs(first, partner[:m])
 
@@ -84,12 +84,12 @@ def copy_contact(c, J, m, old, J_old, k):
 
 
 def with_kept(old, J_old, new, J_new, moved):
-    """Return (ContactSet, J (m, d)): the new contacts, and those old ones of which neither body has moved."""
+    """Return (ContactSet, J (m, d)): the new contacts, and the old ones, not gone, of which neither body has moved."""
     n, d, m = new.first.size - 1, J_new.shape[1], 0
     c, J = room_for(n, old.a.size + new.a.size, d), np.empty((old.a.size + new.a.size, d))
     for i in range(n):
         for k in range(old.first[i], old.first[i + 1]):
-            if not (moved[i] or moved[old.b[k]]):
+            if not (moved[i] or moved[old.b[k]]) and old.gap[k] < GONE:
                 m = copy_contact(c, J, m, old, J_old, k)
         for k in range(new.first[i], new.first[i + 1]):
             m = copy_contact(c, J, m, new, J_new, k)
@@ -97,18 +97,14 @@ def with_kept(old, J_old, new, J_new, moved):
     return first_of(c, m), J[:m]
 
 
-def places_in(old, new, moved):
+def places_in(old, new):
     """Return (at (m,), whole): the old contact whose place each new one takes, one of the same two bodies.
 
-    whole: whether each new contact has such a place, and each old one of a body that has moved is replaced.
+    whole: whether each new contact has such a place.
     """
     at = np.empty(new.a.size, np.int64)
     for i in range(new.first.size - 1):
-        begin, end, left = old.first[i], old.first[i + 1], new.first[i + 1] - new.first[i]
-        for k in range(begin, end):
-            left -= moved[i] or moved[old.b[k]]
-        if left != 0:
-            return at, False
+        begin, end = old.first[i], old.first[i + 1]
         k = begin
         for s in range(new.first[i], new.first[i + 1]):
             if s > new.first[i] and new.b[s] != new.b[s - 1]:            # those of one pair lie side by side
@@ -120,6 +116,34 @@ def places_in(old, new, moved):
             at[s] = k
             k += 1
     return at, True
+
+
+def of_moved(c, moved):
+    """Return the numbers of the contacts of bodies that have moved."""
+    found, m = np.empty(c.a.size, np.int64), 0
+    for k in range(c.a.size):
+        found[m] = k
+        m += moved[c.a[k]] | moved[c.b[k]]
+    return found[:m]
+
+
+def leave_places(c, gap, J, left):
+    """Mark the contacts with the numbers `left` as gone, in place: far apart, and without an impulse."""
+    for k in left:
+        gap[k] = GONE
+        for e in range(J.shape[1]):
+            c.p[k, e], J[k, e] = GONE, 0.0
+
+
+def without_gone(c, J):
+    """Return (ContactSet, J (m, d)) of the contacts that are not gone."""
+    left, J_left, m = room_for(c.first.size - 1, c.a.size, J.shape[1]), np.empty(J.shape), 0
+    for i in range(c.first.size - 1):
+        for k in range(c.first[i], c.first[i + 1]):
+            if c.gap[k] < GONE:
+                m = copy_contact(left, J_left, m, c, J, k)
+        left.first[i + 1] = m
+    return first_of(left, m), J_left[:m]
 
 
 def replace_contacts(c, J, at, new, J_new):

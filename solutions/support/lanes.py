@@ -9,19 +9,33 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .tuples import across, minus, plus
+from .kept_contacts import GONE
+from .tuples import across, minus, plus, put, row
 
 WIDE = 8                     # contacts of a group [-]
 SPARE = 8                    # groups for which one more row is asked for [-]: new memory in each step takes time
 COLOURS = 62                 # [-]; a contact for which none is free is a group of its own
-in_any_order = range         # over the groups of a turn; several threads may share them
+in_any_order = range         # over the groups of a turn; threads may share them
 
 # Rows of a group: what begins a line of three is a vector, an inertia has six rows, and a number has one.
 NORMAL, ARM_A, ARM_B, IMPULSE = 0, 3, 6, 9
 INERTIA_A, INERTIA_B = 12, 18
-MASS_A, MASS_B, K_N, K_T, FASTEST, GAP, AIM, GIVE = 24, 25, 26, 27, 28, 29, 30, 31
-V_A, OMEGA_A, V_B, OMEGA_B = 32, 35, 38, 41              # of the bodies of a contact, while its group is visited
-ROWS = 44
+MASS_A, MASS_B, K_N, K_T, FASTEST, GAP = 24, 25, 26, 27, 28, 29
+ROWS = 30
+
+# Rows of the group that is visited, and that no other group needs
+V_A, OMEGA_A, V_B, OMEGA_B, AIM, GIVE = 0, 3, 6, 9, 12, 13
+WORK_ROWS = 14
+
+
+def number_of_threads():
+    """How many threads share the groups of a turn."""
+    return 1
+
+
+def this_thread():
+    """The number of the thread that asks, from zero."""
+    return 0
 
 
 class Lanes(NamedTuple):
@@ -76,7 +90,7 @@ def lanes_for(c, moving, room):
     total, turns = groups[-1], np.append(groups[:COLOURS], np.arange(groups[COLOURS], groups[-1] + 1))
     if room.shape[0] < total:
         room = np.empty((total + total // SPARE, WIDE * ROWS))
-    lanes = Lanes(np.zeros(total, np.int64), np.empty((total, 2 * WIDE), np.uint32), room, np.empty(m, np.int64),
+    lanes = Lanes(np.zeros(total, np.int64), np.zeros((total, 2 * WIDE), np.uint32), room, np.empty(m, np.int64),
                   np.unique(turns))
     for k in range(m):
         group = groups[colour[k]]
@@ -117,6 +131,22 @@ def put_contacts(lanes, at, c, J, arms, fastest, inv_mass, inv_inertia):
         s[WIDE * GAP + i], s[WIDE * FASTEST + i] = c.gap[k], fastest[k]
 
 
+def leave_lanes(push, spin, lanes, c, left):
+    """Mark the contacts with the numbers `left` as gone, in place.
+
+    What their impulses do to velocities is taken out of `push` and `spin`, (n + p, 3).
+    """
+    for k in left:
+        s, i, a, b = lanes.rows[lanes.place[k] // WIDE], lanes.place[k] % WIDE, c.a[k], c.b[k]
+        J = three(s, IMPULSE, i)
+        put(push, a, plus(row(push, a), -s[WIDE * MASS_A + i], J))
+        put(push, b, plus(row(push, b), s[WIDE * MASS_B + i], J))
+        put(spin, a, minus(row(spin, a), inertia_times(s, INERTIA_A, i, across(three(s, ARM_A, i), J))))
+        put(spin, b, plus(row(spin, b), 1.0, inertia_times(s, INERTIA_B, i, across(three(s, ARM_B, i), J))))
+        put_three(s, IMPULSE, i, (0.0, 0.0, 0.0))
+        s[WIDE * GAP + i] = GONE
+
+
 def gaps_and_impulses(lanes):
     """(gap (m,), J (m, 3)) of all contacts, in the order of the ContactSet."""
     gap, J = np.empty(lanes.place.size), np.empty((lanes.place.size, 3))
@@ -128,35 +158,38 @@ def gaps_and_impulses(lanes):
     return gap, J
 
 
-def read_velocities(s, v, omega, lanes, group):
-    """Write the velocities of the bodies of a group side by side into its rows s, in place."""
-    for k in range(lanes.number[group]):
-        a, b = lanes.bodies[group, k], lanes.bodies[group, WIDE + k]
+def read_velocities(w, v, omega, bodies):
+    """Write the velocities of the bodies of a group side by side into the rows w, in place."""
+    for k in range(WIDE):
+        a, b = bodies[k], bodies[WIDE + k]
         for e in range(3):
-            s[WIDE * (V_A + e) + k], s[WIDE * (OMEGA_A + e) + k] = v[a, e], omega[a, e]
-            s[WIDE * (V_B + e) + k], s[WIDE * (OMEGA_B + e) + k] = v[b, e], omega[b, e]
+            w[WIDE * (V_A + e) + k], w[WIDE * (OMEGA_A + e) + k] = v[a, e], omega[a, e]
+            w[WIDE * (V_B + e) + k], w[WIDE * (OMEGA_B + e) + k] = v[b, e], omega[b, e]
 
 
-def write_velocities(s, v, omega, lanes, group):
-    """Write back the velocities of the bodies of a group, in place."""
-    for k in range(lanes.number[group]):
-        a, b = lanes.bodies[group, k], lanes.bodies[group, WIDE + k]
+def write_velocities(w, v, omega, bodies, number):
+    """Write back the velocities of the bodies of a group of so many contacts, in place."""
+    for k in range(number):
+        a, b = bodies[k], bodies[WIDE + k]
         for e in range(3):
-            v[a, e], omega[a, e] = s[WIDE * (V_A + e) + k], s[WIDE * (OMEGA_A + e) + k]
-            v[b, e], omega[b, e] = s[WIDE * (V_B + e) + k], s[WIDE * (OMEGA_B + e) + k]
+            v[a, e], omega[a, e] = w[WIDE * (V_A + e) + k], w[WIDE * (OMEGA_A + e) + k]
+            v[b, e], omega[b, e] = w[WIDE * (V_B + e) + k], w[WIDE * (OMEGA_B + e) + k]
 
 
-def pushed(s, v, mass, k, sign, J):
+def pushed(s, w, v, mass, k, sign, J):
     """The velocity in row v of contact k after an impulse sign J; the inverse mass is in row `mass`."""
-    return plus(three(s, v, k), sign * s[WIDE * mass + k], J)
+    return plus(three(w, v, k), sign * s[WIDE * mass + k], J)
 
 
-def turned(s, omega, inertia, arm, k, sign, J):
+def turned(s, w, omega, inertia, arm, k, sign, J):
     """The angular velocity in row `omega` after the same impulse; its arm and I⁻¹ are in rows `arm` and `inertia`."""
-    return plus(three(s, omega, k), sign, inertia_times(s, inertia, k, across(three(s, arm, k), J)))
+    return plus(three(w, omega, k), sign, inertia_times(s, inertia, k, across(three(s, arm, k), J)))
 
 
-def contact_velocity(s, k):
+def contact_velocity(s, w, k):
     """The velocity of a's point of contact k relative to b's."""
-    of_a = plus(three(s, V_A, k), 1.0, across(three(s, OMEGA_A, k), three(s, ARM_A, k)))
-    return minus(of_a, plus(three(s, V_B, k), 1.0, across(three(s, OMEGA_B, k), three(s, ARM_B, k))))
+    of_a = plus(three(w, V_A, k), 1.0, across(three(w, OMEGA_A, k), three(s, ARM_A, k)))
+    return minus(of_a, plus(three(w, V_B, k), 1.0, across(three(w, OMEGA_B, k), three(s, ARM_B, k))))
+
+
+SIDE_BY_SIDE = (read_velocities,)        # its loop becomes vector instructions; its arrays share no memory

@@ -75,16 +75,16 @@ fault("velocity_sweep", "mu * J_n if J_n > 0.0 else 0.0", "mu * dot(n, old) if J
       "in space friction is limited by the old J_n")
 fault("_aim_eight", "min(aim, s[WIDE * FASTEST + k]", "max(aim, s[WIDE * FASTEST + k]",
       "in a pile in space bodies part as fast as their overlap wants", of="given.contact")
-fault("_aim_eight", "s[WIDE * GIVE + k] = give", "s[WIDE * GIVE + k] = 0.0",
+fault("_aim_eight", "give * load), give", "give * load), 0.0",
       "in a pile in space contacts are stiff", of="given.contact")
 fault("_visit_eight", "- give * k_n * J_n)", ")",
       "in a pile in space contacts do not give under their load", of="given.contact")
 fault("_visit_eight", "mu * J_n if J_n > 0.0", "mu * 0.8 * J_n if J_n > 0.0",
       "in a pile in space friction is a fifth too small", of="given.contact")
-fault("_follow_eight", "min(s[WIDE * AIM + k], 0.0), 0.0", "s[WIDE * AIM + k], s[WIDE * GIVE + k]",
+fault("_follow_eight", "min(-gap / h, 0.0), 0.0", "w[WIDE * AIM + k], w[WIDE * GIVE + k]",
       "in a pile in space the velocity that pushes bodies apart stays", of="given.contact")
-fault("_follow_eight", "+= h *", "+= 2.0 * h *", "gaps change twice as fast as bodies move", of="given.contact")
-fault("turned", "plus(three(s, omega, k), sign,", "plus(three(s, omega, k), 1.0,",
+fault("_follow_eight", "gap + h *", "gap + 2.0 * h *", "gaps change twice as fast as bodies move", of="given.contact")
+fault("turned", "plus(three(w, omega, k), sign,", "plus(three(w, omega, k), 1.0,",
       "both bodies of a contact turn the same way", of="support.lanes")
 fault("inertia_times", "xy * b[0] + s", "xz * b[0] + s", "one product of inertia stands for another",
       of="support.lanes")
@@ -95,5 +95,18 @@ fault("put_contacts", "s[WIDE * (ARM_B + e) + i] = arms.r_a[k, e], arms.r_b[k, e
       of="support.lanes")
 fault("places_in", "old.b[k] != new.b[s]:", "False:", "a new contact takes the place of one with another body",
       of="support.kept_contacts")
+fault("leave_places", "gap[k] = GONE", "pass", "a contact that is gone still pushes", of="support.kept_contacts")
+fault("leave_lanes", "-s[WIDE * MASS_A + i], J", "0.0, J",
+      "what a contact did to velocities stays when it is gone", of="support.lanes")
+fault("leave_lanes", "put_three(s, IMPULSE, i, (0.0, 0.0, 0.0))", "pass",
+      "the impulse of a contact that is gone stays in its lane", of="support.lanes")
+fault("add_push", "before + kept[k], before", "before, before", "no substep begins with the last impulses",
+      of="support.arms")
+fault("find_push", "total[k] - kept[k]", "0.5 * (total[k] - kept[k])",
+      "a substep begins with half of what the last impulses did", of="support.arms")
+fault("follow", "gap[k] += h * u_n[k]", "gap[k] += 2.0 * h * u_n[k]",
+      "in the plane gaps change twice as fast as bodies move", of="given.contact")
+fault("follow", "min(aim[k], 0.0), 0.0", "aim[k], give[k]",
+      "in the plane the velocity that pushes bodies apart stays", of="given.contact")
 fault("replace_in_plane", "gap[i], arms.k_n[i]", "_, arms.k_n[i]", "a contact that is found anew keeps its old gap",
       of="support.kept_contacts")

@@ -93,17 +93,20 @@ def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d, searched):
     new, pairs, turn = found(d, x, q, pile)
     J, moved = rng.normal(size=old.p.shape), np.array([True, False, False, False])
     ways = kept_contacts.unknown_ways(pile.half, pile.planes.shape[0], pile.margin)
-    c, J_c, part, J_part, at, changed = contact._found_anew(FIND[d][1], x, turn, pairs, moved, copied(old), J.copy(),
-                                                            ways, pile, searched)
+    c, J_c = copied(old), J.copy()
+    part, J_part, at, left, changed = contact._found_anew(FIND[d][1], x, turn, pairs, moved, c, J_c, ways, pile,
+                                                          searched)
+    assert changed == searched and np.array_equal(left, np.flatnonzero((old.a == 0) | (old.b == 0)))
+    if changed:
+        c, J_c = kept_contacts.with_kept(c, J_c, part, J_part, moved)
     assert np.all(np.diff(c.a) >= 0) and np.array_equal(c.first, np.searchsorted(c.a, np.arange(4)))
     ours, of_old, of_new = ((one.a == 0) | (one.b == 0) for one in (c, old, new))
     for field in ("a", "b", "n", "p", "gap"):
         assert np.array_equal(getattr(c, field)[ours], getattr(new, field)[of_new])
         assert np.array_equal(getattr(c, field)[~ours], getattr(old, field)[~of_old])
-        assert np.array_equal(getattr(c, field)[at], getattr(part, field))
-    assert np.array_equal(J_c[~ours], J[~of_old]) and np.array_equal(J_c[at], J_part)
+        assert changed or np.array_equal(getattr(c, field)[at], getattr(part, field))
+    assert np.array_equal(J_c[~ours], J[~of_old]) and len(at) == len(part.a) == np.sum(ours)
     assert np.array_equal(J_c[ours], contact.kept_impulses(new, old, J, pile.margin)[of_new])
-    assert changed == searched and len(at) == (len(c.a) if searched else np.sum(ours))
 
 
 def contacts_of(bodies):
@@ -117,20 +120,53 @@ def contacts_of(bodies):
 @pytest.mark.parametrize(("then", "now", "at"), [
     ([(0, 1), (0, 1), (0, 3)], [(0, 1), (0, 1), (0, 3)], [0, 1, 2]),
     ([(0, 3), (0, 1), (0, 1)], [(0, 1), (0, 1), (0, 3)], [1, 2, 0]),     # in another order
-    ([(0, 1), (1, 2), (2, 3)], [(0, 1)], [0]),                           # 1–2 and 2–3 have not moved
-    ([(0, 1), (0, 1)], [(0, 1)], None),                                  # one less
+    ([(0, 1), (1, 2), (2, 3)], [(0, 1)], [0]),
+    ([(0, 1), (0, 1)], [(0, 1)], [0]),                                   # one less
+    ([(0, 1)], [], []),
+    ([(0, 1), (1, 2), (1, 3)], [(1, 3)], [2]),
     ([(0, 1)], [(0, 1), (0, 1)], None),                                  # one more
     ([(0, 1)], [(0, 3)], None),                                          # as many, and another body
     ([(0, 1), (0, 1), (0, 3)], [(0, 1), (0, 3), (0, 3)], None),
-    ([(0, 1)], [], None),
     ([], [(0, 1)], None),
     ([], [], []),
 ])
-def test_new_contacts_take_the_places_of_as_many_old_ones_of_the_same_bodies(then, now, at):
-    found, whole = kept_contacts.places_in(contacts_of(then), contacts_of(now), np.array([True, False, False, False]))
+def test_new_contacts_take_the_places_of_old_ones_of_the_same_bodies_if_there_are_enough(then, now, at):
+    found, whole = kept_contacts.places_in(contacts_of(then), contacts_of(now))
     assert whole == (at is not None)
     if whole:
         assert found.tolist() == at
+
+
+def test_contacts_of_bodies_that_have_moved_leave_their_places_and_later_the_set():
+    c, J = contacts_of([(0, 1), (0, 3), (1, 2), (1, 3), (2, 3)]), np.ones((5, 2))
+    left = kept_contacts.of_moved(c, np.array([False, False, True, False]))
+    assert left.tolist() == [2, 4]
+    kept_contacts.leave_places(c, c.gap, J, left)
+    assert c.gap.tolist() == [0.0, 1.0, kept_contacts.GONE, 3.0, kept_contacts.GONE]
+    assert np.all(J[left] == 0.0) and np.all(np.delete(J, left, axis=0) == 1.0)
+    assert not np.any(contact.kept_impulses(contacts_of([(1, 2)]), c, J + 1.0, 10.0))    # no new contact is near them
+    rest, J_rest = kept_contacts.without_gone(c, J)
+    assert rest.a.tolist() == [0, 0, 1] and rest.b.tolist() == [1, 3, 3]
+    assert rest.first.tolist() == [0, 2, 3, 3, 3] and rest.gap.tolist() == [0.0, 1.0, 3.0] and len(J_rest) == 3
+    both, _ = kept_contacts.with_kept(c, J, contacts_of([]), J[:0], np.zeros(4, np.bool_))
+    assert both.b.tolist() == rest.b.tolist()
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_contact_that_is_gone_does_nothing_and_its_place_is_taken_again(d):
+    """The top box of a tower jumps, too low for a new search of pairs, and lands."""
+    state, pile = tower(np.random.default_rng(7), d)
+    v = state.v.copy()
+    v[2, -1] = 1.2
+    advance = contact.advance_pile_2d if d == 2 else contact.advance_pile
+    state, pile = state._replace(v=v), pile._replace(margin=0.1)
+    for steps, touches in ((24, False), (84, True)):
+        kept, anew = advance(*FIND[d], state, DT, steps, pile), state
+        for _ in range(steps):
+            anew = advance(*FIND[d], anew, DT, 1, pile)
+        assert np.any(kept.contacts.b == 2) == touches
+        assert np.max(kept.contacts.gap) < pile.margin and len(kept.J) == len(anew.J)
+        assert np.max(np.abs(kept.x - anew.x)) < 2.0 * kept_contacts.KEPT * 0.1
 
 
 def test_a_way_is_that_of_the_farthest_point_and_a_way_that_is_no_number_has_moved():

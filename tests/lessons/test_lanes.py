@@ -7,9 +7,10 @@ from solutions.given import contact
 from solutions.support import lanes
 from solutions.support.arms import Arms, apply_impulses, normal_velocities, world_inertia
 from solutions.support.contact_points import ContactSet
+from solutions.support.kept_contacts import GONE
 from validate.subject import modules
 
-DT, NO_ROOM = 1.0 / 480.0, np.empty((0, lanes.WIDE * lanes.ROWS))
+DT, NO_ROOM, WORK = 1.0 / 480.0, np.empty((0, lanes.WIDE * lanes.ROWS)), np.empty(lanes.WIDE * lanes.WORK_ROWS)
 COMPILED = pytest.mark.long, pytest.mark.xdist_group("compiled test_contact")
 
 
@@ -67,16 +68,15 @@ def heap(rng, bodies=12, planes=2, m=40):
 
 def each_group(lesson, side_by_side, v, omega, work):
     """Do something with each group and the velocities of its bodies, in place."""
-    for group in range(len(side_by_side.number)):
-        s = side_by_side.rows[group]
-        lesson.read_velocities(s, v, omega, side_by_side, group)
+    for s, bodies, number in zip(side_by_side.rows, side_by_side.bodies, side_by_side.number, strict=False):
+        lesson.read_velocities(WORK, v, omega, bodies)
         work(s)
-        lesson.write_velocities(s, v, omega, side_by_side, group)
+        lesson.write_velocities(WORK, v, omega, bodies, number)
 
 
 @pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=COMPILED)])
 def test_groups_are_visited_as_velocity_sweep_visits_contacts(compiled):
-    """Targets, last impulses, visits and gaps, against functions that know nothing of lanes."""
+    """Targets, visits and gaps, against functions that know nothing of lanes."""
     lesson = modules.bind("contact", compiled=compiled and modules.can_compile())
     rng = np.random.default_rng(8)
     for _ in range(5):
@@ -84,24 +84,45 @@ def test_groups_are_visited_as_velocity_sweep_visits_contacts(compiled):
         side_by_side = lesson.lanes_for(c, 12, NO_ROOM)
         lesson.put_contacts(side_by_side, np.arange(len(J)), c, J, arms, fastest, inv_mass, inv_inertia)
         order = np.concatenate(in_groups(c, side_by_side))
-        sorted_c = contact.reordered(c, order)
-        sorted_arms = Arms(*(array[order] for array in arms))
-        load = contact.loads(J[order], sorted_c, sorted_arms)
-        aim, give = contact.contact_targets(sorted_c.gap, load, fastest[order], DT, pile)
-        apply_impulses(*(kicked := (v.copy(), omega.copy())), J[order], sorted_c, sorted_arms, inv_mass, inv_inertia)
-        swept = contact.velocity_sweep(*kicked, J[order], aim, give, sorted_c, sorted_arms, inv_mass, inv_inertia,
-                                       pile.mu)
-        each_group(lesson, side_by_side, v, omega, lambda s, pile=pile: lesson._aim_eight(s, DT, pile))
-        each_group(lesson, side_by_side, v, omega, lambda s, mu=pile.mu: lesson._visit_eight(s, mu))
+        c, arms = contact.reordered(c, order), Arms(*(array[order] for array in arms))
+        aim, give = targets(c, J[order], arms, fastest[order], pile)
+        swept = contact.velocity_sweep(v, omega, J[order], aim, give, c, arms, inv_mass, inv_inertia, pile.mu)
+
+        def visit(s, pile=pile):
+            lesson._aim_eight(s, WORK, DT, pile)
+            lesson._visit_eight(s, WORK, pile.mu)
+        each_group(lesson, side_by_side, v, omega, visit)
         gap, J = lesson.gaps_and_impulses(side_by_side)
         for ours, theirs in zip((v, omega, J[order]), swept, strict=True):
             assert np.max(np.abs(ours - theirs)) < 1e-12
-        assert np.array_equal(gap, c.gap)
-        each_group(lesson, side_by_side, v, omega, lambda s: lesson._follow_eight(s, DT))
-        gap, _ = lesson.gaps_and_impulses(side_by_side)
-        assert np.max(np.abs(gap - c.gap - DT * normal_velocities(v, omega, c, arms))) < 1e-14
-        swept = contact.velocity_sweep(v, omega, J[order], np.minimum(aim, 0.0), 0.0 * give, sorted_c, sorted_arms,
-                                       inv_mass, inv_inertia, pile.mu)
-        each_group(lesson, side_by_side, v, omega, lambda s, mu=pile.mu: lesson._visit_eight(s, mu))
-        _, J = lesson.gaps_and_impulses(side_by_side)
-        assert np.max(np.abs(J[order] - swept[2])) < 1e-12
+        assert np.array_equal(gap[order], c.gap)
+        before, spin = v.copy(), omega.copy()
+        lesson._rest_in_lanes(before, spin, v, omega, side_by_side, DT, pile)
+        gap, J_rest = lesson.gaps_and_impulses(side_by_side)
+        assert np.max(np.abs(gap[order] - c.gap - DT * normal_velocities(before, spin, c, arms))) < 1e-14
+        swept = contact.velocity_sweep(before, spin, J[order], np.minimum(aim, 0.0), 0.0 * give, c, arms, inv_mass,
+                                       inv_inertia, pile.mu)
+        for ours, theirs in zip((v, omega, J_rest[order]), swept, strict=True):
+            assert np.max(np.abs(ours - theirs)) < 1e-12
+
+
+def targets(c, J, arms, fastest, pile):
+    """(aim, give) of soft_contact for all contacts in space, of which none parts faster than its `fastest`."""
+    aim, give = np.transpose([contact.soft_contact(gap, pile.hertz, pile.zeta, DT) for gap in c.gap])
+    return np.minimum(aim, fastest + give * arms.k_n * np.sum(c.n * J, axis=1)), give
+
+
+@pytest.mark.parametrize("left", [[], [3], [0, 7, 8, 39], list(range(40))])
+def test_contacts_that_leave_take_what_their_impulses_did_with_them(left):
+    c, J, arms, fastest, v, _, inv_mass, inv_inertia, _ = heap(np.random.default_rng(3))
+    side_by_side = lanes.lanes_for(c, 12, NO_ROOM)
+    lanes.put_contacts(side_by_side, np.arange(len(J)), c, J, arms, fastest, inv_mass, inv_inertia)
+    pushes, rest = (np.zeros(v.shape), np.zeros(v.shape)), (np.zeros(v.shape), np.zeros(v.shape))
+    apply_impulses(*pushes, J, c, arms, inv_mass, inv_inertia)
+    lanes.leave_lanes(*pushes, side_by_side, c, np.array(left, np.int64))
+    J[left] = 0.0
+    apply_impulses(*rest, J, c, arms, inv_mass, inv_inertia)
+    assert np.max(np.abs(np.subtract(pushes, rest))) < 1e-13
+    gap, J_left = lanes.gaps_and_impulses(side_by_side)
+    assert np.array_equal(J_left, J) and np.all(gap[left] == GONE)
+    assert np.array_equal(np.delete(gap, left), np.delete(c.gap, left))

@@ -54,8 +54,7 @@ def step_of(lesson, state, pile, contacts, dt):
     spread, J = lesson.reordered(contacts, order), lesson.sorted_rows(J, order)
     arms = lesson.arms_2d(state.x, pile.inv_mass, pile.inv_inertia, spread)
     fastest = lesson.separation_speeds(spread, pile)
-    return Step(contacts, spread, arms, J, *lesson.contact_targets(spread.gap, lesson.loads(J, spread, arms), fastest,
-                                                                   dt, pile))
+    return Step(contacts, spread, arms, J, *lesson.contact_targets(spread.gap, J, spread, arms, fastest, dt, pile))
 
 
 def contacts_of(lesson, state, pile, pairs):
@@ -84,8 +83,8 @@ def profile(lesson, state, pile, dt):
         return Part(name, times, difference(getattr(lesson, of or name), arguments(some), arguments(empty)))
     sweep = both("velocity_sweep_2d (9.16)", 2 * pile.substeps, lambda s: (
         state.v, state.omega, s.J, s.aim, s.give, s.spread, s.arms, pile), "velocity_sweep_2d")
-    aims = both("soft_contact (9.12)", pile.substeps, lambda s: (s.spread.gap, s.aim, s.aim, h, pile),
-                "contact_targets")
+    aims = both("soft_contact (9.12)", pile.substeps, lambda s: (
+        s.spread.gap, s.J, s.spread, s.arms, s.aim, h, pile), "contact_targets")
     gaps = both("gaps that follow the velocities", pile.substeps, lambda s: (
         state.v, state.omega, s.spread, s.arms), "normal_velocities_2d")
     warm = both("impulses of the last step, applied", pile.substeps, lambda s: (

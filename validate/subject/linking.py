@@ -11,14 +11,16 @@ import ctypes
 from contextlib import suppress
 
 from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary, JITCPUCodegen, RuntimeLinker, ll
+from numba.core.cpu import CPUTargetOptions
 from numba.core.environment import lookup_environment
+from numba.core.options import TargetOptions
 
 ENVIRONMENT = "_ZN08NumbaEnv"            # begins the names in machine code of where a function finds Python's objects
 FOR_PYTHON = "_ZN7cpython"               # begins the names of what Python calls
 CALLED_BY_NAME = {"nrt", "multi3"}       # numba's own libraries whose functions are called by their names
 REFUSE = ctypes.cast(ctypes.pythonapi.PyErr_BadArgument, ctypes.c_void_p).value    # raises a TypeError
 LINKED = "linked"                        # kind of what is saved without machine code
-SIDE_BY_SIDE = "_eight"                  # ends the names of functions that compute with eight numbers at once
+SIDE_BY_SIDE: set[str] = set()           # names of functions that compute with several numbers at once
 
 
 class LinkedLibrary(JITCodeLibrary):
@@ -33,10 +35,10 @@ class LinkedLibrary(JITCodeLibrary):
     def _optimize_final_module(self):
         """Leave it to _make_machine_code: what calls this function optimises its own copy.
 
-        Only what computes with eight numbers at once is optimised here: first what it calls becomes part of it, and
+        Only what computes with several numbers at once is optimised here: first what it calls becomes part of it, and
         then its loop becomes vector instructions.
         """
-        if self.name.endswith(SIDE_BY_SIDE):
+        if self.name in SIDE_BY_SIDE:
             for vectorize in (False, True):
                 passes, builder = self.codegen._module_pass_manager(loop_vectorize=vectorize)
                 passes.run(self._final_module, builder)
@@ -106,4 +108,5 @@ def set_env(codegen, name, environment, usual=JITCPUCodegen.set_env):
 def link_only():
     """Let numba make machine code only of functions whose address is asked for."""
     JITCPUCodegen._library_class = LinkedLibrary
+    CPUTargetOptions.noalias = TargetOptions.Mapping("noalias")          # LLVM may know that arrays share no memory
     JITCPUCodegen.create_library, JITCPUCodegen.set_env = create_library, set_env

@@ -13,6 +13,7 @@ import warnings
 from contextlib import suppress
 from functools import cache, cached_property, partial
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -31,28 +32,33 @@ def compiled_twins(module, names, space, cache):
     cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
     its functions call others there.
     """
+    from .linking import SIDE_BY_SIDE
     twins = {}
     for name in names:
         plain = space[name]
         copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
-        inline = "always" if module.__name__.rpartition(".")[2] == INLINED else "never"
-        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, inline)
+        options = {"inline": "always"} if module.__name__.rpartition(".")[2] == INLINED else {}
+        if plain in space.get("SIDE_BY_SIDE", ()):                       # its loop, over arrays that share no memory
+            SIDE_BY_SIDE.add(plain.__qualname__)
+            options["noalias"] = True
+        twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, options)
     return twins
 
 
-def compiled(function, name, cache, inline="never", from_python=False):
+def compiled(function, name, cache, options=MappingProxyType({}), from_python=False):
     """Return the twin of a function, which may be a closure that calls other twins.
 
     name: the same in every process, and no other function's.  numba recognises a function argument in its disk cache
-    by the id that is made from it.    from_python: whether Python can call the twin; CachedDispatch makes such a one.
+    by the id that is made from it.    options: of numba, beside the usual ones.
+    from_python: whether Python can call the twin; CachedDispatch makes such a one.
     """
     from numba import config, njit
     config.CACHE_DIR = os.path.join(cache, FROM_PYTHON) if from_python else cache
     twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=not from_python,
-                inline=inline)(function)
+                **options)(function)
     twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{name} {FROM_PYTHON}" if from_python else name)))
-    twin.from_python = partial(compiled, function, name, cache, inline, from_python=True)
+    twin.from_python = partial(compiled, function, name, cache, options, from_python=True)
     return twin
 
 

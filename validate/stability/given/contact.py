@@ -504,6 +504,24 @@ def passing_bodies(lesson, rng):
     return (found.gap, found.n[0]), (np.linalg.norm(way) - np.sum(radius), way / np.linalg.norm(way))
 
 
+@random_law("Only gravity acts on a body whose contacts are gone.",
+            "contacts that are gone: largest error of the velocities [m/s, rad/s]", EXACT)
+def gone_contacts(lesson, rng):
+    """In the first step a small box slides over the edge of a large one.  No pairs are searched before the second."""
+    d, dt, g = rng.choice((2, 3)), 0.004, rng.uniform(5.0, 15.0)
+    make, advance, shape = (
+        (lesson.make_pile_2d, lesson.advance_pile_2d, (lesson.box_bounds_2d, lesson.box_contacts_2d)) if d == 2 else
+        (lesson.make_pile, lesson.advance_pile, (lesson.box_bounds, lesson.box_contacts)))
+    x, v, up = np.zeros((2, d)), np.zeros((3, d)), np.eye(d)[-1]
+    x[0], x[1], v[1, 0] = 0.3 * up, 0.349 * np.eye(d)[0] + 0.65 * up, rng.uniform(2.8, 3.4)
+    q, inertia = (np.zeros(2), 0.1) if d == 2 else ([(1.0, 0.0, 0.0, 0.0)] * 2, np.full((2, 3), 0.1))
+    state, pile = make(x, q, 1.0, inertia, [np.full(d, 0.3), np.full(d, 0.05)], [(*up, 0.0)], -g * up,
+                       rng.uniform(0.0, 0.5), 2, 30.0, 1.0, 0.02)
+    first, second = (advance(*shape, state._replace(v=v), dt, steps, pile) for steps in (1, 2))
+    assert np.any(first.contacts.b == 1) and not np.any(second.contacts.b == 1)
+    return (second.v[1], second.omega[1]), (first.v[1] - dt * g * up, first.omega[1])
+
+
 @random_law("Forces of contacts under loads with torques obey Newton, Euler, and the laws of contact and friction.",
             "forces and torques: largest violation [N, m/s², rad/s²]", EXACT)
 def forces_under_torques(lesson, rng):
@@ -560,4 +578,4 @@ def ways_of_bodies(lesson, rng):
 def steps_of_a_pile(lesson, check):
     """Compare flights, margins, separation, impulses, gaps and forces with Euler's equation and the laws of contact."""
     check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies,
-                        balance_in_space, friction_in_space, passing_bodies), seed=32, times=15)
+                        balance_in_space, friction_in_space, passing_bodies, gone_contacts), seed=32, times=15)
