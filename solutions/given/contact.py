@@ -35,6 +35,7 @@ from ..support.kept_contacts import (
     begin_ways,
     forget_deep,
     have_moved,
+    leave_half,
     leave_places,
     moved_pairs,
     of_moved,
@@ -42,6 +43,7 @@ from ..support.kept_contacts import (
     replace_contacts,
     replace_in_plane,
     unknown_ways,
+    widened,
     with_kept,
     without_gone,
 )
@@ -118,17 +120,17 @@ def follow(gap, aim, give, u_n, h):
         aim[k], give[k] = min(aim[k], 0.0), 0.0
 
 
-def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, searched):
+def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, first):
     """Given.  (new, J_new (m, d) [N s], at, left, changed): contacts of pairs of which a body has moved.
 
-    Where no pair touches in more points than before, and pairs have not been `searched` anew, the new contacts take the
-    places `at` of old ones in `known` and J, after all old ones of these bodies, with the numbers `left`, have left.
-    Otherwise all places have changed.
+    Where no pair touches in more points than before, the new contacts take the places `at` of old ones in `known` and
+    J, after all old ones of these bodies, with the numbers `left`, have left.  Otherwise all places have changed, as
+    they have in the `first` step.
     """
     new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
     J_new, left, (at, whole) = kept_impulses(new, known, J, pile.margin), of_moved(known, moved), places_in(known, new)
     begin_ways(ways, moved)
-    changed = searched or not whole
+    changed = first or not whole
     if not changed:
         leave_places(known, known.gap, J, left)
         replace_contacts(known, J, at, new, J_new)
@@ -168,17 +170,17 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
     order, gap, found, push, spin = np.arange(contacts.a.size), contacts.gap, contacts.gap, v, omega
-    for _ in range(steps):
+    for step in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
-            searched = has_left_margin(low, high, wide_low, wide_high)
-            if searched:
-                wide_low, wide_high = low - pile.margin, high + pile.margin
-                pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
+            if has_left_margin(low, high, wide_low, wide_high):
+                leave_half(moved, low, high, wide_low, wide_high, pile.margin)
+                wide_low, wide_high = widened(low, high, v, pile.margin, dt)
+                pairs = near_pairs(wide_low, wide_high, pile.planes)
             J_known = put_back(J, order)
             new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J_known, ways,
-                                                        pile, searched)
+                                                        pile, step == 0)
             allowed = check_overlap(new, v, dt, pile.half, allowed, residual)
             if changed:
                 contacts, J_known = with_kept(with_gaps(contacts, gap, order), J_known, new, J_new, moved)
@@ -289,17 +291,17 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
     gap, found, room, push, spin = contacts.gap, contacts.gap, np.empty((0, WIDE * ROWS)), v, omega
-    for _ in range(steps):
+    for step in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
-            searched = has_left_margin(low, high, wide_low, wide_high)
-            if searched:
-                wide_low, wide_high = low - pile.margin, high + pile.margin
-                pairs, moved = near_pairs(wide_low, wide_high, pile.planes), ways.radius > 0.0
+            if has_left_margin(low, high, wide_low, wide_high):
+                leave_half(moved, low, high, wide_low, wide_high, pile.margin)
+                wide_low, wide_high = widened(low, high, v, pile.margin, dt)
+                pairs = near_pairs(wide_low, wide_high, pile.planes)
             contacts, inv_inertia = with_gap(contacts, gap), world_inertia(turn, pile.inv_inertia)
             new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J, ways, pile,
-                                                        searched)
+                                                        step == 0)
             allowed = check_overlap(new, v, dt, pile.half, allowed, residual)
             if changed:
                 contacts, J = new, J_new = with_kept(contacts, J, new, J_new, moved)

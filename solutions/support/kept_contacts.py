@@ -15,6 +15,7 @@ from .contact_points import first_of, room_for
 KEPT = 2e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
 DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-]
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
+AHEAD = 8                    # steps of its velocity by which the box of a body is wider when pairs are searched [-]
 GONE = 1e30                  # gap of a contact that is gone and keeps its place [m]
 
 
@@ -62,6 +63,33 @@ def forget_deep(ways, contacts, gap):
         for i in (contacts.a[k], contacts.b[k]):
             if gap[k] < -DEEP / KEPT * ways.allowed[i]:
                 ways.length[i] = np.inf
+
+
+def widened(low, high, v, margin, dt):
+    """Return (wide_low, wide_high) for a search of pairs: wider by the margin, and by the way of a fast body.
+
+    That is AHEAD steps of its velocity, and at most its own size.
+    """
+    wide_low, wide_high = low - margin, high + margin
+    for i in range(low.shape[0]):
+        for c in range(low.shape[1]):
+            size, way = high[i, c] - low[i, c], AHEAD * dt * v[i, c]
+            if way > 0.0:
+                wide_high[i, c] += min(way, size)
+            elif way < 0.0:
+                wide_low[i, c] -= min(-way, size)
+    return wide_low, wide_high
+
+
+def leave_half(moved, low, high, wide_low, wide_high, margin):
+    """Mark bodies that stick out of their widened boxes, less half a margin on all sides, in place.
+
+    Two others that were no pair are a margin apart, so a new search of pairs need not look at them.
+    """
+    for i in range(low.shape[0]):
+        for c in range(low.shape[1]):
+            if not (wide_low[i, c] + 0.5 * margin <= low[i, c] and high[i, c] <= wide_high[i, c] - 0.5 * margin):
+                moved[i] = True
 
 
 def moved_pairs(pairs, moved):

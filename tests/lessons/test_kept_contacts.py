@@ -83,9 +83,9 @@ def copied(contacts):
     return contacts._replace(**{name: array.copy() for name, array in contacts._asdict().items()})
 
 
-@pytest.mark.parametrize("searched", [True, False])
+@pytest.mark.parametrize("first", [True, False])
 @pytest.mark.parametrize("d", [2, 3])
-def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d, searched):
+def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d, first):
     rng = np.random.default_rng(6)
     state, pile = tower(rng, d)
     old = found(d, state.x, state.q, pile)[0]
@@ -95,8 +95,8 @@ def test_only_pairs_of_which_a_body_has_moved_are_looked_at(d, searched):
     ways = kept_contacts.unknown_ways(pile.half, pile.planes.shape[0], pile.margin)
     c, J_c = copied(old), J.copy()
     part, J_part, at, left, changed = contact._found_anew(FIND[d][1], x, turn, pairs, moved, c, J_c, ways, pile,
-                                                          searched)
-    assert changed == searched and np.array_equal(left, np.flatnonzero((old.a == 0) | (old.b == 0)))
+                                                          first)
+    assert changed == first and np.array_equal(left, np.flatnonzero((old.a == 0) | (old.b == 0)))
     if changed:
         c, J_c = kept_contacts.with_kept(c, J_c, part, J_part, moved)
     assert np.all(np.diff(c.a) >= 0) and np.array_equal(c.first, np.searchsorted(c.a, np.arange(4)))
@@ -215,3 +215,73 @@ def test_a_tower_at_rest_is_not_searched_again_and_stands_as_if_it_were(d):
     on_floor = kept.contacts.b == 3
     weight = 3.0 * G * DT / pile.substeps
     assert np.sum(kept.J[on_floor, -1]) == pytest.approx(weight, rel=1e-3)
+
+
+def apart(low, high, i, j):
+    """The largest gap along an axis between two boxes."""
+    return np.max(np.maximum(low[i] - high[j], low[j] - high[i]))
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_pair_within_reach_that_was_none_before_a_search_is_looked_at(d):
+    """Of bodies that have moved inside their widened boxes, and of some that have left them."""
+    rng, n, margin, new, marked = np.random.default_rng(12), 40, 0.1, 0, []
+    for _ in range(200):
+        low = rng.uniform(-1.0, 1.0, (n, d)) * (2.0 if d == 2 else 1.0)
+        high = low + rng.uniform(0.1, 0.3, (n, d))
+        wide = kept_contacts.widened(low, high, rng.normal(size=(n, d)), margin, 0.004)
+        before = near_pairs(*wide, np.zeros((0, d + 1)))
+        pairs = {(i, j) for i in range(n) for j in before.partner[before.first[i]:before.first[i + 1]]}
+        way = rng.uniform(wide[0] - low, wide[1] - high) * rng.choice([0.2, 1.0, 1.5], (n, 1))
+        low, high, moved = low + way, high + way, np.zeros(n, np.bool_)
+        kept_contacts.leave_half(moved, low, high, *wide, margin)
+        near = {(i, j) for j in range(n) for i in range(j) if apart(low, high, i, j) <= 0.5 * margin}
+        assert all(moved[i] or moved[j] for i, j in near - pairs)
+        new += len(near - pairs)
+        marked.append(np.mean(moved))
+    assert new > 20 and 0.1 < np.mean(marked) < 0.8
+
+
+@pytest.mark.parametrize("way", [-2.0, 0.0, 1e-3, 5.0, np.nan, np.inf])
+def test_a_box_is_wider_by_the_margin_and_the_way_of_a_few_steps_up_to_its_size(way):
+    low, high, dt = np.array([(0.0, 1.0)]), np.array([(0.5, 1.2)]), 0.004
+    wide_low, wide_high = kept_contacts.widened(low, high, np.array([(way, 0.0)]), 0.01, dt)
+    ahead = min(kept_contacts.AHEAD * dt * abs(way), 0.5) if way == way else 0.0
+    assert np.allclose(wide_low, [(-0.01 - (ahead if way < 0.0 else 0.0), 0.99)], atol=1e-15)
+    assert np.allclose(wide_high, [(0.51 + (ahead if way > 0.0 else 0.0), 1.21)], atol=1e-15)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_all_contacts_within_reach_are_known_while_bodies_fly_about(d, monkeypatch):
+    """At the beginning of each step, against all pairs: what is as near as 0 is a contact, with the same gap."""
+    rng, n = np.random.default_rng(11), 24
+    half, walls = np.repeat(0.1 * rng.uniform(0.5, 1.5, (n, 1)), d, axis=1), np.append(np.eye(d), -np.eye(d), axis=0)
+    x = 0.32 * (np.stack(np.meshgrid(*[np.arange(5)] * d), axis=-1).reshape(-1, d)[:n] - 2.0)
+    x += 0.01 * rng.normal(size=(n, d))
+    planes = np.append(walls, np.full((2 * d, 1), 0.9), axis=1)
+    make, advance, bounds = ((contact.make_pile_2d, contact.advance_pile_2d, contact.disc_bounds) if d == 2 else
+                             (contact.make_pile, contact.advance_pile, contact.ball_bounds))
+    q = np.zeros(n) if d == 2 else np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    state, pile = make(x, q, 1.0, 0.01 if d == 2 else np.full((n, 3), 0.01), half, planes, np.zeros(d), 0.3, 2, 60.0,
+                       5.0, 0.008)
+    v = np.append(rng.normal(size=(n, d)) * rng.choice([0.01, 3.0], (n, 1)), np.zeros((2 * d, d)), axis=0)
+    places, met = [], []
+
+    def noted(x, *others):
+        places.append(x[:n].copy())
+        return bounds(x, *others)
+
+    def compared(ways, contacts, gap):
+        x = places[-1]
+        known = {(a, b): g for a, b, g in zip(contacts.a, contacts.b, gap, strict=True)}
+        for i in range(n):
+            true = {(i, j): np.linalg.norm(x[i] - x[j]) - half[i, 0] - half[j, 0] for j in range(i + 1, n)}
+            true |= {(i, n + k): plane[:d] @ x[i] + plane[d] - half[i, 0] for k, plane in enumerate(planes)}
+            for pair, truth in true.items():
+                assert truth > 0.0 or abs(known[pair] - truth) < 1e-5
+                met.append(truth <= 0.0)
+        forget_deep(ways, contacts, gap)
+    forget_deep = contact.forget_deep
+    monkeypatch.setattr(contact, "forget_deep", compared)
+    advance(noted, contact.round_contacts, state._replace(v=v), DT, 120, pile)
+    assert sum(met) > 100 and len(places) > 100

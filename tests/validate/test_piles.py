@@ -31,7 +31,6 @@ def test_a_cost_that_grows_as_n_has_the_power_of_one():
     rows = [piles.Size(n, 2 * n, 3e-4 * n, np.nan, 0.1) for n in piles.SIZES]
     assert piles.power(rows) == pytest.approx(1.0)
     assert piles.power([row._replace(ms=row.ms * row.bodies) for row in rows]) == pytest.approx(2.0)
-    assert [piles.few(n) for n in (100, 10_000, 100_000)] == [piles.BLOCK, 4, 2]
 
 
 def test_growth_and_races_are_printed_and_drawn(monkeypatch, tmp_path, capsys):

@@ -42,7 +42,7 @@ BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
 SIZES = (100, 316, 1000, 3162, 10_000, 31_623, 100_000)  # bodies of the piles whose cost is compared
 ENGINE_UP_TO = 10_000        # of these, the largest pile with which the tuned engine is timed
-ROWS = {2: 30, 3: 10}        # {dimension: of the highest pile}: bodies that land from above would pass each other [-]
+ROWS = {2: 30, 3: 10}        # {dimension: of a pile}: in higher ones bodies that land from above pass each other [-]
 LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
 GROWTH = (0.9, 1.1)          # goal: the power of n with which the cost of a step grows [-]
 ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
@@ -177,9 +177,9 @@ def across_in_rows(kind, n):
 
 
 def landed(lesson, name, n):
-    """Return the lesson's pile of n bodies after a while: as wide as it is high, but of at most ROWS rows."""
+    """Return the lesson's pile of n bodies after a while: all have ROWS rows, so all move as much as each other."""
     kind = KINDS[name]
-    kind = kind._replace(across=max(2, round(n ** (1.0 / kind.d)), across_in_rows(kind, n)))
+    kind = kind._replace(across=max(2, across_in_rows(kind, n)))
     ours = Ours(lesson, kind, *fallen(kind, n))
     ours.run(round(LANDING / DT))
     return ours
@@ -205,15 +205,10 @@ def growth(name, sizes, rounds):
             other = rival.make(KINDS[name], ours.state, ours.pile)
             other.run(BLOCK)
         rows.append((n, ours, other, memory))
-    times = np.array([[(cpu_time(ours, few(n)), cpu_time(other, few(n)) if other else np.nan)
-                       for n, ours, other, _ in rows] for _ in range(rounds)])
+    times = np.array([[(cpu_time(ours), cpu_time(other) if other else np.nan) for _, ours, other, _ in rows]
+                      for _ in range(rounds)])
     return [Size(n, len(ours.state.contacts.a), *middle, memory)
             for (n, ours, _, memory), middle in zip(rows, np.median(times, axis=0).tolist())]
-
-
-def few(n):
-    """Return the number of steps in a block: fewer where a step takes long."""
-    return min(BLOCK, max(2, 40_000 // n))
 
 
 def power(rows):
