@@ -274,7 +274,7 @@ def piles(
     most: Annotated[int, typer.Option(min=316, max=100_000, help="Bodies of the largest pile of --growth.")] = 10_000,
     memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
     threads: Annotated[int, typer.Option(min=1, help="Of ours in space, of Box2D and of Rapier.  They pay with 10,000 "
-                                                     "bodies, and not with 1,000.")] = 1,
+                                                     "spheres, and not with bricks or 1,000.")] = 1,
     figure: Annotated[Path | None, typer.Option(help="File for a picture of the result.")] = None,
 ):
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""

@@ -74,12 +74,12 @@ from ..support.lanes import (
     in_any_order,
     lanes_for,
     leave_lanes,
-    number_of_threads,
+    number_of_parts,
+    part_of,
     pushed,
     put_contacts,
     put_three,
     read_velocities,
-    this_thread,
     three,
     turned,
     write_velocities,
@@ -240,29 +240,45 @@ def _follow_eight(s, w, h):
 SIDE_BY_SIDE = contact_targets, follow, _aim_eight, _visit_eight, _follow_eight  # their loops: vector instructions
 
 
+def _sweep_part(begin, end, v, omega, lanes, h, pile):
+    """Given.  Set the targets of the contacts of some groups, and visit them, in place."""
+    w = np.empty(WIDE * WORK_ROWS)
+    for group in range(begin, end):
+        s = lanes.rows[group]
+        read_velocities(w, v, omega, lanes.bodies, group)
+        _aim_eight(s, w, h, pile)
+        _visit_eight(s, w, pile.mu)
+        write_velocities(w, v, omega, lanes.bodies, group, lanes.number[group])
+
+
+def _rest_part(begin, end, before, spin, v, omega, lanes, h, pile):
+    """Given.  Let the gaps of some groups follow `before` and `spin`, and visit their contacts at rest, in place."""
+    w = np.empty(WIDE * WORK_ROWS)
+    for group in range(begin, end):
+        s = lanes.rows[group]
+        read_velocities(w, before, spin, lanes.bodies, group)
+        _follow_eight(s, w, h)
+        read_velocities(w, v, omega, lanes.bodies, group)
+        _visit_eight(s, w, pile.mu)
+        write_velocities(w, v, omega, lanes.bodies, group, lanes.number[group])
+
+
 def _sweep_in_lanes(v, omega, lanes, h, pile):
     """Given.  Set the targets of all contacts, and visit them, in place."""
-    work = np.empty((number_of_threads(), WIDE * WORK_ROWS))
+    parts = number_of_parts()
     for turn in range(lanes.turns.size - 1):
-        for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
-            s, w, bodies = lanes.rows[group], work[this_thread()], lanes.bodies[group]
-            read_velocities(w, v, omega, bodies)
-            _aim_eight(s, w, h, pile)
-            _visit_eight(s, w, pile.mu)
-            write_velocities(w, v, omega, bodies, lanes.number[group])
+        for part in in_any_order(parts):
+            begin, end = part_of(lanes, turn, part, parts)
+            _sweep_part(begin, end, v, omega, lanes, h, pile)
 
 
 def _rest_in_lanes(before, spin, v, omega, lanes, h, pile):
     """Given.  Let the gaps follow the velocities `before` and `spin`, and visit all contacts at rest, in place."""
-    work = np.empty((number_of_threads(), WIDE * WORK_ROWS))
+    parts = number_of_parts()
     for turn in range(lanes.turns.size - 1):
-        for group in in_any_order(lanes.turns[turn], lanes.turns[turn + 1]):
-            s, w, bodies = lanes.rows[group], work[this_thread()], lanes.bodies[group]
-            read_velocities(w, before, spin, bodies)
-            _follow_eight(s, w, h)
-            read_velocities(w, v, omega, bodies)
-            _visit_eight(s, w, pile.mu)
-            write_velocities(w, v, omega, bodies, lanes.number[group])
+        for part in in_any_order(parts):
+            begin, end = part_of(lanes, turn, part, parts)
+            _rest_part(begin, end, before, spin, v, omega, lanes, h, pile)
 
 
 def _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile):

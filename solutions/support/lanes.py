@@ -15,7 +15,7 @@ from .tuples import across, minus, plus, put, row
 WIDE = 8                     # contacts of a group [-]
 SPARE = 8                    # groups for which one more row is asked for [-]: new memory in each step takes time
 COLOURS = 62                 # [-]; a contact for which none is free is a group of its own
-in_any_order = range         # over the groups of a turn; threads may share them
+in_any_order = range         # over the parts of a turn; threads may share them
 
 # Rows of a group: what begins a line of three is a vector, an inertia has six rows, and a number has one.
 NORMAL, ARM_A, ARM_B, IMPULSE = 0, 3, 6, 9
@@ -28,14 +28,9 @@ V_A, OMEGA_A, V_B, OMEGA_B, AIM, GIVE = 0, 3, 6, 9, 12, 13
 WORK_ROWS = 14
 
 
-def number_of_threads():
-    """How many threads share the groups of a turn."""
+def number_of_parts():
+    """Into how many parts the groups of a turn are divided."""
     return 1
-
-
-def this_thread():
-    """The number of the thread that asks, from zero."""
-    return 0
 
 
 class Lanes(NamedTuple):
@@ -158,19 +153,25 @@ def gaps_and_impulses(lanes):
     return gap, J
 
 
-def read_velocities(w, v, omega, bodies):
+def part_of(lanes, turn, part, parts):
+    """(begin, end): the groups of a part of a turn."""
+    begin, size = lanes.turns[turn], lanes.turns[turn + 1] - lanes.turns[turn]
+    return begin + part * size // parts, begin + (part + 1) * size // parts
+
+
+def read_velocities(w, v, omega, bodies, group):
     """Write the velocities of the bodies of a group side by side into the rows w, in place."""
     for k in range(WIDE):
-        a, b = bodies[k], bodies[WIDE + k]
+        a, b = bodies[group, k], bodies[group, WIDE + k]
         for e in range(3):
             w[WIDE * (V_A + e) + k], w[WIDE * (OMEGA_A + e) + k] = v[a, e], omega[a, e]
             w[WIDE * (V_B + e) + k], w[WIDE * (OMEGA_B + e) + k] = v[b, e], omega[b, e]
 
 
-def write_velocities(w, v, omega, bodies, number):
+def write_velocities(w, v, omega, bodies, group, number):
     """Write back the velocities of the bodies of a group of so many contacts, in place."""
     for k in range(number):
-        a, b = bodies[k], bodies[WIDE + k]
+        a, b = bodies[group, k], bodies[group, WIDE + k]
         for e in range(3):
             v[a, e], omega[a, e] = w[WIDE * (V_A + e) + k], w[WIDE * (OMEGA_A + e) + k]
             v[b, e], omega[b, e] = w[WIDE * (V_B + e) + k], w[WIDE * (OMEGA_B + e) + k]

@@ -68,10 +68,10 @@ def heap(rng, bodies=12, planes=2, m=40):
 
 def each_group(lesson, side_by_side, v, omega, work):
     """Do something with each group and the velocities of its bodies, in place."""
-    for s, bodies, number in zip(side_by_side.rows, side_by_side.bodies, side_by_side.number, strict=False):
-        lesson.read_velocities(WORK, v, omega, bodies)
-        work(s)
-        lesson.write_velocities(WORK, v, omega, bodies, number)
+    for group, number in enumerate(side_by_side.number):
+        lesson.read_velocities(WORK, v, omega, side_by_side.bodies, group)
+        work(side_by_side.rows[group])
+        lesson.write_velocities(WORK, v, omega, side_by_side.bodies, group, number)
 
 
 @pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=COMPILED)])

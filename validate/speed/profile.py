@@ -37,6 +37,17 @@ def difference(function, arguments, without):
     return max(0.0, microseconds(function, *arguments) - microseconds(function, *without))
 
 
+def copied(arrays):
+    """Copy arrays: what reading their memory once, and writing as much, costs at least."""
+    for array in arrays:
+        array.copy()
+
+
+def memory_of(step):
+    """Return the arrays that a sweep reads."""
+    return step.spread.a, step.spread.b, step.spread.n, *step.arms, step.J, step.aim, step.give
+
+
 class Step(NamedTuple):
     """What the parts of a step work with."""
     contacts: object         # ContactSet, ordered by body
@@ -83,19 +94,21 @@ def profile(lesson, state, pile, dt):
         return Part(name, times, difference(getattr(lesson, of or name), arguments(some), arguments(empty)))
     sweep = both("velocity_sweep_2d (9.16)", 2 * pile.substeps, lambda s: (
         state.v, state.omega, s.J, s.aim, s.give, s.spread, s.arms, pile), "velocity_sweep_2d")
+    memory = Part("for comparison: the memory that a sweep reads, copied", 2 * pile.substeps,
+                  difference(copied, (memory_of(some),), (memory_of(empty),)))
     aims = both("soft_contact (9.12)", pile.substeps, lambda s: (
         s.spread.gap, s.J, s.spread, s.arms, s.aim, h, pile), "contact_targets")
     gaps = both("gaps that follow the velocities", pile.substeps, lambda s: (
         state.v, state.omega, s.spread, s.arms), "normal_velocities_2d")
-    warm = both("impulses of the last step, applied", pile.substeps, lambda s: (
+    warm = both("impulses of the last step, applied", 1, lambda s: (
         state.v.copy(), state.omega.copy(), s.J, s.spread, s.arms, pile.inv_mass, pile.inv_inertia),
         "apply_impulses_2d")
-    memory = both("kept_impulses (9.14), where contacts are new", 1, lambda s: (s.contacts, *old), "kept_impulses")
+    kept = both("kept_impulses (9.14), where contacts are new", 1, lambda s: (s.contacts, *old), "kept_impulses")
     found = Part("contacts found anew", 1, difference(lesson.round_contacts, contacts_of(lesson, state, pile, pairs),
                                                       contacts_of(lesson, state, pile, none)))
     search = Part("pairs found anew", 1, difference(lesson.near_pairs, (*wide, pile.planes),
                                                     (wide[0][:1], wide[1][:1], pile.planes)))
-    return [sweep, aims, warm, gaps, memory, found, search]
+    return [sweep, memory, aims, warm, gaps, kept, found, search]
 
 
 def without_ideas(lesson, state, pile, dt, parts):
