@@ -113,7 +113,7 @@ def contact_targets(gap, J, contacts, arms, fastest, dt, pile):
     return aim, give
 
 
-def follow(gap, aim, give, u_n, h):
+def _follow_2d(gap, aim, give, u_n, h):
     """Given.  The gaps after h with the velocities u_n, and targets that push nothing apart, (m,), in place."""
     for k in range(gap.size):
         gap[k] += h * u_n[k]
@@ -150,7 +150,7 @@ def _substep_2d(x, q, v, omega, push, spin, J, gap, contacts, arms, fastest, way
     aim, give = contact_targets(gap, J, contacts, arms, fastest, h, pile)
     v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
     (x, q), before = move_2d(x, q, v, omega, ways, h), v
-    follow(gap, aim, give, normal_velocities_2d(v, omega, contacts, arms), h)
+    _follow_2d(gap, aim, give, normal_velocities_2d(v, omega, contacts, arms), h)
     v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
     find_push(v, push)
     find_push(omega, spin)
@@ -237,7 +237,7 @@ def _follow_eight(s, w, h):
         w[WIDE * AIM + k], w[WIDE * GIVE + k] = min(-gap / h, 0.0), 0.0
 
 
-SIDE_BY_SIDE = contact_targets, follow, _aim_eight, _visit_eight, _follow_eight  # their loops: vector instructions
+SIDE_BY_SIDE = contact_targets, _follow_2d, _aim_eight, _visit_eight, _follow_eight  # their loops: vector instructions
 
 
 def _sweep_part(begin, end, v, omega, lanes, h, pile):
@@ -377,7 +377,7 @@ def minimum_map_step_with_friction(A, b, J, mu):
 
     Friction that would leave its limit ±μ J_n is set to it, with the J_n of the same step.
     """
-    u, matrix, right = A @ J + b, np.diag(np.diag(A)), np.zeros(b.size)
+    u, matrix, right = A @ J + b, np.diag(np.diag(float_copy(A))), np.zeros(b.size)
     for n in range(0, b.size, 2):
         t = n + 1
         if u[n] >= A[n, n] * J[n]:                                       # it opens, and then nothing rubs

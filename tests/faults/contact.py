@@ -104,9 +104,9 @@ fault("add_push", "before + kept[k], before", "before, before", "no substep begi
       of="support.arms")
 fault("find_push", "total[k] - kept[k]", "0.5 * (total[k] - kept[k])",
       "a substep begins with half of what the last impulses did", of="support.arms")
-fault("follow", "gap[k] += h * u_n[k]", "gap[k] += 2.0 * h * u_n[k]",
+fault("_follow_2d", "gap[k] += h * u_n[k]", "gap[k] += 2.0 * h * u_n[k]",
       "in the plane gaps change twice as fast as bodies move", of="given.contact")
-fault("follow", "min(aim[k], 0.0), 0.0", "aim[k], give[k]",
+fault("_follow_2d", "min(aim[k], 0.0), 0.0", "aim[k], give[k]",
       "in the plane the velocity that pushes bodies apart stays", of="given.contact")
 fault("replace_in_plane", "gap[i], arms.k_n[i]", "_, arms.k_n[i]", "a contact that is found anew keeps its old gap",
       of="support.kept_contacts")

@@ -5,6 +5,7 @@ import itertools
 
 import numpy as np
 
+from solutions.support.arms import Arms
 from validate.subject import modules
 
 from . import started as scenes
@@ -192,13 +193,15 @@ def of_contact():
     pile = contact.make_pile_2d(*scenes.boxes)
     _, *begin, _, p_boxes = scenes.STARTED["simulator"]["advance_contact"][0]
     touching = simulator.contact_step_2d(*begin, p_boxes).contacts
+    m = touching.a.size
+    arms = Arms(around(m, 2), around(m, 2), *rng.uniform(1.0, 2.0, (2, m)))
     A, b, mu = np.diag(rng.uniform(1.0, 2.0, 4)) + 0.1, rng.uniform(-1.0, 0.5, 4), np.array([0.3, 0.6])
     problem = (A, b, rng.uniform(0.2, 1.0, 4), mu)
     return {
         **{name: [problem] for name in ("normals_first_sweep", "minimum_map_step_with_friction",
                                         "fischer_burmeister_step", "relaxed_sweep")},
         "jacobi_step": [(*problem, rng.uniform(0.1, 0.3, 4))],
-        "contact_targets": [(0.1 * around(6), *rng.uniform(0.0, 1.0, (2, 6)), 0.004, pile[1])],
+        "contact_targets": [(0.1 * around(m), around(m, 2), touching, arms, rng.uniform(0.0, 1.0, m), 0.004, pile[1])],
         "separation_speeds": [(touching, pile[1])],
         "pile_trajectory": [(contact.advance_pile_2d, *scenes.STARTED["contact"]["advance_pile_2d"][0])]}
 

@@ -101,7 +101,6 @@ OTHERWISE = {
     "randomised": {"u": "-"},
     "grid_pairs": {"offsets": ""},
     "apply_blocks": {"block": "N/m"},
-    "contact_targets": {"load": "m/s"},
     "conjugate_gradients": {"right": "kg m/s", "A": "kg"},
     "apply_step_matrix": {"y": "m/s"},
     "kinetic_friction_step": {"d": "-"},
