@@ -237,7 +237,7 @@ def _follow_eight(s, w, h):
         w[WIDE * AIM + k], w[WIDE * GIVE + k] = min(-gap / h, 0.0), 0.0
 
 
-SIDE_BY_SIDE = contact_targets, _follow_2d, _aim_eight, _visit_eight, _follow_eight  # their loops: vector instructions
+SIDE_BY_SIDE = "contact_targets", "_follow_2d", "_aim_eight", "_visit_eight", "_follow_eight"  # vector instructions
 
 
 def _sweep_part(begin, end, v, omega, lanes, h, pile):

@@ -199,4 +199,4 @@ def turn_quaternions(q, omega, dt):
     return q
 
 
-SIDE_BY_SIDE = add_push, find_push       # their loops become vector instructions; their arrays share no memory
+SIDE_BY_SIDE = "add_push", "find_push"   # their loops become vector instructions; their arrays share no memory

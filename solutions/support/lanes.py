@@ -193,4 +193,4 @@ def contact_velocity(s, w, k):
     return minus(of_a, plus(three(w, V_B, k), 1.0, across(three(w, OMEGA_B, k), three(s, ARM_B, k))))
 
 
-SIDE_BY_SIDE = (read_velocities,)        # its loop becomes vector instructions; its arrays share no memory
+SIDE_BY_SIDE = ("read_velocities",)      # its loop becomes vector instructions; its arrays share no memory

@@ -1,6 +1,7 @@
 """Machine code of compiled functions is made where Python or an address asks for it, and nowhere else."""
 
 import ctypes
+import importlib
 import subprocess
 import sys
 
@@ -105,3 +106,9 @@ def test_the_machine_code_of_a_linked_function_is_saved_when_its_address_is_aske
         call, found = convention(machine_code(twin, function(number, number, number))), value()
         assert call(ctypes.byref(found), None, 3.0, 5.0) == 0 and found.value == 15.0
         assert sum(twin.stats.cache_hits.values()) == loaded and not linking.is_linked_only(*libraries(twin))
+
+
+@pytest.mark.parametrize("name", ["solutions.given.contact", "solutions.support.arms", "solutions.support.lanes"])
+def test_what_a_module_names_as_side_by_side_are_functions_of_its_own(name):
+    module = importlib.import_module(name)
+    assert module.SIDE_BY_SIDE and all(vars(module)[one].__module__ == name for one in module.SIDE_BY_SIDE)

@@ -39,7 +39,7 @@ def compiled_twins(module, names, space, cache):
         copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
         options = {"inline": "always"} if module.__name__.rpartition(".")[2] == INLINED else {}
-        if plain in space.get("SIDE_BY_SIDE", ()):                       # its loop, over arrays that share no memory
+        if name in space.get("SIDE_BY_SIDE", ()):                        # its loop, over arrays that share no memory
             SIDE_BY_SIDE.add(plain.__qualname__)
             options["noalias"] = True
         twins[name] = compiled(copy, f"{module.__name__}.{plain.__qualname__}", cache, options)
