@@ -21,11 +21,11 @@ from ..support.arms import (
     arms_2d,
     arms_3d,
     fallen_on,
-    find_push,
     largest_change,
     move,
     move_2d,
     normal_velocities_2d,
+    push_since,
     turn_freely,
     world_inertia,
 )
@@ -35,8 +35,8 @@ from ..support.kept_contacts import (
     begin_ways,
     forget_deep,
     have_moved,
-    leave_half,
-    leave_places,
+    mark_far,
+    mark_gone,
     moved_pairs,
     of_moved,
     places_in,
@@ -73,7 +73,7 @@ from ..support.lanes import (
     gaps_and_impulses,
     in_any_order,
     lanes_for,
-    leave_lanes,
+    mark_gone_in_lanes,
     number_of_parts,
     part_of,
     pushed,
@@ -121,18 +121,18 @@ def _follow_2d(gap, aim, give, u_n, h):
 
 
 def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, first):
-    """Given.  (new, J_new (m, d) [N s], at, left, changed): contacts of pairs of which a body has moved.
+    """Given.  (new, J_new (m, d) [N s], at, left, changed): the contacts of bodies that have moved, found anew.
 
-    Where no pair touches in more points than before, the new contacts take the places `at` of old ones in `known` and
-    J, after all old ones of these bodies, with the numbers `left`, have left.  Otherwise all places have changed, as
-    they have in the `first` step.
+    Their old contacts in `known`, with the numbers `left`, are marked as gone.  Each new contact then takes the place
+    of an old one of the same two bodies; `at` has the numbers of these.  If a pair touches in more points than before,
+    there are too few places.  Then nothing is written, and `changed` is True; so it is in the `first` step.
     """
     new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
     J_new, left, (at, whole) = kept_impulses(new, known, J, pile.margin), of_moved(known, moved), places_in(known, new)
     begin_ways(ways, moved)
     changed = first or not whole
     if not changed:
-        leave_places(known, known.gap, J, left)
+        mark_gone(known, known.gap, J, left)
         replace_contacts(known, J, at, new, J_new)
     return new, J_new, at, left, changed
 
@@ -140,9 +140,9 @@ def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, firs
 def _substep_2d(x, q, v, omega, push, spin, J, gap, contacts, arms, fastest, ways, h, pile):
     """Given.  (x, q, v, omega, J) after h in the plane, and the largest velocity that the sweep at rest changed.
 
-    Gravity and the last impulses, which change velocities by `push` and `spin`; a sweep of soft contacts; motion; a
-    sweep at rest, which takes back the velocity that only served to push bodies apart.  push, spin and gap change in
-    place.
+    Gravity and the last impulses; a sweep of soft contacts; motion; a sweep at rest, which takes back the velocity that
+    only served to push bodies apart.  `push` and `spin` are the changes of v and omega by the last impulses.  They and
+    `gap` change in place.
     """
     v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), float_copy(omega)
     add_push(v, push)
@@ -152,8 +152,8 @@ def _substep_2d(x, q, v, omega, push, spin, J, gap, contacts, arms, fastest, way
     (x, q), before = move_2d(x, q, v, omega, ways, h), v
     _follow_2d(gap, aim, give, normal_velocities_2d(v, omega, contacts, arms), h)
     v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
-    find_push(v, push)
-    find_push(omega, spin)
+    push_since(v, push)
+    push_since(omega, spin)
     return x, q, v, omega, J, largest_change(v, before)
 
 
@@ -175,7 +175,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
             if has_left_margin(low, high, wide_low, wide_high):
-                leave_half(moved, low, high, wide_low, wide_high, pile.margin)
+                mark_far(moved, low, high, wide_low, wide_high, pile.margin)
                 wide_low, wide_high = widened(low, high, v, pile.margin, dt)
                 pairs = near_pairs(wide_low, wide_high, pile.planes)
             J_known = put_back(J, order)
@@ -191,7 +191,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
                 arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread)
             else:
                 arms_new = arms_2d(x, pile.inv_mass, pile.inv_inertia, new)
-                leave_places(spread, gap, J, place[left])
+                mark_gone(spread, gap, J, place[left])
                 replace_in_plane(spread, gap, J, arms, place[at], new, J_new, arms_new)
             push, spin = np.zeros(v.shape), np.zeros(omega.size)
             apply_impulses_2d(push, spin, J, spread, arms, pile.inv_mass, pile.inv_inertia)
@@ -292,8 +292,8 @@ def _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile):
     _sweep_in_lanes(v, omega, lanes, h, pile)
     (x, q), before = move(x, q, v, omega, ways, h), v.copy()
     _rest_in_lanes(before, omega.copy(), v, omega, lanes, h, pile)
-    find_push(v, push)
-    find_push(omega, spin)
+    push_since(v, push)
+    push_since(omega, spin)
     return x, q, v, omega, largest_change(v, before)
 
 
@@ -312,7 +312,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
             if has_left_margin(low, high, wide_low, wide_high):
-                leave_half(moved, low, high, wide_low, wide_high, pile.margin)
+                mark_far(moved, low, high, wide_low, wide_high, pile.margin)
                 wide_low, wide_high = widened(low, high, v, pile.margin, dt)
                 pairs = near_pairs(wide_low, wide_high, pile.planes)
             contacts, inv_inertia = with_gap(contacts, gap), world_inertia(turn, pile.inv_inertia)
@@ -324,7 +324,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
                 lanes, at = lanes_for(contacts, pile.half.shape[0], room), np.arange(contacts.a.size)
                 room, push, spin = lanes.rows, np.zeros(v.shape), np.zeros(v.shape)
             else:
-                leave_lanes(push, spin, lanes, contacts, left)
+                mark_gone_in_lanes(push, spin, lanes, contacts, left)
             gap, arms = contacts.gap, arms_3d(x, pile.inv_mass, inv_inertia, new)
             put_contacts(lanes, at, new, J_new, arms, separation_speeds(new, pile), pile.inv_mass, inv_inertia)
             apply_impulses(push, spin, J_new, new, arms, pile.inv_mass, inv_inertia)

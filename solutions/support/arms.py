@@ -115,15 +115,15 @@ def fallen_on(v, inv_mass, gravity, dt):
 
 
 def add_push(v, push):
-    """Add push to v, and write what v was into push, in place.  One shape, whose rows lie side by side."""
+    """Add push to v, and keep the v from before in push, both in place.  They are contiguous and have one shape."""
     total, kept = v.ravel(), push.ravel()
     for k in range(total.size):
         before = total[k]
         total[k], kept[k] = before + kept[k], before
 
 
-def find_push(v, push):
-    """Write what has been added to v since add_push into push, in place."""
+def push_since(v, push):
+    """Write the change of v since before add_push into push, in place."""
     total, kept = v.ravel(), push.ravel()
     for k in range(total.size):
         kept[k] = total[k] - kept[k]
@@ -199,4 +199,4 @@ def turn_quaternions(q, omega, dt):
     return q
 
 
-SIDE_BY_SIDE = "add_push", "find_push"   # their loops become vector instructions; their arrays share no memory
+SIDE_BY_SIDE = "add_push", "push_since"   # their loops become vector instructions; their arrays share no memory

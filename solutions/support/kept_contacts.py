@@ -16,7 +16,7 @@ KEPT = 2e-3                  # way of a body over its smallest half size after w
 DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-]
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
 AHEAD = 8                    # steps of its velocity by which the box of a body is wider when pairs are searched [-]
-GONE = 1e30                  # gap of a contact that is gone and keeps its place [m]
+GONE = 1e30                  # gap of a contact that is no longer found, but keeps its place [m]
 
 
 class Ways(NamedTuple):
@@ -66,9 +66,9 @@ def forget_deep(ways, contacts, gap):
 
 
 def widened(low, high, v, margin, dt):
-    """Return (wide_low, wide_high) for a search of pairs: wider by the margin, and by the way of a fast body.
+    """Return (wide_low, wide_high), the boxes for a search of pairs: wider by the margin on all sides.
 
-    That is AHEAD steps of its velocity, and at most its own size.
+    In the direction of its velocity a box is also wider by the way of AHEAD steps, but at most by its own size.
     """
     wide_low, wide_high = low - margin, high + margin
     for i in range(low.shape[0]):
@@ -81,10 +81,11 @@ def widened(low, high, v, margin, dt):
     return wide_low, wide_high
 
 
-def leave_half(moved, low, high, wide_low, wide_high, margin):
-    """Mark bodies that stick out of their widened boxes, less half a margin on all sides, in place.
+def mark_far(moved, low, high, wide_low, wide_high, margin):
+    """Mark bodies that have used up more than half of their margin as moved, in place.
 
-    Two others that were no pair are a margin apart, so a new search of pairs need not look at them.
+    Two bodies that have not, and that the last search did not find as a pair, are at least a margin apart.  So they
+    have no contact that is still unknown.
     """
     for i in range(low.shape[0]):
         for c in range(low.shape[1]):
@@ -126,9 +127,9 @@ def with_kept(old, J_old, new, J_new, moved):
 
 
 def places_in(old, new):
-    """Return (at (m,), whole): the old contact whose place each new one takes, one of the same two bodies.
+    """Return (at (m,), whole): the number of the old contact, of the same two bodies, whose place each new one takes.
 
-    whole: whether each new contact has such a place.
+    whole: whether there is such a place for each new contact.
     """
     at = np.empty(new.a.size, np.int64)
     for i in range(new.first.size - 1):
@@ -155,8 +156,8 @@ def of_moved(c, moved):
     return found[:m]
 
 
-def leave_places(c, gap, J, left):
-    """Mark the contacts with the numbers `left` as gone, in place: far apart, and without an impulse."""
+def mark_gone(c, gap, J, left):
+    """Mark contacts as gone, in place: their bodies are far apart, and they have no impulse.  left: their numbers."""
     for k in left:
         gap[k] = GONE
         for e in range(J.shape[1]):

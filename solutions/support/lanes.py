@@ -23,7 +23,7 @@ INERTIA_A, INERTIA_B = 12, 18
 MASS_A, MASS_B, K_N, K_T, FASTEST, GAP = 24, 25, 26, 27, 28, 29
 ROWS = 30
 
-# Rows of the group that is visited, and that no other group needs
+# Rows of the working memory, which holds the numbers of one group while it is visited
 V_A, OMEGA_A, V_B, OMEGA_B, AIM, GIVE = 0, 3, 6, 9, 12, 13
 WORK_ROWS = 14
 
@@ -126,10 +126,10 @@ def put_contacts(lanes, at, c, J, arms, fastest, inv_mass, inv_inertia):
         s[WIDE * GAP + i], s[WIDE * FASTEST + i] = c.gap[k], fastest[k]
 
 
-def leave_lanes(push, spin, lanes, c, left):
-    """Mark the contacts with the numbers `left` as gone, in place.
+def mark_gone_in_lanes(push, spin, lanes, c, left):
+    """Mark contacts as gone, in place.  left: their numbers.
 
-    What their impulses do to velocities is taken out of `push` and `spin`, (n + p, 3).
+    Their impulses no longer count in `push` and `spin`, the changes (n + p, 3) of all velocities by impulses.
     """
     for k in left:
         s, i, a, b = lanes.rows[lanes.place[k] // WIDE], lanes.place[k] % WIDE, c.a[k], c.b[k]

@@ -95,14 +95,14 @@ fault("put_contacts", "s[WIDE * (ARM_B + e) + i] = arms.r_a[k, e], arms.r_b[k, e
       of="support.lanes")
 fault("places_in", "old.b[k] != new.b[s]:", "False:", "a new contact takes the place of one with another body",
       of="support.kept_contacts")
-fault("leave_places", "gap[k] = GONE", "pass", "a contact that is gone still pushes", of="support.kept_contacts")
-fault("leave_lanes", "-s[WIDE * MASS_A + i], J", "0.0, J",
+fault("mark_gone", "gap[k] = GONE", "pass", "a contact that is gone still pushes", of="support.kept_contacts")
+fault("mark_gone_in_lanes", "-s[WIDE * MASS_A + i], J", "0.0, J",
       "what a contact did to velocities stays when it is gone", of="support.lanes")
-fault("leave_lanes", "put_three(s, IMPULSE, i, (0.0, 0.0, 0.0))", "pass",
+fault("mark_gone_in_lanes", "put_three(s, IMPULSE, i, (0.0, 0.0, 0.0))", "pass",
       "the impulse of a contact that is gone stays in its lane", of="support.lanes")
 fault("add_push", "before + kept[k], before", "before, before", "no substep begins with the last impulses",
       of="support.arms")
-fault("find_push", "total[k] - kept[k]", "0.5 * (total[k] - kept[k])",
+fault("push_since", "total[k] - kept[k]", "0.5 * (total[k] - kept[k])",
       "a substep begins with half of what the last impulses did", of="support.arms")
 fault("_follow_2d", "gap[k] += h * u_n[k]", "gap[k] += 2.0 * h * u_n[k]",
       "in the plane gaps change twice as fast as bodies move", of="given.contact")

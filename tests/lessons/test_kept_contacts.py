@@ -141,7 +141,7 @@ def test_contacts_of_bodies_that_have_moved_leave_their_places_and_later_the_set
     c, J = contacts_of([(0, 1), (0, 3), (1, 2), (1, 3), (2, 3)]), np.ones((5, 2))
     left = kept_contacts.of_moved(c, np.array([False, False, True, False]))
     assert left.tolist() == [2, 4]
-    kept_contacts.leave_places(c, c.gap, J, left)
+    kept_contacts.mark_gone(c, c.gap, J, left)
     assert c.gap.tolist() == [0.0, 1.0, kept_contacts.GONE, 3.0, kept_contacts.GONE]
     assert np.all(J[left] == 0.0) and np.all(np.delete(J, left, axis=0) == 1.0)
     assert not np.any(contact.kept_impulses(contacts_of([(1, 2)]), c, J + 1.0, 10.0))    # no new contact is near them
@@ -234,7 +234,7 @@ def test_a_pair_within_reach_that_was_none_before_a_search_is_looked_at(d):
         pairs = {(i, j) for i in range(n) for j in before.partner[before.first[i]:before.first[i + 1]]}
         way = rng.uniform(wide[0] - low, wide[1] - high) * rng.choice([0.2, 1.0, 1.5], (n, 1))
         low, high, moved = low + way, high + way, np.zeros(n, np.bool_)
-        kept_contacts.leave_half(moved, low, high, *wide, margin)
+        kept_contacts.mark_far(moved, low, high, *wide, margin)
         near = {(i, j) for j in range(n) for i in range(j) if apart(low, high, i, j) <= 0.5 * margin}
         assert all(moved[i] or moved[j] for i, j in near - pairs)
         new += len(near - pairs)

@@ -119,7 +119,7 @@ def test_contacts_that_leave_take_what_their_impulses_did_with_them(left):
     lanes.put_contacts(side_by_side, np.arange(len(J)), c, J, arms, fastest, inv_mass, inv_inertia)
     pushes, rest = (np.zeros(v.shape), np.zeros(v.shape)), (np.zeros(v.shape), np.zeros(v.shape))
     apply_impulses(*pushes, J, c, arms, inv_mass, inv_inertia)
-    lanes.leave_lanes(*pushes, side_by_side, c, np.array(left, np.int64))
+    lanes.mark_gone_in_lanes(*pushes, side_by_side, c, np.array(left, np.int64))
     J[left] = 0.0
     apply_impulses(*rest, J, c, arms, inv_mass, inv_inertia)
     assert np.max(np.abs(np.subtract(pushes, rest))) < 1e-13

@@ -10,8 +10,9 @@ With `--threads` ours shares its work in space among threads (`threads.py`), and
 engines have no such switch.  Times are then those of a clock on the wall.
 
 The cost of a step should grow as n to a power of at most 1.05 from 100 to 10,000 bodies; all sizes are timed in turn.
-All piles have as many rows, and still move.  Larger piles do not fit into the processor's memory, and a contact costs
-more there.  The memory shown is that of the whole process, compiler included: with 10,000 spheres at most 4 GiB.
+All piles have the same number of rows, and all are timed two seconds after their fall began, when some bodies still
+move.  Larger piles do not fit into the processor's cache, and a contact costs more there.  The memory shown is that of
+the whole process, compiler included: with 10,000 spheres at most 4 GiB.
 """
 
 import os
@@ -177,7 +178,8 @@ def across_in_rows(kind, n):
 
 
 def landed(lesson, name, n):
-    """Return the lesson's pile of n bodies after a while: all have ROWS rows, so all move as much as each other."""
+    """Return the lesson's pile of n bodies after LANDING seconds.  All have ROWS rows, so they settle in the same time.
+    """
     kind = KINDS[name]
     kind = kind._replace(across=max(2, across_in_rows(kind, n)))
     ours = Ours(lesson, kind, *fallen(kind, n))

@@ -38,7 +38,7 @@ def difference(function, arguments, without):
 
 
 def copied(arrays):
-    """Copy arrays: what reading their memory once, and writing as much, costs at least."""
+    """Copy arrays.  It takes the time of reading them once and writing as many numbers."""
     for array in arrays:
         array.copy()
 
