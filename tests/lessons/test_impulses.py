@@ -1403,7 +1403,7 @@ def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
     given = f"a body between two smooth walls, r = ± {radius} n, n = {n}, e = {e}, {body}"
     close("velocity between two smooth walls [m/s]", got.v, across(n, body.v), 1e-9, given)
     close("angular velocity between two smooth walls [rad/s]", got.omega, body.omega, 1e-9, given)
-    expected = e * abs(n @ body.v) * np.abs(n).max()                   # its turning may make the body come to either wall
+    expected = e * abs(n @ body.v) * np.abs(n).max()                   # while it turns, it may come to either wall
     close("residual between two smooth walls [m/s]", residual, expected, 1e-9, given)
 
 

@@ -8,7 +8,7 @@ import pytest
 from solutions.checks import BadInput
 from solutions.support.scenes import HIGHEST
 from validate.engines.contact import DT, KINDS, fallen
-from validate.speed import piles
+from validate.speed import opponents, piles
 
 
 def test_our_settings_against_an_engine_are_fewer_substeps_that_can_carry_their_hertz():
@@ -28,9 +28,28 @@ def test_settings_change_nothing_else_of_a_pile():
 
 
 def test_a_cost_that_grows_as_n_has_the_power_of_one():
-    rows = [piles.Size(n, 2 * n, 3e-4 * n, np.nan, 0.1) for n in piles.SIZES]
-    assert piles.power(rows) == pytest.approx(1.0)
-    assert piles.power([row._replace(ms=row.ms * row.bodies) for row in rows]) == pytest.approx(2.0)
+    n = np.array(piles.SIZES)
+    assert piles.power(n, 3e-4 * n) == pytest.approx(1.0)
+    assert piles.power(n, 3e-4 * n * n) == pytest.approx(2.0)
+
+
+def test_an_engine_that_is_not_installed_has_a_dash():
+    assert piles.known(piles.power([100, 1000], [np.nan, np.nan]), ".2f") == "–" and piles.known(1.054, ".2f") == "1.05"
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_the_floor_reaches_under_the_walls_however_far_apart_they_stand(d):
+    for wall in (5.0, 60.0, 600.0):
+        (floor, half), *sides = opponents.slabs(wall, d)
+        assert floor[-1] == -half[-1] and min(half[:-1]) >= wall + opponents.THICK and len(sides) == 2 * (d - 1)
+        faces = [np.array(centre) - np.sign(centre) * half * (np.array(centre) != 0.0) for centre, half in sides]
+        assert np.allclose(sorted(np.abs(faces).max(axis=1)), wall)
+
+
+def test_memory_that_an_engine_holds_is_what_it_takes():
+    before = piles.held_memory()
+    taken = np.ones(2**25)                                               # 0.25 GiB
+    assert taken.any() and (np.isnan(before) or piles.held_memory() - before == pytest.approx(0.25, abs=0.02))
 
 
 def test_growth_and_races_are_printed_and_drawn(monkeypatch, tmp_path, capsys):
@@ -38,11 +57,11 @@ def test_growth_and_races_are_printed_and_drawn(monkeypatch, tmp_path, capsys):
 
     def grown(function, name, asked, rounds):
         sizes.append(asked)
-        return [piles.Size(n, 2 * n, 3e-4 * n, 6e-4 * n if n <= 1000 else np.nan, 0.1) for n in asked]
+        return [piles.Size(n, 2 * n, 3e-4 * n, 6e-4 * n, 0.1, 0.2) for n in asked]
     monkeypatch.setattr(piles, "alone", grown)
     piles.measure(["discs", "bricks"], 0, 9, True, False, tmp_path / "growth.png", 3162)
     said = capsys.readouterr().out
-    assert sizes == [[100, 316, 1000, 3162]] * 2 and said.count("1.00") == 2 and "150" in said
+    assert sizes == [[100, 316, 1000, 3162]] * 2 and said.count("1.00") == 4 and "150" in said and "300" in said
     one = piles.Race(np.full(9, 0.5), 1.0, 2.0, (1.0, 0.1), (2.0, 0.2))
     races = {"discs": [(rival, one._replace(ours=2.0 if rival.ours else 3.0)) for rival in piles.PLANE]}
     piles.show(races, 100)

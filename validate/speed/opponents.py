@@ -12,7 +12,7 @@ from ..engines.contact import DT, MU, G
 
 DENSITY = 1000.0             # [kg/m³], in the plane [kg/m²]
 THICK = 1.0                  # half thickness of floor and walls [m]
-FAR = 60.0                   # half length of floor and walls [m]
+FAR = 60.0                   # half length of floor and walls [m], longer only where the walls stand further apart
 DAMPING, PUSH_OUT = 10.0, 3.0            # Box2D's and Rapier's default damping ratio [-] and speed of pushing out [m/s]
 SOFT = 2.02                  # MuJoCo's time constant of contacts in steps: with less than two it is unstable [-]
 
@@ -20,7 +20,7 @@ SOFT = 2.02                  # MuJoCo's time constant of contacts in steps: with
 def slabs(wall, d):
     """Return [(centre, half sizes)] of the floor and of the walls, as boxes whose inner faces are the planes."""
     def slab(axis, sign, distance):
-        centre, half = np.zeros(d), np.full(d, FAR)
+        centre, half = np.zeros(d), np.full(d, max(FAR, wall + THICK))
         centre[axis], half[axis] = sign * (distance + THICK), THICK
         return centre.tolist(), half.tolist()
     return [slab(d - 1, -1.0, 0.0), *(slab(axis, sign, wall) for axis in range(d - 1) for sign in (-1.0, 1.0))]

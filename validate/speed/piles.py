@@ -11,8 +11,9 @@ engines have no such switch.  Times are then those of a clock on the wall.
 
 The cost of a step should grow as n to a power of at most 1.05 from 100 to 10,000 bodies; all sizes are timed in turn.
 All piles have the same number of rows, and all are timed two seconds after their fall began, when some bodies still
-move.  Larger piles do not fit into the processor's cache, and a contact costs more there.  The memory shown is that of
-the whole process, compiler included: with 10,000 spheres at most 4 GiB.
+move.  Larger piles do not fit into the processor's cache, and a contact costs more there, for the tuned engine as well.
+The memory shown for ours is that of the whole process, compiler included: with 10,000 spheres at most 4 GiB.  For the
+engine it is what the process holds more once the engine has its bodies and has run for a block.
 """
 
 import os
@@ -23,6 +24,7 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from multiprocessing import get_context
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -42,7 +44,6 @@ from .opponents import Box2DPile, MuJoCoPile, RapierPile
 BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
 SIZES = (100, 316, 1000, 3162, 10_000, 31_623, 100_000)  # bodies of the piles whose cost is compared
-ENGINE_UP_TO = 10_000        # of these, the largest pile with which the tuned engine is timed
 ROWS = {2: 30, 3: 10}        # {dimension: of a pile}: in higher ones bodies that land from above pass each other [-]
 LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
 GROWTH = 1.05                # goal: the power of n with which the cost of a step grows, at most [-]
@@ -192,47 +193,56 @@ class Size(NamedTuple):
     bodies: int
     contacts: int
     ms: float                # median time of a step, ours
-    engine: float            # the same of the tuned engine; NaN where it is not timed
+    engine: float            # the same of the tuned engine; NaN where it is not installed
     memory: float            # the most memory that the process has had until this pile had landed [GiB]
+    memory_engine: float     # that the tuned engine holds; NaN where it is not known
 
 
 def growth(name, sizes, rounds):
-    """Return [Size]: all sizes are timed in turn, ours and, up to ENGINE_UP_TO, the last engine that has a goal."""
+    """Return [Size]: all sizes are timed in turn, ours and the last engine that has a goal, where it is installed."""
     lesson, rows = compiled_lesson(), []
     rival = next((one for one in reversed(RIVALS[KINDS[name].d]) if one.goal and one.product.installed()), None)
     for n in sorted(sizes):
         ours = landed(lesson, name, n)
-        memory, other = peak_memory(), None
-        if rival and n <= ENGINE_UP_TO:
+        memory, other, before = peak_memory(), None, held_memory()
+        if rival:
             other = rival.make(KINDS[name], ours.state, ours.pile)
             other.run(BLOCK)
-        rows.append((n, ours, other, memory))
-    times = np.array([[(cpu_time(ours), cpu_time(other) if other else np.nan) for _, ours, other, _ in rows]
+        rows.append((n, ours, other, memory, held_memory() - before if rival else np.nan))
+    times = np.array([[(cpu_time(ours), cpu_time(other) if other else np.nan) for _, ours, other, *_ in rows]
                       for _ in range(rounds)])
-    return [Size(n, len(ours.state.contacts.a), *middle, memory)
-            for (n, ours, _, memory), middle in zip(rows, np.median(times, axis=0).tolist())]
+    return [Size(n, len(ours.state.contacts.a), *middle, *memory)
+            for (n, ours, _, *memory), middle in zip(rows, np.median(times, axis=0).tolist())]
 
 
-def power(rows):
+def power(bodies, ms):
     """Return the power of n with which the cost of a step grows: the slope of all medians, over logarithms."""
-    return np.polyfit(np.log([row.bodies for row in rows]), np.log([row.ms for row in rows]), 1)[0]
+    return np.polyfit(np.log(bodies), np.log(ms), 1)[0]
 
 
 def grow(names, most, rounds, figure=None):
     """Print how the cost of a step grows; each kind in a process of its own, whose memory it shows."""
-    table = Table("pile", "power of n", "goal", "bodies", "contacts", "ms per step", "ns per contact and step",
-                  "tuned engine [ms]", "memory [GiB]")
+    table = Table("pile", "power of n", "goal", "tuned engine", "bodies", "contacts", "ms per step", "tuned engine",
+                  "ns per contact and step", "tuned engine", "memory [GiB]", "tuned engine")
     sizes, found = [n for n in SIZES if n <= most], {}
     for name in names:
         found[name] = rows = alone(growth, name, sizes, rounds)
-        for k, row in enumerate(rows):
-            first = (name, f"{power(rows):.2f}", f"≤ {GROWTH:g}") if k == 0 else ("", "", "")
-            engine = f"{row.engine:.3g}" if row.engine == row.engine else "–"
-            table.add_row(*first, f"{row.bodies:,}", f"{row.contacts:,}", f"{row.ms:.3g}",
-                          f"{1e6 * row.ms / max(row.contacts, 1):.0f}", engine, f"{row.memory:.2f}")
-    Console(width=160).print(table)
+        n, ms, engine = ([getattr(row, field) for row in rows] for field in ("bodies", "ms", "engine"))
+        first = [name, f"{power(n, ms):.2f}", f"≤ {GROWTH:g}", known(power(n, engine), ".2f")]
+        for row in rows:
+            each = 1e6 / max(row.contacts, 1)
+            table.add_row(*first, f"{row.bodies:,}", f"{row.contacts:,}", f"{row.ms:.3g}", known(row.engine, ".3g"),
+                          f"{each * row.ms:.0f}", known(each * row.engine, ".0f"), f"{row.memory:.2f}",
+                          known(row.memory_engine, ".2f"))
+            first = [""] * 4
+    Console(width=180).print(table)
     if figure:
         draw_growth(found, figure)
+
+
+def known(number, form):
+    """Return a number in a form, or a dash for NaN."""
+    return f"{number:{form}}" if number == number else "–"
 
 
 def draw_growth(found, path):
@@ -243,9 +253,9 @@ def draw_growth(found, path):
         n, ms, engine, contacts = (np.array(column) for column in zip(*((r.bodies, r.ms, r.engine, r.contacts)
                                                                           for r in rows)))
         axis.plot(n, 1e6 * ms / contacts, "os^D"[k % 4] + "-", color=f"C{k}",
-                  label=f"{name}: step ~ n to the power of {power(rows):.2f}")
+                  label=f"{name}: step ~ n to the power of {power(n, ms):.2f}")
         axis.plot(n, 1e6 * engine / contacts, "os^D"[k % 4] + ":", color=f"C{k}", fillstyle="none",
-                  label=f"{name}, tuned engine")
+                  label=f"{name}, tuned engine: {known(power(n, engine), '.2f')}")
     axis.set(xscale="log", yscale="log", xlabel="bodies", ylabel="CPU time per contact and step [ns]")
     plain_ticks(axis.yaxis)
     chart.legend(loc="outside right upper", fontsize=9)
@@ -266,6 +276,12 @@ def peak_memory():
     """Return the most memory [GiB] that this process has ever had."""
     import resource  # Windows has none
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (2**30 if sys.platform == "darwin" else 2**20)
+
+
+def held_memory():
+    """Return the memory [GiB] that this process holds now; NaN where the system does not say so in Linux's way."""
+    pages = Path("/proc/self/statm")
+    return int(pages.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**30 if pages.is_file() else np.nan
 
 
 def remember(lesson, n=10_000):
