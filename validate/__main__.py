@@ -273,8 +273,8 @@ def piles(
     growth: Annotated[bool, typer.Option("--growth", help="How the cost of a step grows.")] = False,
     most: Annotated[int, typer.Option(min=316, max=100_000, help="Bodies of the largest pile of --growth.")] = 10_000,
     memory: Annotated[bool, typer.Option("--memory", help="The memory of 10,000 spheres.")] = False,
-    threads: Annotated[int, typer.Option(min=1, help="Of ours in space, of Box2D and of Rapier.  They pay with 10,000 "
-                                                     "spheres, and not with bricks or 1,000.")] = 1,
+    threads: Annotated[int, typer.Option(min=1, help="Of ours in space, of Box2D and of Rapier.  With two, 10,000 "
+                                                     "spheres take less time, and bricks or 1,000 do not.")] = 1,
     figure: Annotated[Path | None, typer.Option(help="File for a picture of the result.")] = None,
 ):
     """Time piles of lesson 9 against the engines, as ratios measured in one run."""
@@ -420,7 +420,9 @@ def main(arguments=None):
 
 
 def suggestion(arguments):
-    """Return what a word that is no command may have meant; empty without an idea."""
+    """Return what a word that is no command may have meant, or where all options are named."""
+    if arguments and arguments[0] in typer.main.get_command(app).commands:
+        return f": `validate {arguments[0]} --help` names all that there is"
     for words, option in ((modules.scene_names(), "--scene"), (modules.lesson_names(), "--lesson")):
         for word in arguments:
             if word in words and option not in arguments:

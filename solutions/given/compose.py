@@ -270,7 +270,7 @@ def state_of(loop, state):
 
 
 def padded(loop):
-    """Return the six parts of a Loop; `leave` fills the places of those that it does not need."""
+    """Return six steps: those of the parts of a Loop, at most five, and `leave` in the other places."""
     return [part.step for part in loop.parts] + [leave] * (6 - len(loop.parts))
 
 

@@ -123,9 +123,9 @@ def _follow_2d(gap, aim, give, u_n, h):
 def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, first):
     """Given.  (new, J_new (m, d) [N s], at, left, changed): the contacts of bodies that have moved, found anew.
 
-    Their old contacts in `known`, with the numbers `left`, are marked as gone.  Each new contact then takes the place
-    of an old one of the same two bodies; `at` has the numbers of these.  If a pair touches in more points than before,
-    there are too few places.  Then nothing is written, and `changed` is True; so it is in the `first` step.
+    left: the numbers of their old contacts in `known`;    at: of those whose places the new contacts take.
+    changed: whether all must be sorted again, in the `first` step and where a pair touches in more points than before.
+    Otherwise the old contacts are marked as gone, and the new ones written, both in `known`.
     """
     new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
     J_new, left, (at, whole) = kept_impulses(new, known, J, pile.margin), of_moved(known, moved), places_in(known, new)
@@ -138,11 +138,11 @@ def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, firs
 
 
 def _substep_2d(x, q, v, omega, push, spin, J, gap, contacts, arms, fastest, ways, h, pile):
-    """Given.  (x, q, v, omega, J) after h in the plane, and the largest velocity that the sweep at rest changed.
+    """Given.  (x, q, v, omega, J) after h in the plane, and how much the sweep at rest changed a v [m/s] at most.
 
     Gravity and the last impulses; a sweep of soft contacts; motion; a sweep at rest, which takes back the velocity that
-    only served to push bodies apart.  `push` and `spin` are the changes of v and omega by the last impulses.  They and
-    `gap` change in place.
+    only served to push bodies apart.  `push` and `spin` are the changes of v and omega by the last impulses.  They,
+    `gap` and `ways` change in place.
     """
     v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), float_copy(omega)
     add_push(v, push)
@@ -163,7 +163,8 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     Contacts are found at most once per step, and visited in spread_order.  Those of bodies that have hardly moved are
     kept (support/kept_contacts.py) during a call; the next call finds all of them anew.
     Bodies that begin inside each other part with at most separation_speeds.
-    Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
+    Raises BadInput as checked_pile does, Diverged with the residual where bodies sink into each other, and also where a
+    place or a velocity is not finite.
     """
     check_record(pile, state)
     (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
@@ -284,7 +285,7 @@ def _rest_in_lanes(before, spin, v, omega, lanes, h, pile):
 def _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile):
     """Given.  (x, q, v, omega) and the largest change, as _substep_2d returns them, in space.
 
-    turn: the axes of the bodies.  push, spin and lanes change in place.
+    turn: the axes of the bodies.  push, spin, lanes and ways change in place.
     """
     v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), turn_freely(turn, omega, pile.inv_inertia, h)
     add_push(v, push)
@@ -373,7 +374,7 @@ def normals_first_sweep(A, b, J, mu):
 
 
 def minimum_map_step_with_friction(A, b, J, mu):
-    """Given.  Return J after one step of Newton's method for the residual of cone_residual: minimum_map_step, and J_t.
+    """Given.  Return J after one step of Newton's method for cone_residual = 0: minimum_map_step with friction.
 
     Friction that would leave its limit ±μ J_n is set to it, with the J_n of the same step.
     """

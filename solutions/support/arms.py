@@ -115,7 +115,10 @@ def fallen_on(v, inv_mass, gravity, dt):
 
 
 def add_push(v, push):
-    """Add push to v, and keep the v from before in push, both in place.  They are contiguous and have one shape."""
+    """Add push to v, and keep the v from before in push, both in place.
+
+    Both are contiguous and have one shape: (n + p, d) for velocities, (n + p,) for angular ones in the plane.
+    """
     total, kept = v.ravel(), push.ravel()
     for k in range(total.size):
         before = total[k]
@@ -152,7 +155,10 @@ def world_inertia(turn, inv_body):
 
 
 def move_2d(x, q, v, omega, ways, dt):
-    """(x, q) after dt in the plane.  The ways that bodies have made are added up in place."""
+    """New arrays (x (n, 2), q (n,)) after dt in the plane, with v (n + p, 2) and omega (n + p,).
+
+    The ways that bodies have made are added up in place.
+    """
     x, q = float_copy(x), float_copy(q)
     for i in range(x.shape[0]):
         x[i, 0] += dt * v[i, 0]
@@ -163,7 +169,7 @@ def move_2d(x, q, v, omega, ways, dt):
 
 
 def move(x, q, v, omega, ways, dt):
-    """The same in space, quaternions q (n, 4)."""
+    """The same in space, with x (n, 3), quaternions q (n, 4), v (n + p, 3) and omega (n + p, 3)."""
     x = float_copy(x)
     for i in range(x.shape[0]):
         put(x, i, plus(row(x, i), dt, row(v, i)))
@@ -173,7 +179,10 @@ def move(x, q, v, omega, ways, dt):
 
 
 def turn_freely(turn, omega, inv_body, dt):
-    """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit.  What is round has none."""
+    """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit.
+
+    Bodies with three equal moments have no such term.
+    """
     omega = float_copy(omega)
     for i in range(turn.shape[0]):
         if inv_body[i, 0] == inv_body[i, 1] == inv_body[i, 2]:

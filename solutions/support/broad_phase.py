@@ -1,6 +1,6 @@
 """Broad phase: pairs of boxes (along the axes) that overlap, found in a grid of cells.
 
-The boxes of lesson 6 stay where they are for one search.  Here they are wider than the bodies, so that the same pairs
+Lesson 6 searches for the pairs of given boxes once.  Here the boxes are wider than the bodies, so that the same pairs
 serve many steps.
 """
 
@@ -41,7 +41,7 @@ def cell_numbers(low, size):
 def cell_size(low, high):
     """Edge of the cells [m]: the largest box, doubled until the grid, its rim left out, has few enough cells.
 
-    Raises Diverged where a corner is not finite.
+    Raises Diverged where a corner is not finite, or a low one is above a high one.
     """
     n, d = low.shape
     size, span = 0.0, np.empty(d)
@@ -69,7 +69,7 @@ def cells_inside(span, size):
 
 
 def sorted_by_cell(cell, cells):
-    """(start (cells + 1,), order (n,)): the boxes of cell c are order[start[c]:start[c + 1]].  A counting sort."""
+    """(start (cells + 2,), order (n,)): the boxes of cell c are order[start[c]:start[c + 1]].  A counting sort."""
     start, order = np.zeros(cells + 2, np.int64), np.zeros(cell.size, np.int64)
     for c in cell:
         start[c + 2] += 1
@@ -101,7 +101,8 @@ def box_reaches(low, high, i, plane):
 def near_pairs(low, high, planes):
     """Pairs of boxes that overlap, and of boxes and the planes that they reach.
 
-    Corners low and high (n, d), planes (p, d + 1), all of them finite.
+    Corners low and high (n, d) and planes (p, d + 1).  Raises Diverged where a corner is not finite, or a low one is
+    above a high one.
     """
     n, d = low.shape
     cell, stride, cells = cell_numbers(low, cell_size(low, high))

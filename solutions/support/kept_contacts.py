@@ -1,7 +1,8 @@
 """Given.  Contacts that are kept over many steps: a pair of bodies is looked at again only once one of them has moved.
 
-A kept contact keeps its place and its normal.  Its gap follows the velocities of its bodies in every substep, so it is
-wrong only in the second order of the way that they have made, which is at most KEPT of their size.
+A kept contact keeps its place and its normal.  Its gap follows the velocities of its bodies in every substep, so its
+error is of second order in the way that they have made.  At the beginning of a step that way is at most KEPT of the
+smallest half size, or else the contact is found anew.
 *Source:* Box2D 3 and Rapier keep the points of a pair in the same way (contact recycling).
 """
 
@@ -13,7 +14,8 @@ from .broad_phase import Pairs
 from .contact_points import first_of, room_for
 
 KEPT = 2e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
-DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-]
+DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-];
+                             # less where the margin limits the allowed way
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
 AHEAD = 8                    # steps of its velocity by which the box of a body is wider when pairs are searched [-]
 GONE = 1e30                  # gap of a contact that is no longer found, but keeps its place [m]
@@ -21,8 +23,8 @@ GONE = 1e30                  # gap of a contact that is no longer found, but kee
 
 class Ways(NamedTuple):
     """How far n bodies and p planes have moved since their contacts were found."""
-    length: np.ndarray       # (n + p,) the longest way of any point of the body [m]
-    allowed: np.ndarray      # (n + p,) with which contacts are kept [m]
+    length: np.ndarray       # (n + p,) no point of the body has moved farther [m]; ∞ where it is not known
+    allowed: np.ndarray      # (n + p,) the longest way with which contacts are kept [m]
     radius: np.ndarray       # (n + p,) of the ball around the centre that holds the body [m]
 
 

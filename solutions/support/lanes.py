@@ -13,7 +13,7 @@ from .kept_contacts import GONE
 from .tuples import across, minus, plus, put, row
 
 WIDE = 8                     # contacts of a group [-]
-SPARE = 8                    # groups for which one more row is asked for [-]: new memory in each step takes time
+SPARE = 8                    # groups for which there is memory for one more [-]: new memory in each step takes time
 COLOURS = 62                 # [-]; a contact for which none is free is a group of its own
 in_any_order = range         # over the parts of a turn; threads may share them
 
@@ -29,7 +29,10 @@ WORK_ROWS = 14
 
 
 def number_of_parts():
-    """Into how many parts the groups of a turn are divided."""
+    """Into how many parts the groups of a turn are divided.
+
+    `validate/speed/threads.py` puts the number of threads in its place.
+    """
     return 1
 
 

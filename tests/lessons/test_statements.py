@@ -322,6 +322,17 @@ def test_with_memory_a_cabin_on_a_block_needs_6900_steps_of_two_sweeps():
     assert np.flatnonzero(np.abs(forces[:, 1] - 1000.0) > 1.0)[-1] == pytest.approx(6900, abs=50)
 
 
+@pytest.mark.parametrize(("substeps", "hertz", "low"), [(16, 480.0, 0.003), (1, 60.0, 0.17)])
+def test_a_box_on_one_of_a_thousandth_stands_with_16_substeps_and_sinks_with_one(substeps, hertz, low):
+    masses = np.array([1.0, 1000.0])
+    state, pile = contact.make_pile_2d([(0.0, 0.5), (0.0, 1.5)], np.zeros(2), masses, masses / 6.0,
+                                       np.full((2, 2), 0.5), np.array([(0.0, 1.0, 0.0)]), (0.0, -9.81), 0.5, substeps,
+                                       hertz, 10.0, 0.02)
+    end = contact.advance_pile_2d(contact.box_bounds_2d, contact.box_contacts_2d, state, 1.0 / 240.0, 720, pile)
+    assert float(f"{1.5 - end.x[1, 1]:.{1 if substeps > 1 else 2}g}") == low
+    assert (np.abs(end.v).max() < 1e-4) == (substeps == 16)
+
+
 # ---------------------------------------------------------------------------------------------- 11 kinematics
 
 def test_a_bend_of_a_straight_arm_shortens_it_by_the_length_beyond_the_later_joint():

@@ -53,6 +53,7 @@ def run(capsys, *arguments):
     (["--scene", "pendulums"], "did you mean pendulum"),
     (["oscillator"], "did you mean --scene oscillator"),
     (["rotation"], "did you mean --lesson rotation"),
+    (["piles", "--threads", "0"], "`validate piles --help`"),
     (["--jobs", "many"], "--jobs"),
     (["--bogus"], "--bogus"),
     *((["--engine", "my_engine.py", *option], option[0]) for option in (

@@ -1,1 +1,1 @@
-"""Benchmarks beside the report: piles, targets, memory."""
+"""Benchmarks beside the report: piles and a profile of their steps, targets, memory, what became slower."""

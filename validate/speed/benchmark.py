@@ -1,6 +1,7 @@
-"""Speed and memory, as ratios measured in one run: `python -m validate.speed.benchmark`.
+"""Speed and memory: `python -m validate.speed.benchmark`.
 
-Every row gives the requirement and the result.  Absolute times are shown for orientation only.
+A row gives the requirement, if it has one, and the result.  Speeds are ratios of one run, but a frame of cloth is
+compared with 1/60 s, and the import of a lesson with 0.3 s.  Memory has a limit in GiB.
 """
 
 import subprocess

@@ -1,9 +1,9 @@
-"""Engines in the piles of lesson 9 that are only timed: Box2D 3, Rapier and MuJoCo, beside pymunk and pybullet.
+"""Engines for `validate piles` that no scene with a pile has: Box2D 3, Rapier and MuJoCo.
 
 All get the same bodies, places, walls, friction and step, and start from our settled state.  No body may sleep, one
 thread works unless more are asked for, and continuous detection is off where the binding has a switch.  An engine is
-imported when its pile is made, so this module loads without any of them.  Nothing is built from a Model here: the
-adapters of `validate/worlds/` look at every pair of bodies, and a pile may have 100,000.
+imported when its pile is made, so this module loads without any of them.  Nothing is built from a Model here: Box2D's
+and MuJoCo's adapters in `validate/worlds/` look at every pair of bodies, and a pile may have 100,000.
 """
 
 import numpy as np

@@ -2,18 +2,19 @@
 
 Kinds: discs, boxes (in the plane), spheres, bricks (in space).  Ours and an engine run the same bodies from the same
 settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping, in a process of their own.  Times are CPU times
-of all its threads.  An engine runs with its defaults, and tuned so that its bodies overlap less.  Against each engine
-ours takes the fewest substeps with which its bodies overlap no more than the engine's.
+of all its threads.  Box2D and Rapier run with their defaults, and tuned so that their bodies overlap less.
+Against each engine ours takes the fewest substeps with which its bodies overlap no more than the engine's.
 Overlaps are judged by `reference/overlaps.py`, which uses no code of the lessons.
 
-With `--threads` ours shares its work in space among threads (`threads.py`), and Box2D and Rapier get as many; the other
-engines have no such switch.  Times are then those of a clock on the wall.
+With `--threads` ours shares its work in space among threads (`threads.py`), and Box2D and Rapier get as many.  The
+other engines are left out then.  Times are those of a clock on the wall.
 
 The cost of a step should grow as n to a power of at most 1.05 from 100 to 10,000 bodies; all sizes are timed in turn.
-All piles have the same number of rows, and all are timed two seconds after their fall began, when some bodies still
-move.  Larger piles do not fit into the processor's cache, and a contact costs more there, for the tuned engine as well.
-The memory shown for ours is that of the whole process, compiler included: with 10,000 spheres at most 4 GiB.  For the
-engine it is what the process holds more once the engine has its bodies and has run for a block.
+All piles have about the same number of rows, 29 to 34 in the plane and 9 to 12 in space.  All are timed two seconds
+after their fall began, when some bodies still move.  Larger piles do not fit into the processor's cache, and a contact
+costs more there, for the tuned engine as well.  The memory shown for ours is that of the whole process, compiler
+included: with 10,000 spheres at most 4 GiB.  For the engine it is what the process holds more once the engine has its
+bodies and has run for a block.
 """
 
 import os
@@ -44,7 +45,7 @@ from .opponents import Box2DPile, MuJoCoPile, RapierPile
 BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
 SIZES = (100, 316, 1000, 3162, 10_000, 31_623, 100_000)  # bodies of the piles whose cost is compared
-ROWS = {2: 30, 3: 10}        # {dimension: of a pile}: in higher ones bodies that land from above pass each other [-]
+ROWS = {2: 30, 3: 10}        # {dimension: rows of a pile}; higher piles land so hard that bodies pass each other [-]
 LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
 GROWTH = 1.05                # goal: the power of n with which the cost of a step grows, at most [-]
 ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
@@ -74,7 +75,7 @@ PLANE = (
 SPACE = (
     Rival(PYBULLET, "10 iterations", partial(bullet_pile, iterations=10), {"spheres": 0.25, "bricks": 0.5}, {}),
     Rival(PYBULLET, "50 iterations", partial(bullet_pile, iterations=50), {"spheres": 0.1, "bricks": 0.3}, {}),
-    Rival(RAPIER, "defaults: 4 iterations, 30 Hz, slop 1 mm", RapierPile, {}, SOFT_SPACE),
+    Rival(RAPIER, "defaults: 4 iterations, 30 Hz (60 Hz at walls), slop 5 mm", RapierPile, {}, SOFT_SPACE),
     Rival(RAPIER, "2 iterations", partial(RapierPile, iterations=2), {}, SOFT_SPACE),
     Rival(RAPIER, "tuned: 4 iterations, 120 Hz, slop 0.1 mm", partial(RapierPile, hertz=120.0, slop=1e-4),
           {"spheres": 0.2, "bricks": 0.5}, {"bricks": (2, 120.0)}),
@@ -179,7 +180,9 @@ def across_in_rows(kind, n):
 
 
 def landed(lesson, name, n):
-    """Return the lesson's pile of n bodies after LANDING seconds.  All have ROWS rows, so they settle in the same time.
+    """Return the lesson's pile of n bodies after LANDING seconds.
+
+    All have about ROWS rows, so they settle in the same time.
     """
     kind = KINDS[name]
     kind = kind._replace(across=max(2, across_in_rows(kind, n)))
@@ -333,7 +336,7 @@ def show(races, bodies, threads=1):
     Console(width=200).print(table)
 
 
-def draw(races, bodies, path):
+def draw(races, bodies, path, threads=1):
     """Draw time against overlap of all engines and of ours, one picture for each kind: the lower left is best."""
     import matplotlib.pyplot as plt
     figure, panels = plt.subplots(1, len(races), figsize=(5.2 * len(races), 4.2), squeeze=False, layout="constrained")
@@ -347,7 +350,7 @@ def draw(races, bodies, path):
             panel.annotate(f"{engine}\n{settings.partition(',')[0]}".strip(), (overlap, ms), (6, 4), color=colour,
                            textcoords="offset points", fontsize=9)
         panel.set(xscale="log", yscale="log", title=f"{bodies:,} {name}", xlabel="mean overlap [mm]",
-                  ylabel="CPU time of a step [ms]")
+                  ylabel="CPU time of a step [ms]" if threads == 1 else f"time of a step on {threads} threads [ms]")
         panel.margins(0.3)
         plain_ticks(panel.xaxis, panel.yaxis)
     figure.savefig(path)
@@ -373,4 +376,4 @@ def measure(kinds, bodies, rounds, growth, memory, figure=None, most=10_000, thr
         races = compare(kinds or KINDS, bodies, rounds, threads)
         show(races, bodies, threads)
         if figure:
-            draw(races, bodies, figure)
+            draw(races, bodies, figure, threads)

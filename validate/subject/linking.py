@@ -2,7 +2,7 @@
 
 numba links each function into all that call it, and yet optimises each on its own and turns each into machine code.
 A loop that is made of parts has a hundred functions, of which Python calls one, and ten are called by their addresses.
-Without the machine code of the others its first step compiles in six tenths of the time, and takes as long as before.
+Without the machine code of the others it compiles in half to four fifths of the time, and its steps are as fast.
 
 Importing this module imports numba.
 """

@@ -171,7 +171,8 @@ def _count_references_in_one_thread():
     """Let compiled code count the references to its arrays by plain additions.
 
     numba adds with the processor's lock, so that threads may share an array.  A step that passes records of arrays on
-    takes up to three times as long by that.  All code here runs in one thread.
+    takes up to three times as long by that.  All code here runs in one thread, but for the loops of `speed/threads.py`:
+    numba hands them arrays without counting.
     """
     from numba.core.cgutils import ir
     from numba.core.runtime import nrtdynmod
