@@ -143,6 +143,26 @@ print("define linkonce_odr void @NRT_incref" in code, "atomicrmw" in code)
 
 
 @needs_numba
+@pytest.mark.long
+@pytest.mark.parametrize("d", [2, 3])
+def test_arrays_that_do_not_lie_row_by_row_are_taken_too(d):
+    """numba cannot compile a loop in which a transposed array and its successor are one variable."""
+    lesson, x = modules.bind("contact", compiled=True), np.array([[0.0, 0.3], [0.2, 0.3], [0.0, 0.0]])[[0, 2, 1][-d:]].T
+    frozen = np.broadcast_to(0.1, (2, d))
+    ends = []
+    for centres, half in ((x, frozen), (x.copy(), frozen.copy())):
+        if d == 2:
+            state, pile = lesson.make_pile_2d(centres, np.zeros(2), 1.0, 0.01, half, [(0.0, 1.0, 0.0)], (0.0, -9.81),
+                                              0.3, 2, 60.0, 5.0, 0.01)
+            functions = lesson.advance_pile_2d, lesson.disc_bounds, lesson.round_contacts
+        else:
+            state, pile = lesson.make_pile(centres, np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)), 1.0, np.full((2, 3), 0.01),
+                                           half, [(0.0, 0.0, 1.0, 0.0)], (0.0, 0.0, -9.81), 0.3, 2, 60.0, 5.0, 0.01)
+            functions = lesson.advance_pile, lesson.ball_bounds, lesson.round_contacts
+        ends.append(functions[0](*functions[1:], state, 1.0 / 240.0, 5, pile))
+    assert all(np.array_equal(a, b) for a, b in zip(ends[0][:4], ends[1][:4], strict=True))
+
+
 def test_a_twin_raises_the_same_errors_with_the_value_in_them():
     twin = modules.bind("integrators", compiled=True)
     with pytest.raises(BadInput, match=r"-0\.5"):

@@ -82,12 +82,32 @@ class CachedDispatch:
     def __call__(self, *arguments):
         kinds = _kinds(arguments)
         if kinds not in self.known:
-            from numba import typeof
-            exact = tuple(map(typeof, arguments))
-            if exact not in self.called.overloads:
-                self.called.compile(exact)
-            self.known[kinds] = self.called.get_overload(exact)
+            self.known[kinds] = self.machine_code(arguments)
         return self.known[kinds](*arguments)
+
+    def machine_code(self, arguments):
+        """Return what Python calls for arguments of these kinds.
+
+        Where numba cannot compile for them, arrays that do not lie row by row in memory, such as transposed ones, and
+        those that may not be written are copied before each call.
+        """
+        from numba.core.errors import TypingError
+        try:
+            return self.compiled_for(arguments)
+        except TypingError:
+            usual = _in_rows(arguments)
+            if _kinds(usual) == _kinds(arguments):
+                raise
+            code = self.compiled_for(usual)
+            return lambda *others: code(*_in_rows(others))
+
+    def compiled_for(self, arguments):
+        """Return the machine code for arguments of exactly these types."""
+        from numba import typeof
+        exact = tuple(map(typeof, arguments))
+        if exact not in self.called.overloads:
+            self.called.compile(exact)
+        return self.called.get_overload(exact)
 
     def __getattr__(self, name):                                     # py_func … are those of the twin
         if name == "twin":
@@ -113,6 +133,16 @@ ITS_OWN_KIND = {CachedDispatch, CheckedFirst}            # and numba's type of c
 
 def passed_over(p, state):
     """Stand in for check_record where compiled code calls it: CheckedFirst has made the call before."""
+
+
+def _in_rows(argument):
+    """Return an array, or the arrays of a record, row by row in memory and writable; anything else as it is."""
+    if type(argument) is np.ndarray:
+        return argument if argument.flags.c_contiguous and argument.flags.writeable else argument.copy()
+    if isinstance(argument, tuple):
+        inner = map(_in_rows, argument)
+        return type(argument)(*inner) if hasattr(argument, "_fields") else tuple(inner)
+    return argument
 
 
 def _kinds(arguments):
