@@ -218,10 +218,10 @@ def check_sinking(state, t, dt, p, allowed):
 
     Raises Sunk where bodies sink into each other all the same, and Diverged where a velocity is no number.
     """
-    k, share = deepest_contact(state.contacts, state.v, dt, p.half)
+    k, share, deep = deepest_contact(state.contacts, state.v, dt, p.half)
     if share > allowed:
         raise Sunk(state.contacts.a[k], state.contacts.b[k], p.half.shape[0], t, -state.contacts.gap[k], p.sweeps)
-    return still_allowed(allowed, share)
+    return still_allowed(allowed, deep)
 
 
 def check_speed(v, omega, dt):

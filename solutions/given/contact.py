@@ -29,19 +29,22 @@ from ..support.arms import (
     turn_freely,
     world_inertia,
 )
-from ..support.broad_phase import Pairs, near_pairs
+from ..support.broad_phase import Pairs
 from ..support.contact_points import places_of, put_back, reordered, sorted_rows, spread_order, with_gap, with_gaps
 from ..support.kept_contacts import (
+    REACH,
     begin_ways,
     forget_deep,
     have_moved,
     mark_far,
     mark_gone,
-    moved_pairs,
     of_moved,
+    pairs_in_reach,
+    pairs_with,
     places_in,
     replace_contacts,
     replace_in_plane,
+    shorten_ways,
     unknown_ways,
     widened,
     with_kept,
@@ -85,7 +88,15 @@ from ..support.lanes import (
     write_velocities,
 )
 from ..support.records import check_record
-from ..support.scenes import PileState, check_overlap, checked_pile, smaller_half, smallest_halves
+from ..support.scenes import (
+    PileState,
+    check_overlap,
+    checked_pile,
+    movable,
+    overlap_before,
+    smaller_half,
+    smallest_halves,
+)
 from ..support.tuples import minus, plus
 from ..vectors import dot
 
@@ -120,6 +131,19 @@ def _follow_2d(gap, aim, give, u_n, h):
         aim[k], give[k] = min(aim[k], 0.0), 0.0
 
 
+def _pairs_now(low, high, v, moved, wide, pairs, dt, pile):
+    """Given.  (wide, pairs): the widened boxes, and the Pairs to look at.
+
+    Both are made anew where a body has left its box; then those bodies are marked as moved, in place.  At least one
+    body of a pair is moved or turned by impulses.
+    """
+    if not has_left_margin(low, high, *wide):
+        return wide, pairs
+    mark_far(moved, low, high, *wide)
+    wide = widened(low, high, v, pile.margin, dt)
+    return wide, pairs_with(movable(pile), pairs_in_reach(*wide, pile.planes, pile.margin))
+
+
 def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, first):
     """Given.  (new, J_new (m, d) [N s], at, left, changed): the contacts of bodies that have moved, found anew.
 
@@ -127,9 +151,10 @@ def _found_anew(find_contacts, x, turn, pairs, moved, known, J, ways, pile, firs
     changed: whether all must be sorted again, in the `first` step and where a pair touches in more points than before.
     Otherwise the old contacts are marked as gone, and the new ones written, both in `known`.
     """
-    new = find_contacts(x, turn, pile.half, pile.planes, moved_pairs(pairs, moved), 0.5 * pile.margin)
+    new = find_contacts(x, turn, pile.half, pile.planes, pairs_with(moved, pairs), REACH * pile.margin)
     J_new, left, (at, whole) = kept_impulses(new, known, J, pile.margin), of_moved(known, moved), places_in(known, new)
     begin_ways(ways, moved)
+    shorten_ways(ways, new, pile.planes.shape[0])
     changed = first or not whole
     if not changed:
         mark_gone(known, known.gap, J, left)
@@ -168,17 +193,15 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     """
     check_record(pile, state)
     (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
-    h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
+    h, wide, residual = dt / pile.substeps, (pile.half + np.inf, pile.half), 0.0
+    allowed = overlap_before(state, dt, pile.half)
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
     order, gap, found, push, spin = np.arange(contacts.a.size), contacts.gap, contacts.gap, v, omega
     for step in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
-            if has_left_margin(low, high, wide_low, wide_high):
-                mark_far(moved, low, high, wide_low, wide_high, pile.margin)
-                wide_low, wide_high = widened(low, high, v, pile.margin, dt)
-                pairs = near_pairs(wide_low, wide_high, pile.planes)
+            wide, pairs = _pairs_now(low, high, v, moved, wide, pairs, dt, pile)
             J_known = put_back(J, order)
             new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J_known, ways,
                                                         pile, step == 0)
@@ -282,12 +305,12 @@ def _rest_in_lanes(before, spin, v, omega, lanes, h, pile):
             _rest_part(begin, end, before, spin, v, omega, lanes, h, pile)
 
 
-def _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile):
+def _substep(x, q, v, omega, push, spin, lanes, ways, h, pile):
     """Given.  (x, q, v, omega) and the largest change, as _substep_2d returns them, in space.
 
-    turn: the axes of the bodies.  push, spin, lanes and ways change in place.
+    push, spin, lanes and ways change in place.
     """
-    v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), turn_freely(turn, omega, pile.inv_inertia, h)
+    v, omega = fallen_on(v, pile.inv_mass, pile.gravity, h), turn_freely(q, omega, pile.inv_inertia, h)
     add_push(v, push)
     add_push(omega, spin)
     _sweep_in_lanes(v, omega, lanes, h, pile)
@@ -301,21 +324,19 @@ def _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile):
 def advance_pile(bounds, find_contacts, state, dt, steps, pile):
     """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts.
 
-    Axes and inertia in the world are kept with the contacts.  Contacts are visited in the order of their Lanes.
+    Inertia in the world is kept with the contacts.  Contacts are visited in the order of their Lanes.
     """
     check_record(pile, state)
     (x, q, v, omega, contacts, J), dt, steps = checked_pile(state, dt, steps, pile)
-    h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
+    h, wide, residual = dt / pile.substeps, (pile.half + np.inf, pile.half), 0.0
+    allowed = overlap_before(state, dt, pile.half)
     ways, pairs = unknown_ways(pile.half, pile.planes.shape[0], pile.margin), Pairs(contacts.first, contacts.b)
     gap, found, room, push, spin = contacts.gap, contacts.gap, np.empty((0, WIDE * ROWS)), v, omega
     for step in range(steps):
         moved = have_moved(ways)
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
-            if has_left_margin(low, high, wide_low, wide_high):
-                mark_far(moved, low, high, wide_low, wide_high, pile.margin)
-                wide_low, wide_high = widened(low, high, v, pile.margin, dt)
-                pairs = near_pairs(wide_low, wide_high, pile.planes)
+            wide, pairs = _pairs_now(low, high, v, moved, wide, pairs, dt, pile)
             contacts, inv_inertia = with_gap(contacts, gap), world_inertia(turn, pile.inv_inertia)
             new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J, ways, pile,
                                                         step == 0)
@@ -332,7 +353,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
         found = gap
         forget_deep(ways, contacts, gap)
         for _ in range(pile.substeps):
-            x, q, v, omega, residual = _substep(x, q, v, omega, push, spin, lanes, ways, turn, h, pile)
+            x, q, v, omega, residual = _substep(x, q, v, omega, push, spin, lanes, ways, h, pile)
         gap, J = gaps_and_impulses(lanes)
     check_end(x, v, dt)
     return PileState(x, q, v, omega, *without_gone(with_gap(contacts, found), J))

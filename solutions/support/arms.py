@@ -6,7 +6,7 @@ import numpy as np
 
 from ..checks import float_copy
 from ..vectors import dot
-from .tuples import across, axis, minus, plus, put, row, scaled, times
+from .tuples import across, axes, minus, plus, put, row, scaled, times
 
 
 class Arms(NamedTuple):
@@ -15,6 +15,12 @@ class Arms(NamedTuple):
     r_b: np.ndarray          # (m, d) the same for b [m]
     k_n: np.ndarray          # (m,) effective inverse mass along the normal [1/kg]
     k_t: np.ndarray          # (m,) effective inverse mass along the surface [1/kg]: in space a bound for all directions
+                             # both are 1 where no impulse changes that velocity: sweeps divide by them
+
+
+def divisor(k):
+    """k, or 1 where it is not above 0."""
+    return k if k > 0.0 else 1.0
 
 
 def arms_2d(x, inv_mass, inv_inertia, c):
@@ -26,8 +32,8 @@ def arms_2d(x, inv_mass, inv_inertia, c):
         a_x, a_y, b_x, b_y = c.p[k, 0] - x[a, 0], c.p[k, 1] - x[a, 1], c.p[k, 0] - x[b, 0], c.p[k, 1] - x[b, 1]
         arms.r_a[k, 0], arms.r_a[k, 1], arms.r_b[k, 0], arms.r_b[k, 1] = a_x, a_y, b_x, b_y
         light, I_a, I_b = inv_mass[a] + inv_mass[b], inv_inertia[a], inv_inertia[b]
-        arms.k_n[k] = light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2
-        arms.k_t[k] = light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2
+        arms.k_n[k] = divisor(light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2)
+        arms.k_t[k] = divisor(light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2)
     return arms
 
 
@@ -50,7 +56,7 @@ def arms_3d(x, inv_mass, inv_inertia, c):
             along += dot(lever, times(inv_inertia, body, lever))
             both = inv_inertia[body, 0, 0] + inv_inertia[body, 1, 1] + inv_inertia[body, 2, 2]
             trace += dot(arm, arm) * both - dot(arm, times(inv_inertia, body, arm))
-        arms.k_n[k], arms.k_t[k] = light + along, 2.0 * light + trace - along
+        arms.k_n[k], arms.k_t[k] = divisor(light + along), divisor(2.0 * light + trace - along)
     return arms
 
 
@@ -178,21 +184,21 @@ def move(x, q, v, omega, ways, dt):
     return x, turn_quaternions(q, omega, dt)
 
 
-def turn_freely(turn, omega, inv_body, dt):
-    """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit.
+def turn_freely(q, omega, inv_body, dt):
+    """ω − dt I⁻¹ (ω × I ω) of n bodies with quaternions q (n, 4): the gyroscopic term of lesson 5, explicit.
 
     Bodies with three equal moments have no such term.
     """
     omega = float_copy(omega)
-    for i in range(turn.shape[0]):
+    for i in range(q.shape[0]):
         if inv_body[i, 0] == inv_body[i, 1] == inv_body[i, 2]:
             continue
-        w = row(omega, i)
-        a, b, c = dot(axis(turn, i, 0), w), dot(axis(turn, i, 1), w), dot(axis(turn, i, 2), w)
+        w, (u_a, u_b, u_c) = row(omega, i), axes(q, i)
+        a, b, c = dot(u_a, w), dot(u_b, w), dot(u_c, w)
         I_a, I_b, I_c = 1.0 / inv_body[i, 0], 1.0 / inv_body[i, 1], 1.0 / inv_body[i, 2]
-        w = plus(w, dt * (I_b - I_c) * b * c / I_a, axis(turn, i, 0))
-        w = plus(w, dt * (I_c - I_a) * c * a / I_b, axis(turn, i, 1))
-        put(omega, i, plus(w, dt * (I_a - I_b) * a * b / I_c, axis(turn, i, 2)))
+        w = plus(w, dt * (I_b - I_c) * b * c / I_a, u_a)
+        w = plus(w, dt * (I_c - I_a) * c * a / I_b, u_b)
+        put(omega, i, plus(w, dt * (I_a - I_b) * a * b / I_c, u_c))
     return omega
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..checks import Diverged
 
 CELLS_PER_BODY = 8           # at most [-]: a body that flies far away must not make the grid huge
+LARGEST = 0.5 * np.finfo(np.float64).max                     # half of the largest number
 FINEST = 1e-9                # least edge of a cell over the extent of all bodies [-]: so its place is an exact integer
 
 
@@ -41,7 +42,7 @@ def cell_numbers(low, size):
 def cell_size(low, high):
     """Edge of the cells [m]: the largest box, doubled until the grid, its rim left out, has few enough cells.
 
-    Raises Diverged where a corner is not finite, or a low one is above a high one.
+    Raises Diverged where a corner or the extent of all is not finite, or a low corner is above a high one.
     """
     n, d = low.shape
     size, span = 0.0, np.empty(d)
@@ -52,6 +53,8 @@ def cell_size(low, high):
             if not -np.inf < a <= b < np.inf:
                 raise Diverged("the extent of all bodies [m]", abs(a) + abs(b), "take more substeps")
             least, last, most, widest = min(least, a), max(last, a), max(most, b), max(widest, b - a)
+        if not 0.5 * most - 0.5 * least < LARGEST:
+            raise Diverged("the extent of all bodies [m]", np.inf, "take more substeps")
         size, span[c] = max(size, widest, FINEST * (most - least)), last - least
     if size == 0.0:                                          # so far out that boxes and ways between them round to 0
         return 1.0
@@ -101,8 +104,8 @@ def box_reaches(low, high, i, plane):
 def near_pairs(low, high, planes):
     """Pairs of boxes that overlap, and of boxes and the planes that they reach.
 
-    Corners low and high (n, d) and planes (p, d + 1).  Raises Diverged where a corner is not finite, or a low one is
-    above a high one.
+    Corners low and high (n, d) and planes (p, d + 1).  Boxes that only touch may be left out, by round-off.
+    Raises Diverged where a corner or the extent of all is not finite, or a low corner is above a high one.
     """
     n, d = low.shape
     cell, stride, cells = cell_numbers(low, cell_size(low, high))

@@ -10,13 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .broad_phase import Pairs
+from .broad_phase import Pairs, near_pairs
 from .contact_points import first_of, room_for
 
-KEPT = 2e-3                  # way of a body over its smallest half size after which its contacts are found anew [-]
+KEPT = 2e-3                  # way of a body after which its contacts are found anew [-], over the smallest half size
+                             # of it and of all that it touches
 DEEP = 2e-2                  # overlap over the smallest half size from which contacts are found anew in every step [-];
                              # less where the margin limits the allowed way
 UNSEEN = 1.0 / 16.0          # the same over the margin: no pair beyond reach may touch before it is looked at [-]
+REACH = 0.5                  # gap up to which two bodies have a contact, over the margin [-]
 AHEAD = 8                    # steps of its velocity by which the box of a body is wider when pairs are searched [-]
 GONE = 1e30                  # gap of a contact that is no longer found, but keeps its place [m]
 
@@ -25,20 +27,30 @@ class Ways(NamedTuple):
     """How far n bodies and p planes have moved since their contacts were found."""
     length: np.ndarray       # (n + p,) no point of the body has moved farther [m]; ∞ where it is not known
     allowed: np.ndarray      # (n + p,) the longest way with which contacts are kept [m]
+    own: np.ndarray          # (n + p,) the same, where nothing smaller touches the body [m]
     radius: np.ndarray       # (n + p,) of the ball around the centre that holds the body [m]
 
 
 def unknown_ways(half, planes, margin):
     """Return the Ways of bodies whose contacts are not known yet, and of planes, which never move."""
     n, count = half.shape[0], half.shape[0] + planes
-    ways = Ways(np.zeros(count), np.full(count, np.inf), np.zeros(count))
+    ways = Ways(np.zeros(count), np.full(count, np.inf), np.full(count, np.inf), np.zeros(count))
     for i in range(n):
-        squared, ways.length[i], ways.allowed[i] = 0.0, np.inf, UNSEEN * margin
+        squared, ways.length[i], ways.own[i] = 0.0, np.inf, UNSEEN * margin
         for c in range(half.shape[1]):
             squared += half[i, c] ** 2
-            ways.allowed[i] = min(ways.allowed[i], KEPT * half[i, c])
-        ways.radius[i] = np.sqrt(squared)
+            ways.own[i] = min(ways.own[i], KEPT * half[i, c])
+        ways.allowed[i], ways.radius[i] = ways.own[i], np.sqrt(squared)
     return ways
+
+
+def shorten_ways(ways, contacts, planes):
+    """Allow no body a longer way than the smallest that it touches, in place.  The last bodies are planes."""
+    bodies = ways.length.size - planes
+    for k in range(contacts.a.size):
+        a, b = contacts.a[k], contacts.b[k]
+        if b < bodies:
+            ways.allowed[a], ways.allowed[b] = min(ways.allowed[a], ways.own[b]), min(ways.allowed[b], ways.own[a])
 
 
 def have_moved(ways):
@@ -68,9 +80,10 @@ def forget_deep(ways, contacts, gap):
 
 
 def widened(low, high, v, margin, dt):
-    """Return (wide_low, wide_high), the boxes for a search of pairs: wider by the margin on all sides.
+    """Return (wide_low, wide_high): wider boxes, by the margin on all sides.
 
-    In the direction of its velocity a box is also wider by the way of AHEAD steps, but at most by its own size.
+    While all bodies stay inside theirs, no pair has to be searched for.  In the direction of its velocity a box is also
+    wider by the way of AHEAD steps, but at most by its own size.
     """
     wide_low, wide_high = low - margin, high + margin
     for i in range(low.shape[0]):
@@ -83,25 +96,30 @@ def widened(low, high, v, margin, dt):
     return wide_low, wide_high
 
 
-def mark_far(moved, low, high, wide_low, wide_high, margin):
-    """Mark bodies that have used up more than half of their margin as moved, in place.
+def mark_far(moved, low, high, wide_low, wide_high):
+    """Mark bodies that have left their widened boxes as moved, in place.
 
-    Two bodies that have not, and that the last search did not find as a pair, are at least a margin apart.  So they
-    have no contact that is still unknown.
+    Two bodies that have not, and that the last search did not find as a pair, are beyond reach.  So they have no
+    contact that is still unknown.
     """
     for i in range(low.shape[0]):
         for c in range(low.shape[1]):
-            if not (wide_low[i, c] + 0.5 * margin <= low[i, c] and high[i, c] <= wide_high[i, c] - 0.5 * margin):
+            if not (wide_low[i, c] <= low[i, c] and high[i, c] <= wide_high[i, c]):
                 moved[i] = True
 
 
-def moved_pairs(pairs, moved):
-    """Return those Pairs of which at least one has moved."""
+def pairs_in_reach(wide_low, wide_high, planes, margin):
+    """Return the Pairs that can come within reach while bodies stay inside their widened boxes."""
+    return near_pairs(wide_low - REACH * margin, wide_high + REACH * margin, planes)
+
+
+def pairs_with(marked, pairs):
+    """Return those Pairs of which at least one body is marked, (n + p,)."""
     first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
     for i in range(first.size - 1):
         for k in range(pairs.first[i], pairs.first[i + 1]):
             partner[m] = pairs.partner[k]                                # a branch here would be guessed wrong often
-            m += moved[i] | moved[pairs.partner[k]]
+            m += marked[i] | marked[pairs.partner[k]]
         first[i + 1] = m
     return Pairs(first, partner[:m])
 

@@ -264,6 +264,16 @@ def checked_pile(state, dt, steps, pile):
     return PileState(x, q, v, omega, state.contacts, finite_array("impulse J [N s]", state.J)), dt, steps
 
 
+def movable(pile):
+    """Whether an impulse moves or turns each body or plane, (n + p,)."""
+    can = pile.inv_mass > 0.0
+    turns = pile.inv_inertia.reshape(can.size, -1)
+    for i in range(can.size):
+        for c in range(turns.shape[1]):
+            can[i] = can[i] or turns[i, c] > 0.0
+    return can
+
+
 def smallest_halves(half):
     """The smallest half size (n,) [m] of each body."""
     smallest = np.empty(half.shape[0])
@@ -281,29 +291,43 @@ def smaller_half(contacts, k, least):
 
 
 def deepest_contact(contacts, v, dt, half):
-    """(k, share): the contact that has sunk in most, over the smaller half size of both bodies; (-1, 0) if none has.
+    """(k, share, deep): the contact that has sunk in most, by how much, and the deepest overlap of all.
 
-    What moves fast may go as far in during a step as the bodies move in it: that part does not count.  Raises Diverged
-    where a velocity is no number.
+    Both are over the smaller half size of two bodies; (-1, 0, 0) if none overlap.  What moves fast may go as far in
+    during a step as the bodies move in it: that part does not count for `share`.  Raises Diverged where a velocity is
+    no number.
     """
-    deepest, share, fastest, least = -1, 0.0, np.max(np.abs(v)), smallest_halves(half)
+    deepest, share, deep, fastest, least = -1, 0.0, 0.0, np.max(np.abs(v)), smallest_halves(half)
     smallest = np.min(least)
     if not np.isfinite(fastest):
         raise Diverged("the largest velocity of a body [m/s]", fastest, "take shorter steps, substeps or more sweeps")
     for k in range(contacts.a.size):
-        sunk = -contacts.gap[k] - 2.0 * dt * fastest
-        if sunk > share * smallest:                                      # otherwise it is not the deepest
-            this = sunk / smaller_half(contacts, k, least)
+        overlap = -contacts.gap[k]
+        if overlap > deep * smallest:                                    # otherwise it is not the deepest
+            size = smaller_half(contacts, k, least)
+            this, deep = (overlap - 2.0 * dt * fastest) / size, max(deep, overlap / size)
             if this > share:
                 deepest, share = k, this
-    return deepest, share
+    return deepest, share, deep
 
 
-def still_allowed(allowed, share):
-    """The share of a half size that may overlap from now on: TOO_DEEP, or what was there at the beginning if that is
-    more (then `allowed` is ∞).
+def overlap_before(state, dt, half):
+    """The overlap, over the smaller half size of both bodies, that is allowed at the beginning of a run.
+
+    A first run, whose state has no contacts, may begin with any overlap, and the result is ∞.  A run that goes on from
+    another one may go as deep as TOO_DEEP, or a little deeper than its contacts if these are deeper than that.
     """
-    return min(allowed, max(TOO_DEEP, DEEPER * share))
+    if state.contacts.a.size == 0:
+        return np.inf
+    _, share, deep = deepest_contact(state.contacts, state.v, dt, half)
+    return DEEPER * deep if share > TOO_DEEP else TOO_DEEP
+
+
+def still_allowed(allowed, deep):
+    """The share of a half size that may overlap from now on: TOO_DEEP, or a little more than what overlaps now if that
+    is deeper.  It never grows.
+    """
+    return min(allowed, max(TOO_DEEP, DEEPER * deep))
 
 
 def check_overlap(contacts, v, dt, half, allowed, residual):
@@ -311,8 +335,8 @@ def check_overlap(contacts, v, dt, half, allowed, residual):
 
     Raises Diverged with the residual [m/s] of the contacts where bodies sink into each other all the same.
     """
-    _, share = deepest_contact(contacts, v, dt, half)
+    _, share, deep = deepest_contact(contacts, v, dt, half)
     if share > allowed:
         raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", residual,
                        "take more substeps, shorter steps, or more equal masses")
-    return still_allowed(allowed, share)
+    return still_allowed(allowed, deep)

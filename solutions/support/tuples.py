@@ -13,6 +13,14 @@ def axis(R, i, k):
     return R[i, 0, k], R[i, 1, k], R[i, 2, k]
 
 
+def axes(q, i):
+    """The three axes of body i in the world, given unit quaternions q (n, 4)."""
+    w, a, b, c = q[i, 0], q[i, 1], q[i, 2], q[i, 3]
+    return ((1.0 - 2.0 * (b * b + c * c), 2.0 * (a * b + w * c), 2.0 * (a * c - w * b)),
+            (2.0 * (a * b - w * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c + w * a)),
+            (2.0 * (a * c + w * b), 2.0 * (b * c - w * a), 1.0 - 2.0 * (a * a + b * b)))
+
+
 def scaled(s, a):
     """s a"""
     return s * a[0], s * a[1], s * a[2]

@@ -5,6 +5,7 @@ import pytest
 
 from solutions.checks import Diverged
 from solutions.support.broad_phase import CELLS_PER_BODY, cell_numbers, cell_size, near_pairs
+from validate.subject import modules
 
 
 def swarms(rng):
@@ -57,3 +58,14 @@ def test_bodies_that_are_not_finite_have_no_pairs():
         low = np.array([(0.0, 0.0), (bad, 1.0)])
         with pytest.raises(Diverged, match="extent of all bodies"):
             near_pairs(low, low + 1.0, np.zeros((0, 3)))
+
+
+@pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_bodies_farther_apart_than_numbers_go_are_refused(compiled):
+    if compiled and not modules.can_compile():
+        pytest.skip("numba has no wheel for this machine")
+    lesson = modules.bind("contact", compiled=compiled)
+    state, pile = lesson.make_pile_2d([(0.0, 0.0), (1e308, 1e308), (-1e308, 1e308)], np.zeros(3), 1.0, 0.01,
+                                      np.full((3, 2), 0.1), [(0.0, 1.0, 1.0)], (0.0, 0.0), 0.3, 2, 60.0, 5.0, 0.01)
+    with pytest.raises(Diverged, match="extent of all bodies"):
+        lesson.advance_pile_2d(lesson.disc_bounds, lesson.round_contacts, state, 1.0 / 240.0, 3, pile)

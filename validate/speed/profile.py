@@ -84,7 +84,7 @@ def profile(lesson, state, pile, dt):
     h, x = dt / pile.substeps, state.x
     low, high, _ = lesson.disc_bounds(x, state.q, pile.half)
     wide = low - pile.margin, high + pile.margin
-    pairs = lesson.near_pairs(*wide, pile.planes)
+    pairs = lesson.pairs_in_reach(*wide, pile.planes, pile.margin)
     none = no_pairs(lesson, pairs)
     some = step_of(lesson, state, pile, lesson.round_contacts(*contacts_of(lesson, state, pile, pairs)), h)
     empty = step_of(lesson, state, pile, lesson.round_contacts(*contacts_of(lesson, state, pile, none)), h)
@@ -106,8 +106,8 @@ def profile(lesson, state, pile, dt):
     kept = both("kept_impulses (9.14)", 1, lambda s: (s.contacts, *old), "kept_impulses")
     found = Part("contacts found anew", 1, difference(lesson.round_contacts, contacts_of(lesson, state, pile, pairs),
                                                       contacts_of(lesson, state, pile, none)))
-    search = Part("pairs found anew", 1, difference(lesson.near_pairs, (*wide, pile.planes),
-                                                    (wide[0][:1], wide[1][:1], pile.planes)))
+    search = Part("pairs found anew", 1, difference(lesson.pairs_in_reach, (*wide, pile.planes, pile.margin),
+                                                    (wide[0][:1], wide[1][:1], pile.planes, pile.margin)))
     return [sweep, memory, aims, warm, gaps, kept, found, search]
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
+from scipy.spatial.transform import Rotation
 
 from solutions.checks import BadInput, Diverged
 from solutions.impulses import cross_2d
@@ -1270,10 +1271,10 @@ def sweep_in_space(lesson, rng):
 @random_law("A free body of a pile obeys Euler's equation.", "largest error of the angular velocity [rad/s]", 1e-9)
 def free_turn(lesson, rng):
     omega, inv_moments, dt = rng.normal(size=3), rng.uniform(0.5, 2.0, 3), rng.uniform(0.01, 0.1)
-    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    axes *= np.linalg.det(axes)
+    turn = Rotation.random(random_state=rng)
+    axes, q = turn.as_matrix(), turn.as_quat()[[3, 0, 1, 2]]
     I = axes @ np.diag(1.0 / inv_moments) @ axes.T
-    return (lesson.turn_freely(axes[None], omega[None].copy(), inv_moments[None], dt)[0],
+    return (lesson.turn_freely(q[None], omega[None].copy(), inv_moments[None], dt)[0],
             omega - dt * np.linalg.solve(I, np.cross(omega, I @ omega)))
 
 
