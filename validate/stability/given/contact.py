@@ -8,10 +8,11 @@ from itertools import combinations, product
 import numpy as np
 
 from solutions.support.convex_2d import Cores, convex_bounds_2d, convex_contacts_2d
-from solutions.support.kept_contacts import begin_ways, have_moved, unknown_ways
+from solutions.support.kept_contacts import AHEAD, begin_ways, have_moved, unknown_ways
 from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 EXACT = 1e-9                 # of numbers around 1: the same by another sum
+TOUCHING = 3e-4              # overlap of bodies that a soft contact stops [m]: 5e-5, and 3e-3 after a search too late
 REACH = 0.06                 # gap up to which contacts are found [m]
 DEEPEST = 0.05               # overlap of the bodies that are tried, and their largest gap [m]
 CLEAR = 0.02                 # by which the axis along which two boxes touch must be the best one [m]
@@ -504,6 +505,28 @@ def passing_bodies(lesson, rng):
     return (found.gap, found.n[0]), (np.linalg.norm(way) - np.sum(radius), way / np.linalg.norm(way))
 
 
+@random_law("Bodies that meet stop where they touch, wherever they come from.",
+            "bodies that meet: largest error of their distance [m]", TOUCHING)
+def meeting_bodies(lesson, rng):
+    """They begin outside each other's widened boxes, just so far apart that both are inside their own when they touch.
+
+    A search that comes too late finds them inside each other, by up to the way of a step.
+    """
+    d, dt, margin, speed = rng.choice((2, 3)), 1.0 / 240.0, 0.008, rng.uniform(0.2, 0.45)
+    make, advance = (lesson.make_pile_2d, lesson.advance_pile_2d) if d == 2 else (lesson.make_pile, lesson.advance_pile)
+    radius, along = rng.uniform(0.1, 0.2, 2), rng.choice((-1.0, 1.0)) * np.eye(d)[rng.choice(d)]
+    apart = 2.0 * (margin + AHEAD * dt * speed) * rng.uniform(1.0, 1.05)
+    x, q = (np.stack((np.zeros(d), (np.sum(radius) + apart) * along)),
+            np.zeros(2) if d == 2 else [(1.0, 0.0, 0.0, 0.0)] * 2)
+    state, pile = make(x, q, 1.0, 0.1 if d == 2 else np.full((2, 3), 0.1), np.repeat(radius[:, None], d, axis=1),
+                       [(*np.eye(d)[0], 50.0)], np.zeros(d), 0.3, 4, 120.0, 10.0, margin)
+    v = np.stack((speed * along, -speed * along, np.zeros(d)))
+    bounds = lesson.disc_bounds if d == 2 else lesson.ball_bounds
+    steps = int(0.5 * apart / speed / dt) + 1
+    end = advance(bounds, lesson.round_contacts, state._replace(v=v), dt, steps, pile)
+    return np.linalg.norm(end.x[1] - end.x[0]), np.sum(radius)
+
+
 @random_law("Only gravity acts on a body whose contacts are gone.",
             "contacts that are gone: largest error of the velocities [m/s, rad/s]", EXACT)
 def gone_contacts(lesson, rng):
@@ -578,4 +601,5 @@ def ways_of_bodies(lesson, rng):
 def steps_of_a_pile(lesson, check):
     """Compare flights, margins, separation, impulses, gaps and forces with Euler's equation and the laws of contact."""
     check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies,
-                        balance_in_space, friction_in_space, passing_bodies, gone_contacts), seed=32, times=15)
+                        balance_in_space, friction_in_space, passing_bodies, meeting_bodies, gone_contacts), seed=32,
+               times=15)
