@@ -75,7 +75,7 @@ def forget_deep(ways, contacts, gap):
     """
     for k in range(gap.size):
         for i in (contacts.a[k], contacts.b[k]):
-            if gap[k] < -DEEP / KEPT * ways.allowed[i]:
+            if gap[k] < -DEEP / KEPT * ways.own[i]:
                 ways.length[i] = np.inf
 
 
