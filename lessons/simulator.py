@@ -81,7 +81,7 @@ from solutions.support.contact_points import (
     round_contacts,
 )
 from solutions.support.records import check_record
-from solutions.support.scenes import PileState, overlap_before
+from solutions.support.scenes import PileState
 from solutions.vectors import cross, dot, norm
 
 # ---------------------------------------------------------------------------------------------- without contact
@@ -360,8 +360,7 @@ def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
     check_record(p, state)
     t, x, q, v, omega, dt, steps = checked_bodies(t, state.x, state.q, state.v, state.omega, dt, steps, p)
     check_load(load(t, x, q, v, omega, p), x.shape, omega.shape)
-    state = PileState(x, q, v, omega, state.contacts, state.J)
-    allowed = overlap_before(state, dt, p.half)
+    state, allowed = PileState(x, q, v, omega, state.contacts, state.J), np.inf
     for n in range(steps):
         before, state = state, step(load, bounds, narrow, t + n * dt, state, dt, p)
         allowed = check_sinking(state, t + n * dt, dt, p, allowed)
