@@ -134,12 +134,12 @@ def _follow_2d(gap, aim, give, u_n, h):
 def _pairs_now(low, high, v, moved, wide, pairs, dt, pile):
     """Given.  (wide, pairs): the widened boxes, and the Pairs to look at.
 
-    Both are made anew where a body has left its box; then those bodies are marked as moved, in place.  At least one
-    body of a pair is moved or turned by impulses.
+    Both are made anew where a body has left its box; then bodies near the rim of theirs are marked as moved, in place.
+    At least one body of a pair is moved or turned by impulses.
     """
     if not has_left_margin(low, high, *wide):
         return wide, pairs
-    mark_far(moved, low, high, *wide)
+    mark_far(moved, low, high, *wide, pile.margin)
     wide = widened(low, high, v, pile.margin, dt)
     return wide, pairs_with(movable(pile), pairs_in_reach(*wide, pile.planes, pile.margin))
 

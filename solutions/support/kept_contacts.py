@@ -96,15 +96,15 @@ def widened(low, high, v, margin, dt):
     return wide_low, wide_high
 
 
-def mark_far(moved, low, high, wide_low, wide_high):
-    """Mark bodies that have left their widened boxes as moved, in place.
+def mark_far(moved, low, high, wide_low, wide_high, margin):
+    """Mark bodies that have used up more than half of their margin as moved, in place.
 
     Two bodies that have not, and that the last search did not find as a pair, are beyond reach.  So they have no
     contact that is still unknown.
     """
     for i in range(low.shape[0]):
         for c in range(low.shape[1]):
-            if not (wide_low[i, c] <= low[i, c] and high[i, c] <= wide_high[i, c]):
+            if not (wide_low[i, c] + 0.5 * margin <= low[i, c] and high[i, c] <= wide_high[i, c] - 0.5 * margin):
                 moved[i] = True
 
 

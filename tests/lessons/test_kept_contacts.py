@@ -234,7 +234,7 @@ def test_a_pair_within_reach_that_was_none_before_a_search_is_looked_at(d):
         pairs = {(i, j) for i in range(n) for j in before.partner[before.first[i]:before.first[i + 1]]}
         way = rng.uniform(wide[0] - low, wide[1] - high) * rng.choice([0.2, 1.0, 3.0], (n, 1))
         low, high, moved = low + way, high + way, np.zeros(n, np.bool_)
-        kept_contacts.mark_far(moved, low, high, *wide)
+        kept_contacts.mark_far(moved, low, high, *wide, margin)
         near = {(i, j) for j in range(n) for i in range(j) if apart(low, high, i, j) <= kept_contacts.REACH * margin}
         assert all(moved[i] or moved[j] for i, j in near - pairs)
         new += len(near - pairs)
