@@ -15,7 +15,7 @@ contact, simulator = bind("contact"), bind("simulator")
 G = 9.81                     # [m/s²]
 DT = 1.0 / 240.0             # [s]
 STEPS = 48
-PARTING = 96                 # steps after which bodies have begun to part, in any order of the visits
+PARTING = 144                # steps after which bodies have begun to part, in any order of the visits
 SHAPES = {
     ("round", 2): (contact.disc_bounds, contact.round_contacts),
     ("boxes", 2): (contact.box_bounds_2d, contact.box_contacts_2d),
@@ -71,7 +71,7 @@ def test_a_pile_parts_its_bodies_by_so_much_per_second_and_throws_none_out(shape
         assert np.max(np.linalg.norm(state.v, axis=1)) < fastest
         assert np.max(np.linalg.norm(state.x - begin, axis=1)) < fastest * (k + 1) * DT
         assert np.max(state.x[:5, -1]) < highest
-    assert deep[0] > 0.25 and deep[-1] < 0.97 * deep[0] and max(deep) < DEEPER * deep[0]
+    assert deep[0] > 0.25 and deep[-1] < 0.9 * deep[0] and max(deep) < DEEPER * deep[0]
 
 
 @CASES
