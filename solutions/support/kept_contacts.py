@@ -109,8 +109,13 @@ def mark_far(moved, low, high, wide_low, wide_high, margin):
 
 
 def pairs_in_reach(wide_low, wide_high, planes, margin):
-    """Return the Pairs that can come within reach while bodies stay inside their widened boxes."""
-    return near_pairs(wide_low - REACH * margin, wide_high + REACH * margin, planes)
+    """Return the Pairs that can come within reach while bodies stay inside their widened boxes.
+
+    Each of two bodies is wider by half of the reach.  A plane is nearer by the other half.
+    """
+    half, nearer = 0.5 * REACH * margin, planes.copy()
+    nearer[:, -1] -= half
+    return near_pairs(wide_low - half, wide_high + half, nearer)
 
 
 def pairs_with(marked, pairs):

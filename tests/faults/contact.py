@@ -95,7 +95,7 @@ fault("put_contacts", "s[WIDE * (ARM_B + e) + i] = arms.r_a[k, e], arms.r_b[k, e
       of="support.lanes")
 fault("places_in", "old.b[k] != new.b[s]:", "False:", "a new contact takes the place of one with another body",
       of="support.kept_contacts")
-fault("pairs_in_reach", "wide_low - REACH * margin, wide_high + REACH * margin", "wide_low, wide_high",
+fault("pairs_in_reach", "near_pairs(wide_low - half, wide_high + half", "near_pairs(wide_low, wide_high",
       "a pair is searched for when its bodies may touch already", of="support.kept_contacts")
 fault("mark_gone", "gap[k] = GONE", "pass", "a contact that is gone still pushes", of="support.kept_contacts")
 fault("mark_gone_in_lanes", "-s[WIDE * MASS_A + i], J", "0.0, J",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
+from solutions.support import broad_phase
 from solutions.support.kept_contacts import KEPT
 from validate.subject import modules
 
@@ -346,9 +347,9 @@ def test_small_discs_stand_beside_a_hundred_times_larger_one(fast):
 
 @PILES
 def test_long_steps_with_enough_substeps_hold_a_stack(fast):
-    state, pile = unit_stack(2, np.ones(5), substeps=8, hertz=80.0)
+    state, pile = unit_stack(2, np.ones(5), substeps=8, hertz=72.0)
     end = run(fast, state, pile, 3.0, dt=1.0 / 30.0)
-    assert np.max(np.abs(carried(end, pile, 5, 1.0 / 30.0) / (G * np.arange(5, 0, -1)) - 1.0)) < 1e-3  # measured 1.6e-4
+    assert np.max(np.abs(carried(end, pile, 5, 1.0 / 30.0) / (G * np.arange(5, 0, -1)) - 1.0)) < 3e-5  # measured 3.4e-6
 
 
 @PILES
@@ -380,21 +381,24 @@ def test_a_body_that_begins_inside_a_wall_comes_out_gently(fast):
     assert np.max(speeds) <= 3.0 and np.max(heights) < 0.6
 
 
-@PILES
-def test_the_cost_of_a_step_grows_with_the_number_of_bodies(fast):
-    """Pairs looked at by the grid, rather than time: within a factor of two per body from 100 to 10,000 bodies."""
-    def pairs(n):
+def test_the_search_for_pairs_looks_at_as_many_boxes_per_body_in_large_piles_as_in_small_ones(monkeypatch):
+    looked, boxes_overlap = [], broad_phase.boxes_overlap
+    monkeypatch.setattr(broad_phase, "boxes_overlap", lambda *given: looked.append(given) or boxes_overlap(*given))
+
+    def looks(n):
+        looked.clear()
         k = np.arange(n)
         low = np.stack((0.2 * (k % 50), 0.2 * (k // 50)), axis=1)
-        return len(fast.near_pairs(low - 0.005, low + 0.205, np.array([(0.0, 1.0, 0.0)])).partner) / n
-    assert pairs(10_000) < 2.0 * pairs(100)
+        broad_phase.near_pairs(low - 0.005, low + 0.205, np.array([(0.0, 1.0, 0.0)]))
+        return len(looked) / n
+    assert 2.0 < looks(10_000) < 2.0 * looks(100)
 
 
-def test_hertz_beyond_a_third_of_the_substeps_are_refused(fast):
-    state, pile = unit_stack(2, np.ones(2), substeps=2, hertz=161.0)
+def test_hertz_beyond_three_tenths_of_the_substeps_are_refused(fast):
+    state, pile = unit_stack(2, np.ones(2), substeps=2, hertz=145.0)
     with pytest.raises(BadInput, match="hertz of the contacts"):
         run(fast, state, pile, 0.1)
-    run(fast, state, pile._replace(hertz=160.0), 0.1)
+    run(fast, state, pile._replace(hertz=144.0), 0.1)
 
 
 @pytest.mark.parametrize("change", [{"half": [(0.5, 0.0)]}, {"half": [(0.5, -0.5)]}, {"masses": 0.0},

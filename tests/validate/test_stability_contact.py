@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import Diverged
+from solutions.support.scenes import HIGHEST
+from validate.stability import contact as cases
 from validate.stability.examine import cases_of, found_by, subject_of
 from validate.subject.modules import bind
 
@@ -159,3 +161,10 @@ def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     with np.errstate(all="ignore"):
         found, _ = found_by(case, lesson)
     assert not all(f.holds for f in found)
+
+
+def test_towers_of_boxes_are_stable_at_the_highest_hertz_and_sway_more_and_more_above_it():
+    """By theory; 1e-7 is allowed, because stresses that nothing removes give eigenvalues of 1 that may be double."""
+    left = lambda n, c: cases.largest(cases.substep_matrix(cases.tower_of_boxes(n), c, 10.0)) - 1.0
+    assert all(left(n, HIGHEST) < 1e-7 for n in range(2, 25))
+    assert left(11, 0.307) < 1e-7 < 1e-6 < left(11, 0.3085)

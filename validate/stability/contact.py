@@ -7,11 +7,13 @@ Contraction factors come from runs of the lesson's sweeps, never from its formul
 from typing import NamedTuple
 
 import numpy as np
+from numpy.linalg import matrix_power
 from scipy.optimize import minimize_scalar
 from scipy.spatial.transform import Rotation
 
 from solutions.checks import BadInput, Diverged
 from solutions.impulses import cross_2d
+from solutions.support.scenes import HIGHEST
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, bullet_pile, fallen, pymunk_pile
 from validate.reference.contact import enumerated, least_energy, natural_residual
@@ -381,15 +383,15 @@ def sag_of_a_soft_contact(lesson, check):
 
     A disc has k_n = 1/m and F = m g; a box on both corners k_n = 1/m + (w/2)²/I = 2.5/m at each, and F = m g/2.
     The remaining distance shrinks at a rate of s²/(h (1 + 2ζs + s²)), s = 2π hertz h, h the substep: 40/s and more,
-    which leaves 1e-13 after ¾ s.  The position is rounded: 1.1e-16 of half a metre, over a depth of 40 µm, and
+    which leaves 1e-13 after ¾ s.  The position is rounded: 1.1e-16 of half a metre, over a depth of 50 µm, and
     some.
     """
-    curves, hertzes, fine = [], np.array([30.0, 40.0, 50.0, 65.0, 80.0]), np.linspace(30.0, 80.0, 51)
+    curves, hertzes, fine = [], np.array([30.0, 40.0, 50.0, 60.0, 70.0]), np.linspace(30.0, 70.0, 51)
     for name, shape, times in (("a disc", DISC, 1.0), ("a box", BOX, 1.25)):
         for dt, substeps in ((1.0 / 60.0, 4), (1.0 / 240.0, 1), (1.0 / 240.0, 4), (1.0 / 1000.0, 1)):
             theory = lambda hertz, times=times: times * G / (2.0 * np.pi * hertz) ** 2
             worst = np.max([abs(sag(lesson, shape, hertz, dt, substeps) / theory(hertz) - 1.0)
-                            for hertz in (40.0, 80.0)])
+                            for hertz in (40.0, 70.0)])
             check("A soft contact sinks by k_n F/(2π hertz)² for any step.",
                   f"relative error of the depth of {name}, 1/{1.0 / dt:.0f} s in {substeps} [-]",
                   law=0.0, found=worst, within=2e-11,
@@ -504,36 +506,103 @@ def refusal(run):
 
 # ---------------------------------------------------------------------------------------------- the highest hertz
 
-def substep_matrix(masses, c, zeta):
-    """Return M of one substep of a column, for errors of (gaps, impulses, velocities) (3n,), by theory; all push.
+NUDGE = 1e-4                 # velocity of the top of a tower [m/s]
 
-    c is hertz times a substep, s = 2πc, and the substep is 1.  From the lowest body, u_k = v_k − v_(k−1).
-        the last impulses:      v_k += (J_k − J_(k+1))/m_k
-        a soft sweep:           J_k += (−s gap_k/(2ζ + s) − u_k − k_k J_k/(s (2ζ + s)))/(k_k (1 + 1/(s (2ζ + s))))
-        motion:                 gap_k += u_k
-        a sweep at rest:        J_k −= u_k/k_k
-    with k_k = 1/m_k + 1/m_(k−1).  Each change of J_k acts on v at once.  Contacts are numbered by bodies: that of the
-    lowest body with its upper neighbour, with the floor, and then upwards.  Those with the numbers 0, 5, 10, … are
-    visited first, then 1, 6, 11, … and so on.
+
+class Tower(NamedTuple):
+    """Bodies that stand on each other: k contacts, and d numbers that describe the velocities of all bodies."""
+    normal: np.ndarray       # (k, d): what maps velocities to u_n of each contact
+    along: np.ndarray        # (k, d) the same for u_t, or (0, d) without friction
+    inv_mass: np.ndarray     # (d,) [1/kg, 1/(kg m²)]
+    order: list              # in which contacts are visited
+
+
+def spread(numbered):
+    """Return the numbers in the order of a pile: every fifth from the first on, every fifth from the second on, …"""
+    return [k for first in range(5) for k in numbered[first::5]]
+
+
+def column_of_discs(masses):
+    """Return the Tower of discs in a column; contact k is below disc k, and velocities are v_y.
+
+    A pile numbers contacts by bodies: that of the lowest body with its upper neighbour, with the floor, then upwards.
     """
-    rows, w = standing(masses)
-    n, s = len(masses), 2.0 * np.pi * c
-    k_n, give = w + np.append(0.0, w[:-1]), 1.0 / (s * (2.0 * zeta + s))
-    numbered = [1, 0, *range(2, n)] if n > 1 else [0]
-    order = [k for first in range(5) for k in numbered[first::5]]
-    gap, J, v = np.eye(3 * n).reshape(3, n, 3 * n)       # of all single errors at once, one in each column
-    v = v + w[:, None] * (rows.T @ J)
+    (rows, w), n = standing(masses), len(masses)
+    return Tower(rows, np.zeros((0, n)), w, spread([1, 0, *range(2, n)] if n > 1 else [0]))
+
+
+def tower_of_boxes(n):
+    """Return the Tower of n equal boxes of 1 kg and 1 m; velocities are v_x, v_y and ω of each, friction holds.
+
+    Contacts 2k and 2k + 1 are at the left and the right corner below box k.  A pile visits the right one first, but at
+    the floor the left one.
+    """
+    normal, along = np.zeros((2, 2 * n, 3 * n))
+    for k in range(2 * n):
+        i, r_x = 3 * (k // 2), (-0.5, 0.5)[k % 2]
+        normal[k, i:i + 3], along[k, i:i + 3] = (0.0, 1.0, r_x), (1.0, 0.0, 0.5)         # u = v + ω × r, r_y = −½
+        if i > 0:
+            normal[k, i - 3:i], along[k, i - 3:i] = (0.0, -1.0, -r_x), (-1.0, 0.0, 0.5)  # the lower box, r_y = ½
+    return Tower(normal, along, np.tile((1.0, 1.0, 6.0), n),
+                 spread([3, 2, 0, 1, *(k for joint in range(2, n) for k in (2 * joint + 1, 2 * joint))]))
+
+
+def substep_matrix(tower, c, zeta):
+    """Return M of one substep, for errors of (gaps, J_n, J_t, velocities), by theory; all push and stick.
+
+    c is hertz times a substep, s = 2πc, and the substep is 1.
+        the last impulses:      v += M⁻¹ (normalᵀ J_n + alongᵀ J_t)
+        a soft sweep:           J_n += (−s gap/(2ζ + s) − u_n − k_n J_n/(s (2ζ + s)))/(k_n (1 + 1/(s (2ζ + s))))
+        motion:                 gap += u_n
+        a sweep at rest:        J_n −= u_n/k_n
+        in both sweeps:         J_t −= u_t/k_t
+    with k = row M⁻¹ rowᵀ.  Each change of an impulse acts on v at once.
+    """
+    (normal, along, w, order), s = tower, 2.0 * np.pi * c
+    contacts, friction, d = len(normal), len(along), w.size
+    give, k_n, k_t = 1.0 / (s * (2.0 * zeta + s)), normal**2 @ w, along**2 @ w
+    errors = np.eye(2 * contacts + friction + d)         # all single errors at once, one in each column
+    gap, J_n, J_t, v = np.split(errors, np.cumsum((contacts, contacts, friction)))
+    v = v + w[:, None] * (normal.T @ J_n + along.T @ J_t)
     for aim, soft in ((-s * gap / (2.0 * zeta + s), give), (0.0 * gap, 0.0)):
         for k in order:
-            change = (aim[k] - rows[k] @ v - soft * k_n[k] * J[k]) / (k_n[k] * (1.0 + soft))
-            J[k] += change
-            v += np.outer(w * rows[k], change)
-        gap = gap + (soft > 0.0) * (rows @ v)
-    return np.concatenate((gap, J, v))
+            change = (aim[k] - normal[k] @ v - soft * k_n[k] * J_n[k]) / (k_n[k] * (1.0 + soft))
+            slip = along[k:k + 1] @ v                    # of no row without friction
+            hold = -slip / k_t[k:k + 1, None]
+            J_n[k], J_t[k:k + 1] = J_n[k] + change, J_t[k:k + 1] + hold
+            v = v + w[:, None] * (np.outer(normal[k], change) + along[k:k + 1].T @ hold)
+        gap = gap + (soft > 0.0) * (normal @ v)
+    return np.concatenate((gap, J_n, J_t, v))
+
+
+def sway_of_a_pile(lesson, n, c, steps):
+    """Return v_x of the top of n boxes after each number of steps of one substep, over a push that it was given.
+
+    Before the push, the pile settles for 4 s.  What is left of its own motion is measured without a push, and taken
+    away.  Contacts are kept in a run of the pile, so each number of steps is a run of its own.
+    """
+    x = np.stack((np.zeros(n), np.arange(n) + 0.5), axis=1)
+    state, pile = pile_of(lesson, BOX, x, 0.5, 1.0, substeps=1, hertz=c / DT)
+    rest = after(lesson, BOX, state, pile, 4.0)
+    push = np.zeros(rest.v.shape)
+    push[n - 1, 0] = NUDGE
+    with_push = rest._replace(v=rest.v + push)
+    ends = [[after(lesson, BOX, begin, pile, k * DT).v[n - 1, 0] for begin in (with_push, rest)] for k in steps]
+    return -np.diff(ends)[:, 0] / NUDGE
+
+
+def sway_by_theory(n, c, steps):
+    """Return the same by theory, for steps that are multiples of steps[0]."""
+    few, left = matrix_power(substep_matrix(tower_of_boxes(n), c, 10.0), steps[0]), {}
+    error = np.eye(len(few))[-3]
+    for k in range(steps[0], steps[-1] + 1, steps[0]):
+        error = few @ error
+        left[k] = error[-3]
+    return np.array([left[k] for k in steps])
 
 
 def measured_matrix(lesson, masses, c, zeta):
-    """Return the same from the lesson's pile of discs: the effect of a step of one substep on single errors at rest.
+    """Return substep_matrix from the lesson's pile of discs: the effect of a step of one substep on single errors.
 
     Errors are a thousandth of the sag, and the step is so short that the sag is some 1/100 of a disc.
     """
@@ -561,36 +630,39 @@ def measured_matrix(lesson, masses, c, zeta):
 
 @case("highest-hertz", "The highest stable hertz", compiled=False)
 def highest_hertz(lesson, check):
-    """Compare the highest stable hertz of a column at rest with theory: all eigenvalues of a substep are below 1.
+    """Compare columns and a tower at the highest hertz with theory: no eigenvalue of a substep is above 1.
 
-    Theory gives the matrix of a substep; the experiment perturbs gaps, impulses and velocities of a real pile.
+    Theory gives the matrix of a substep; the experiment perturbs gaps, impulses and velocities of a real column.
     With errors of a thousandth of the sag, which is 1/100 of a disc, differences are rounded to 1e-16/1e-5.  An
-    error of 1e-9 is allowed for eigenvalues that may be double.  Where two of them cross 1, hertz are refined by
-    bisection: its width is 1e-6, and 1 − ρ changes by some 0.02 per unit there, so 1e-9 adds 1e-7.
+    error of 1e-9 is allowed for eigenvalues that may be double.
+    In a tower of boxes friction keeps stresses that nothing removes: some eigenvalues are 1, and a measured one could
+    hide there.  So its top gets a push, and its speed is compared.  Boxes sag and tilt, which theory leaves out:
+    differences of 8e-4 of the push were measured.
     """
-    most = 1.0 / 3.0
-    left = lambda masses, c, zeta=10.0: largest(substep_matrix(masses, c, zeta))
+    left = lambda tower, c, zeta=10.0: largest(substep_matrix(tower, c, zeta))
     seen = lambda masses, c, zeta=10.0: largest(measured_matrix(lesson, masses, c, zeta))
     piles = (("five equal discs", np.ones(5), 10.0), ("twenty equal discs", np.ones(20), 10.0),
-             ("twenty equal discs, ζ = 1", np.ones(20), 1.0), ("100 on 1", (1.0, 100.0), 10.0))
+             ("twenty equal discs, ζ = 1", np.ones(20), 1.0), ("100 on 1", (1.0, 100.0), 10.0),
+             ("10,000 on 1", (1.0, 1e4), 10.0))
     for name, masses, zeta in piles:
-        rho = seen(masses, most, zeta)
-        check("At a third of the substep rate, the highest hertz that a pile accepts, up to twenty are stable.",
+        rho = seen(masses, HIGHEST, zeta)
+        check(f"At {HIGHEST} of the substep rate, the highest hertz that a pile accepts, columns are stable.",
               f"part of an error that a substep leaves, {name} [-]",
-              law=left(masses, most, zeta), found=rho, within=1e-7,
-              saw=f"A third of the substep rate, {name}: a substep leaves {rho:.5f} of an error.")
-    for r in (1e3, 1e4):
-        edge = bisect(lambda c, r=r: seen((1.0, r), c) > 1.0, 0.25, most)
-        check("A heavy body on a light one lowers the highest stable hertz.",
-              f"highest hertz times a substep, {r:g} on 1 [-]",
-              law=bisect(lambda c, r=r: left((1.0, r), c) > 1.0, 0.25, 0.4), found=edge, within=4.0 * EDGE,
-              saw=f"{r:g} on 1 stand up to {edge:.5f} hertz per substep rate; above it they tremble.")
-    fine, few = np.linspace(0.02, 0.6, 59), np.linspace(0.02, most, 5)
-    curves = [("10 equal discs", np.ones(10)), ("20 equal discs", np.ones(20)), ("1,000 on 1", (1.0, 1e3))]
+              law=left(column_of_discs(masses), HIGHEST, zeta), found=rho, within=1e-7,
+              saw=f"{HIGHEST} of the substep rate, {name}: a substep leaves {rho:.5f} of an error.")
+    steps = np.arange(10, 121, 10)
+    swayed, law = sway_of_a_pile(lesson, 6, HIGHEST, steps), sway_by_theory(6, HIGHEST, steps)
+    check(f"At {HIGHEST} of the substep rate a tower of boxes sways as theory says, and less and less.",
+          "largest difference of the speed of the top of six boxes, over the push that it was given [-]",
+          law=0.0, found=np.max(np.abs(swayed - law)), within=4e-3,
+          saw=f"After 120 substeps the top of six boxes has {swayed[-1]:.3f} of its push; by theory {law[-1]:.3f}.")
+    fine, few = np.linspace(0.02, 0.4, 39), np.linspace(0.02, HIGHEST, 5)
+    columns = [("10 equal discs", np.ones(10)), ("1,000 on 1", (1.0, 1e3))]
     return Picture("What a substep leaves of an error", "hertz times a substep", "part that is left", [
-        *(series(f"theory, {name}", fine, [left(masses, c) for c in fine], LINE) for name, masses in curves),
-        *(series(name, few, [seen(masses, c) for c in few], DOTS) for name, masses in curves)],
-        "Above 1 a pile trembles.  Stiffer contacts settle faster, but only up to about a third of the substep rate.")
+        *(series(f"theory, {name}", fine, [left(column_of_discs(m), c) for c in fine], LINE) for name, m in columns),
+        *(series(f"theory, {n} boxes", fine, [left(tower_of_boxes(n), c) for c in fine], LINE) for n in (6, 11)),
+        *(series(name, few, [seen(m, c) for c in few], DOTS) for name, m in columns)],
+        f"Above 1 a pile trembles or sways, towers of 11 boxes first, from 0.308 on.  A pile accepts {HIGHEST}.")
 
 
 # ---------------------------------------------------------------------------------------------- extremes
@@ -693,7 +765,7 @@ def extremes(lesson, check):
     On a slope the contacts of a box are there from the first step: its speed is g sin θ t, or 0 with μ = ∞.
     In a wedge sweeps contract by cos² 2θ, slowest at 89°: there 6e-9 of the force was left after 3 s; 1e-7 is allowed.
     A small disc beside a large one sags by g/(2π hertz)² = 4.3 µm, and nothing else happens to it.
-    A stack of five sways slightly in steps of 1/30 s: 3e-4 weights were measured, and ten times that is allowed.
+    A stack of five sways slightly in steps of 1/30 s: 1e-5 weights were measured, and ten times that is allowed.
     """
     left = 0.0
     for shape, x, name in INSIDE:
@@ -718,10 +790,10 @@ def extremes(lesson, check):
     check("Discs of 1 cm beside one of 1 m, 10,000 times as heavy, sag like any other.",
           "largest way of a disc in 1 s, sizes 1 : 100 [m]", law=G / (480.0 * np.pi) ** 2, found=moved, within=1e-12,
           saw=f"They move by {1e6 * moved:.3f} µm.")
-    error = np.max(np.abs(carried(lesson, 5, 1.0 / 30.0, substeps=8, hertz=80.0) - np.arange(5.0, 0.0, -1.0)))
+    error = np.max(np.abs(carried(lesson, 5, 1.0 / 30.0, substeps=8, hertz=72.0) - np.arange(5.0, 0.0, -1.0)))
     check("Steps of 1/30 s hold a stack, if they have substeps.",
-          "largest error of the forces in a stack of five, over a weight [-]", law=0.0, found=error, within=3e-3,
-          within_from="ten times the sway of this stack, 3e-4 weights",
+          "largest error of the forces in a stack of five, over a weight [-]", law=0.0, found=error, within=1e-4,
+          within_from="ten times the sway of this stack, 1e-5 weights",
           saw=f"With 1/30 s in 8 substeps the forces of five boxes are right to {error:.0e} of a weight.")
     refusals(lesson, check)
     return wedge_picture("A disc between two walls", 89.0, angles, means,
