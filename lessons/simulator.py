@@ -147,7 +147,7 @@ def free_step(load, t, x, q, v, omega, dt, p):
 def find_contacts(narrow, x, low, high, turn, p):
     """Return the ContactSet of all bodies whose gap is at most p.margin.
 
-    Broad phase:    near_pairs(low − margin, high + margin, p.planes), and of these movable_pairs(pairs, p.inv_mass)
+    Broad phase:    near_pairs(low − margin, high + margin, p.planes), and of these movable_pairs(pairs, p)
     narrow phase:   narrow(x, turn, p.half, p.planes, pairs, p.margin)
 
     low and high (n, d) are the corners of boxes around all bodies, and turn their rotation: what a bounds function

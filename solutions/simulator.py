@@ -162,7 +162,7 @@ def free_step(load, t, x, q, v, omega, dt, p):
 def find_contacts(narrow, x, low, high, turn, p):
     """Return the ContactSet of all bodies whose gap is at most p.margin.
 
-    Broad phase:    near_pairs(low − margin, high + margin, p.planes), and of these movable_pairs(pairs, p.inv_mass)
+    Broad phase:    near_pairs(low − margin, high + margin, p.planes), and of these movable_pairs(pairs, p)
     narrow phase:   narrow(x, turn, p.half, p.planes, pairs, p.margin)
 
     low and high (n, d) are the corners of boxes around all bodies, and turn their rotation: what a bounds function
@@ -171,7 +171,7 @@ def find_contacts(narrow, x, low, high, turn, p):
     *Source:* second lecture deck, “Simulation loop”: collision detection; lesson 6.
     """
     ### BEGIN SOLUTION 10.5
-    pairs = movable_pairs(near_pairs(low - p.margin, high + p.margin, p.planes), p.inv_mass)
+    pairs = movable_pairs(near_pairs(low - p.margin, high + p.margin, p.planes), p)
     return narrow(x, turn, p.half, p.planes, pairs, p.margin)
     ### END SOLUTION
 

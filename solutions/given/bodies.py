@@ -22,9 +22,9 @@ from ..checks import (
 )
 from ..friction import cone_radius
 from ..rotation import point_velocity
-from ..support.broad_phase import Pairs
+from ..support.broad_phase import pairs_with
 from ..support.records import check_principal_moments, check_record
-from ..support.scenes import PileState, deepest_contact, no_contacts, still_allowed
+from ..support.scenes import PileState, deepest_contact, movable, no_contacts, still_allowed
 from ..vectors import cross, norm
 
 HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
@@ -176,16 +176,9 @@ def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     return state, bodies
 
 
-def movable_pairs(pairs, inv_mass):
-    """Return the Pairs of which at least one body can move: no impulse stops two that cannot."""
-    first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
-    for i in range(pairs.first.size - 1):
-        for k in range(pairs.first[i], pairs.first[i + 1]):
-            if inv_mass[i] + inv_mass[pairs.partner[k]] > 0.0:
-                partner[m] = pairs.partner[k]
-                m += 1
-        first[i + 1] = m
-    return Pairs(first, partner[:m])
+def movable_pairs(pairs, p):
+    """Return the Pairs of which an impulse moves or turns at least one body."""
+    return pairs_with(movable(p), pairs)
 
 
 def checked_bodies(t, x, q, v, omega, dt, steps, p):

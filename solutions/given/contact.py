@@ -29,7 +29,7 @@ from ..support.arms import (
     turn_freely,
     world_inertia,
 )
-from ..support.broad_phase import Pairs
+from ..support.broad_phase import Pairs, pairs_with
 from ..support.contact_points import places_of, put_back, reordered, sorted_rows, spread_order, with_gap, with_gaps
 from ..support.kept_contacts import (
     REACH,
@@ -40,7 +40,6 @@ from ..support.kept_contacts import (
     mark_gone,
     of_moved,
     pairs_in_reach,
-    pairs_with,
     places_in,
     replace_contacts,
     replace_in_plane,

@@ -153,6 +153,9 @@ def world_inertia(turn, inv_body):
     """
     I = np.zeros((inv_body.shape[0], 3, 3))
     for i in range(turn.shape[0]):
+        if inv_body[i, 0] == inv_body[i, 1] == inv_body[i, 2]:           # any axes are principal axes
+            I[i, 0, 0], I[i, 1, 1], I[i, 2, 2] = inv_body[i]
+            continue
         for r in range(3):
             along = turn[i, r, 0] * inv_body[i, 0], turn[i, r, 1] * inv_body[i, 1], turn[i, r, 2] * inv_body[i, 2]
             for c in range(3):

@@ -124,3 +124,14 @@ def near_pairs(low, high, planes):
                 partner.append(n + p)
         first[i + 1] = len(partner)
     return Pairs(first, np.array(partner, dtype=np.int64))
+
+
+def pairs_with(marked, pairs):
+    """Return those Pairs of which at least one body is marked, (n + p,)."""
+    first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
+    for i in range(first.size - 1):
+        for k in range(pairs.first[i], pairs.first[i + 1]):
+            partner[m] = pairs.partner[k]                                # a branch here would be guessed wrong often
+            m += marked[i] | marked[pairs.partner[k]]
+        first[i + 1] = m
+    return Pairs(first, partner[:m])

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..checks import BadInput
 from ..vectors import dot
-from .tuples import across, axis, minus, plus, put, row, scaled
+from .tuples import across, axes, axis, minus, plus, put, put_rotation, row, scaled
 
 # Of the longest half size of both boxes [-]: of two faces that separate alike, take that of a unless b's is better by
 # so much, or normals take turns; an edge must be better by so much than any face, which holds more points.
@@ -126,16 +126,15 @@ def disc_bounds(x, q, half):
 
 
 def ball_bounds(x, q, half):
-    """(low, high, turn) of spheres: any axes are principal axes of theirs, so they keep those of the world.
+    """(low, high, turn) of spheres, whose mass need not be spread evenly.
 
     Raises BadInput for different half sizes of a sphere.
     """
     n = half.shape[0]
     check_round(half)
-    turn = np.zeros((n, 3, 3))
+    turn = np.empty((n, 3, 3))
     for i in range(n):
-        for e in range(3):
-            turn[i, e, e] = 1.0
+        put_rotation(turn[i], axes(q, i))
     return x[:n] - half, x[:n] + half, turn
 
 
@@ -287,10 +286,7 @@ def box_bounds(x, q, half):
     n = half.shape[0]
     turn, reach = np.empty((n, 3, 3)), np.empty((n, 3))
     for i in range(n):
-        w, a, b, c = q[i, 0], q[i, 1], q[i, 2], q[i, 3]
-        put(turn[i], 0, (1.0 - 2.0 * (b * b + c * c), 2.0 * (a * b - w * c), 2.0 * (a * c + w * b)))
-        put(turn[i], 1, (2.0 * (a * b + w * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c - w * a)))
-        put(turn[i], 2, (2.0 * (a * c - w * b), 2.0 * (b * c + w * a), 1.0 - 2.0 * (a * a + b * b)))
+        put_rotation(turn[i], axes(q, i))
         for e in range(3):
             along_x, along_y, along_z = abs(turn[i, e, 0]), abs(turn[i, e, 1]), abs(turn[i, e, 2])
             reach[i, e] = half[i, 0] * along_x + half[i, 1] * along_y + half[i, 2] * along_z

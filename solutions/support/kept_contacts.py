@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .broad_phase import Pairs, near_pairs
+from .broad_phase import near_pairs
 from .contact_points import first_of, room_for
 
 KEPT = 2e-3                  # way of a body after which its contacts are found anew [-], over the smallest half size
@@ -116,17 +116,6 @@ def pairs_in_reach(wide_low, wide_high, planes, margin):
     half, nearer = 0.5 * REACH * margin, planes.copy()
     nearer[:, -1] -= half
     return near_pairs(wide_low - half, wide_high + half, nearer)
-
-
-def pairs_with(marked, pairs):
-    """Return those Pairs of which at least one body is marked, (n + p,)."""
-    first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
-    for i in range(first.size - 1):
-        for k in range(pairs.first[i], pairs.first[i + 1]):
-            partner[m] = pairs.partner[k]                                # a branch here would be guessed wrong often
-            m += marked[i] | marked[pairs.partner[k]]
-        first[i + 1] = m
-    return Pairs(first, partner[:m])
 
 
 def copy_contact(c, J, m, old, J_old, k):

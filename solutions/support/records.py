@@ -22,6 +22,7 @@ class Bound(NamedTuple):
     """What each number of a field must be."""
     holds: object            # function of an array, returns an array of truths
     remedy: str
+    types: tuple = (float, int, np.floating, np.integer)
 
 
 FINITE = Bound(np.isfinite, "give finite numbers only")
@@ -30,8 +31,8 @@ NOT_NEGATIVE = Bound(lambda y: (y >= 0.0) & np.isfinite(y), "give a finite numbe
 FRICTION = Bound(lambda y: y >= 0.0, "give a number of zero or above; infinity prevents any slip")
 SHARE = Bound(lambda y: (y >= 0.0) & (y <= 1.0), "give a number from 0 to 1")
 PART = Bound(lambda y: (y > 0.0) & (y <= 1.0), "give a number above 0, up to 1")
-COUNT = Bound(lambda y: (y >= 1.0) & (y == np.floor(y)) & np.isfinite(y), "give a whole number of 1 or more")
-WHOLE = Bound(lambda y: (y >= 0.0) & (y == np.floor(y)) & np.isfinite(y), "give a whole number of 0 or more")
+COUNT = Bound(lambda y: y >= 1, "give a whole number of 1 or more, without a decimal point", (int, np.integer))
+WHOLE = Bound(lambda y: y >= 0, "give a whole number of 0 or more, without a decimal point", (int, np.integer))
 NUMBER = Bound(lambda y: ~np.isnan(y), "give numbers; ±∞ for no limit")
 
 
@@ -145,7 +146,7 @@ def check_inner(p, value, field, sizes):
 def obeys(value, field, sizes):
     """Return whether the value of a field obeys its rule.  The first array with a size of a new name sets it."""
     if field.shape == ():
-        return isinstance(value, (float, int, np.floating, np.integer)) and field.bound.holds(value)
+        return isinstance(value, field.bound.types) and field.bound.holds(value)
     if not isinstance(value, np.ndarray) or value.dtype.kind not in ("iu" if isinstance(field, Row) else "f"):
         return False
     if field.shape is not None and value.shape != field.shape:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from solutions.given import contact
 from solutions.support import kept_contacts
@@ -312,6 +313,20 @@ def moving(state, *velocities):
     v = state.v.copy()
     v[:len(velocities)] = velocities
     return state._replace(v=v)
+
+
+def test_a_ball_whose_mass_is_not_spread_evenly_turns_about_its_own_principal_axes():
+    """The impulse of a substep on a floor gives it the angular momentum that it has: r × J = R I_body Rᵀ ω."""
+    rng, moments = np.random.default_rng(13), np.array((0.01, 0.02, 0.025))
+    advance, state, pile = piled(3, [(0.0, 0.0, 0.2)], np.full((1, 3), 0.2), planes=[(0.0, 0.0, 1.0, 0.0)], mu=2.0,
+                                 substeps=1, inertia=moments)
+    for turn in Rotation.random(5, rng=rng):
+        q, v = state.q.copy(), state.v.copy()
+        q[0], v[0] = turn.as_quat(scalar_first=True), (1.0, 0.5, -2.0)
+        end = advance(*ROUND[3], state._replace(q=q, v=v), 1e-4, 1, pile._replace(hertz=1e3))
+        R = turn.as_matrix()
+        assert np.allclose(R @ (moments * (R.T @ end.omega[0])), np.cross((0.0, 0.0, -0.2), end.J[0]), atol=1e-12)
+        assert np.linalg.norm(end.omega[0]) > 1.0
 
 
 def both_ways(advance, shape, state, pile, steps):

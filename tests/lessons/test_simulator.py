@@ -525,11 +525,16 @@ def touching(x, half, planes, movable, margin):
             if gap <= margin and movable[[i, j]].any()}
 
 
-def crowd(draw, lesson, d, margin, planes=4, size=1.0):
-    """(x, half, planes, Bodies): ten round bodies of which three cannot move, the first one among them.
+def can_move(p):
+    """(n + p,) whether an impulse moves or turns each body."""
+    return (p.inv_mass > 0.0) | np.any(p.inv_inertia.reshape(p.inv_mass.size, -1) > 0.0, axis=1)
 
-    The last two planes are a floor and a ceiling, with bodies 9 and 1 next to them, at a part of the margin.  What can
-    turn is another choice than what can move.  All lengths are multiplied by `size`.
+
+def crowd(draw, lesson, d, margin, planes=4, size=1.0):
+    """(x, half, planes, Bodies): ten round bodies, of which two can neither move nor turn, and the first only turns.
+
+    The last two planes are a floor and a ceiling, with bodies 9 and 1 next to them, at a part of the margin.  Two
+    others only move.  All lengths are multiplied by `size`.
     """
     n = 10
     x, half = draw(0.0, 2.0, (n, d)), np.repeat(draw(0.2, 0.5, (n, 1)), d, axis=1)
@@ -539,7 +544,7 @@ def crowd(draw, lesson, d, margin, planes=4, size=1.0):
                      + [np.append(np.eye(d)[-1], 0.5), np.append(-np.eye(d)[-1], 1.5)])[:planes]
     x, half, margin, faces = size * x, size * half, size * margin, faces * np.append(np.ones(d), size)
     inv_mass, inv_inertia = draw(0.5, 2.0, n + planes), draw(0.5, 2.0, n + planes)
-    inv_mass[[0, 4, 7]] = inv_mass[n:] = inv_inertia[n:] = inv_inertia[[1, 9]] = 0.0
+    inv_mass[[0, 4, 7]] = inv_mass[n:] = inv_inertia[n:] = inv_inertia[[1, 4, 7, 9]] = 0.0
     bodies = bodies_of(lesson, inv_mass, inv_inertia if d == 2 else np.repeat(inv_inertia[:, None], 3, axis=1), half,
                        faces, margin=margin)
     return np.vstack((x, np.zeros((planes, d)))), half, faces, bodies
@@ -552,7 +557,7 @@ def test_all_gaps_up_to_the_margin_are_found_and_no_others(lesson, draw):
                                    (draw(0.2, 0.4), 1e-20, 1e4)):
             x, half, faces, p = crowd(draw, lesson, d, share, planes, size)
             p, margin = p._replace(inv_mass=light * p.inv_mass), p.margin
-            got, expected = found(lesson, x, half, faces, p), touching(x, half, faces, p.inv_mass > 0.0, margin)
+            got, expected = found(lesson, x, half, faces, p), touching(x, half, faces, can_move(p), margin)
             close("number of contacts [-]", len(got), len(expected), 0.0,
                   given=f"margin {margin} m, {d} dimensions, {planes} planes, inverse masses {p.inv_mass} 1/kg")
             close("contacts that are not among them [-]", len(set(got) - set(expected)), 0, 0.0)
@@ -581,19 +586,19 @@ def check_edge(lesson, draw, d):
                   0.0, given=f"{n} above the floor, gaps {margin * (1.0 + more)} m, margin {margin} m")
 
 
-@exercise("10.5", points=0.25, hint="movable_pairs(pairs, p.inv_mass) leaves out pairs in which neither body can move")
+@exercise("10.5", points=0.25, hint="movable_pairs(pairs, p) leaves out pairs of which neither body can move or turn")
 def test_two_bodies_that_no_impulse_moves_have_no_contact(lesson, draw):
     for d in (2, 3):
         margin = draw(0.1, 0.2)
         x, half, planes, p = crowd(draw, lesson, d, margin)
         x[7] = x[4] + 0.1                                                # two that overlap and cannot move
         got = found(lesson, x, half, planes, p)
-        still = [pair for pair in got if not (p.inv_mass[list(pair)] > 0.0).any()]
+        still = [pair for pair in got if not can_move(p)[list(pair)].any()]
         close("contacts of bodies that no impulse moves [-]", len(still), 0, 0.0)
-        x[5], x[6] = x[4], x[7] - 0.1                                    # one centre on the other, and beside it
+        x[5], x[6], x[0] = x[4], x[7] - 0.1, x[4] - 0.1                  # one centre on the other, two beside others
         got = found(lesson, x, half, planes, p)
-        for pair in ((4, 5), (6, 7)):
-            truth("whether a body that moves touches one that does not", pair in got, True)
+        for pair, how in (((4, 5), "moves"), ((6, 7), "moves"), ((0, 4), "only turns")):
+            truth(f"whether a body that {how} touches one that does not", pair in got, True)
 
 
 @pytest.mark.counts_calls                                            # boxes would be compiled anew, for seconds

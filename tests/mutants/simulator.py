@@ -407,7 +407,8 @@ edits("10.4",
 def find_contacts(narrow, x, low, high, turn, p):
     first, partner = [0], []
     for i in range(len(p.half)):
-        partner += [j for j in range(i + 1, len(x)) if p.inv_mass[i] + p.inv_mass[j] > 0.0]
+        partner += [j for j in range(i + 1, len(x))
+                    if p.inv_mass[i] + p.inv_mass[j] + np.sum(p.inv_inertia[i] + p.inv_inertia[j]) > 0.0]
         first.append(len(partner))
     pairs = Pairs(np.array(first, np.int64), np.array(partner, np.int64))
     return narrow(x, turn, p.half, p.planes, pairs, p.margin)
@@ -415,7 +416,7 @@ def find_contacts(narrow, x, low, high, turn, p):
 
 @right("10.5", "with wider boxes, whose contacts the narrow phase leaves out")
 def find_contacts(narrow, x, low, high, turn, p):                        # noqa: F811
-    pairs = worked.movable_pairs(worked.near_pairs(low - 2.0 * p.margin, high + 2.0 * p.margin, p.planes), p.inv_mass)
+    pairs = worked.movable_pairs(worked.near_pairs(low - 2.0 * p.margin, high + 2.0 * p.margin, p.planes), p)
     return narrow(x[:len(p.half)], turn, p.half, p.planes, pairs, p.margin)
 
 
@@ -451,8 +452,12 @@ edits("10.5",
       ("has no limit of the gap", "pairs, p.margin)", "pairs, np.inf)"),
       ("uses a margin of 1 cm in place of p.margin", "pairs = ", "p = p._replace(margin=0.01); pairs = "),
       ("uses a margin of 5 cm in place of p.margin", "pairs = ", "p = p._replace(margin=0.05); pairs = "),
-      ("finds contacts between immovable bodies, too", "p.inv_mass)", "p.inv_mass + 1.0)"),
-      ("uses inv_inertia in place of inv_mass", "p.inv_mass)", "p.inv_inertia.reshape(len(x), -1)[:, 0])"),
+      ("finds contacts between immovable bodies, too", "p.planes), p)",
+       "p.planes), p._replace(inv_mass=p.inv_mass + 1.0))"),
+      ("omits contacts of bodies that only turn", "p.planes), p)",
+       "p.planes), p._replace(inv_inertia=0.0 * p.inv_inertia))"),
+      ("omits contacts of bodies that do not turn", "p.planes), p)",
+       "p.planes), p._replace(inv_mass=0.0 * p.inv_mass))"),
       ("finds contacts of two movable bodies only", "return",
        SOME.format("p.inv_mass[i] > 0.0 and p.inv_mass[j] > 0.0")),
       ("finds contacts only where the first body is movable", "return", SOME.format("p.inv_mass[i] > 0.0")),
@@ -490,7 +495,8 @@ edits("10.5",
       ("widens the boxes by 1 m, regardless of the margin", "low - p.margin, high + p.margin", "low - 1.0, high + 1.0"),
       ("finds gaps a little larger than the margin", "pairs, p.margin)", "pairs, p.margin * (1.0 + 1e-6))"),
       ("finds gaps a little smaller than the margin only", "pairs, p.margin)", "pairs, p.margin * (1.0 - 1e-6))"),
-      ("takes heavy bodies for immovable", ", p.inv_mass)", ", np.where(p.inv_mass > 1e-3, p.inv_mass, 0.0))"),
+      ("takes heavy bodies for immovable", "p.planes), p)", "p.planes), p._replace("
+       "inv_mass=np.where(p.inv_mass > 1e-3, p.inv_mass, 0.0)))"),
       ("doubles the sizes of the bodies", "turn, p.half", "turn, 2.0 * p.half"),
       ("uses the sizes of the first body for all", "turn, p.half", "turn, 0.0 * p.half + p.half[0]"),
       ("uses the planes from the last to the first", "p.half, p.planes, pairs",

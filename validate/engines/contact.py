@@ -27,7 +27,7 @@ class Kind(NamedTuple):
 
 KINDS = {
     "discs": Kind(2, "round", 30, 0.25, 3, 210.0),
-    "boxes": Kind(2, "box", 30, 0.35, 3, 210.0),                         # with 240 Hz towers of five boxes sway on
+    "boxes": Kind(2, "box", 30, 0.35, 3, 210.0),                         # with 240 Hz towers of six boxes sway on
     "spheres": Kind(3, "round", 10, 0.25, 2, 144.0),
     "bricks": Kind(3, "box", 10, 0.42, 4, 120.0),
 }
