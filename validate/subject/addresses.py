@@ -35,6 +35,7 @@ from numba.extending import (
 from numba.np import arrayobj
 
 from .linking import is_linked_only
+from .numba_twins import rare_searches_for_cycles
 
 
 def short(kind, more):
@@ -234,7 +235,7 @@ def machine_code(twin, kind):
     """
     arguments = kind.signature.args
     if arguments not in twin.overloads:
-        with short_message_of_shapes():
+        with short_message_of_shapes(), rare_searches_for_cycles():
             twin.compile(arguments)
     code = twin.overloads[arguments]
     if code.signature.return_type != kind.signature.return_type:

@@ -4,13 +4,14 @@ A twin's cache on disk lies in a folder that is named after a digest of *all* fi
 looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
 """
 
+import gc
 import os
 import shutil
 import time
 import types
 import uuid
 import warnings
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache, cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
@@ -21,6 +22,7 @@ CACHE = Path(__file__).resolve().parents[2] / ".cache" / "compiled"
 INLINED = "vectors"          # its functions become part of their callers: a call would pass whole arrays, and a step of
                              # a spring net would take 2.5 times as long
 FROM_PYTHON = "from python"  # folder of the cache for what Python calls
+RARELY = 100_000             # new objects between two searches for cycles
 SAVE_WITHIN = 10.0           # wait for another process that saves [s]
 CACHED_SETS = 6              # digests kept on disk: some edits back
 IN_USE = 3600.0              # a digest that was asked for so long ago [s] may still be in use by another process
@@ -60,6 +62,20 @@ def compiled(function, name, cache, options=MappingProxyType({}), from_python=Fa
     twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{name} {FROM_PYTHON}" if from_python else name)))
     twin.from_python = partial(compiled, function, name, cache, options, from_python=True)
     return twin
+
+
+@contextmanager
+def rare_searches_for_cycles():
+    """Let Python look for cycles of unused objects more rarely.
+
+    Compiling makes millions of objects, and few such cycles.  To look for them takes up to a tenth of its time.
+    """
+    usual = gc.get_threshold()
+    gc.set_threshold(RARELY, *usual[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
 
 
 class CachedDispatch:
@@ -106,7 +122,8 @@ class CachedDispatch:
         from numba import typeof
         exact = tuple(map(typeof, arguments))
         if exact not in self.called.overloads:
-            self.called.compile(exact)
+            with rare_searches_for_cycles():
+                self.called.compile(exact)
         return self.called.get_overload(exact)
 
     def __getattr__(self, name):                                     # py_func … are those of the twin
