@@ -520,7 +520,7 @@ def test_a_method_without_error_ends_up_on_the_page_and_in_the_table(capsys, tmp
     code, said, _ = run(capsys, "--scene", "throw", "--plain", "--out", str(tmp_path))
     assert code == 0 and "exact" in said
     page = (tmp_path / "throw.html").read_text()
-    assert "no error that can be told" in (tmp_path / "throw-times.svg").read_text() and "What theory allows" in page
+    assert "error too small to tell" in (tmp_path / "throw-times.svg").read_text() and "What theory allows" in page
     assert "exact" in (tmp_path / "index.html").read_text()
 
 

@@ -80,7 +80,7 @@ def test_the_table_of_parts_names_functions_of_the_lesson_and_leaves_places_for_
 
 
 def test_what_is_not_measured_says_why():
-    assert measured("tensors") == {"rows": [], "note": "nothing moves here"}
+    assert measured("tensors") == {"rows": [], "note": "no motion is compared here"}
     assert "Python function" in measured("kepler", speeds=("plain", "compiled"))["note"]
     assert {row["speed"] for row in measured("kepler", speeds=("plain", "compiled"))["rows"]} == {"plain"}
 

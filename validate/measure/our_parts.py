@@ -66,7 +66,7 @@ def our_parts(selection, p):
     """
     one = described_scene(selection.name)
     if one is None:
-        return {"rows": [], "note": "" if selection.scene.moves else "nothing moves here"}
+        return {"rows": [], "note": "" if selection.scene.moves else "no motion is compared here"}
     model = one.model(p)
     own_load = any(callable(load) for load in model.loads)
     note = "a force of this scene is a Python function, which is not compiled" if own_load else ""

@@ -67,7 +67,7 @@ def _ground(axes, bottom):
         axes.axhline(bottom, color="#999999", lw=0.6)
         low, high = axes.get_ylim()
         axes.set_ylim(low * (low / high) ** 0.05, high)              # room for words below the markers on the line
-        axes.annotate("no error that can be told", (0.01, bottom), xytext=(0, -6), textcoords="offset points", va="top",
+        axes.annotate("error too small to tell", (0.01, bottom), xytext=(0, -6), textcoords="offset points", va="top",
                       **NOTE)
 
 

@@ -32,7 +32,7 @@ LEGEND = {                   # every verdict has one name and one sign
                         "pulls, Coulomb's limit, and no residual of the laws of contact above 1 % of g dt. Of joints: "
                         "they stay closed, and the energy changes by the work of loads alone, both as far as a step "
                         "of its length allows.",
-    Verdict.BREAKS_AS_KNOWN: "The same laws judge it, and it breaks one of them by a rule of its own, which the scene "
+    Verdict.BREAKS_AS_KNOWN: "The same laws judge it, and it breaks one or more of them, each by a rule that the scene "
                              "names beforehand, and by no more than that rule can where it gives a bound.",
     Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
     Verdict.UNDECIDED: "No theory says how far it may be off, or every step was too coarse, or the engine is missing "

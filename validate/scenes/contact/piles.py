@@ -136,10 +136,10 @@ def truth(p, t):
 
 
 def limit(p, dt):
-    """A pile at rest still creeps.  Each number but the overlap may be off by 1 % of the weight, or of g dt.  The
-    overlap may be the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the smallest mass k_n = 2/m, and
-    twice that at corners.  F is 4 times the weight of a column of n/across bodies, because forces concentrate in
-    chains.
+    """A pile at rest still creeps.  The limit is for the size of all differences together: 2 %, as of four numbers that
+    are each off by 1 % of the weight, or of g dt, and the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of
+    the smallest mass k_n = 2/m, and twice that at corners.  F is 4 times the weight of a column of the heaviest bodies,
+    n/across of them, and in space n/across², because forces concentrate in chains.
     """
     kind, corner = kind_of(p), 2.0 if p.kind in ("boxes", "bricks") else 1.0
     columns = p.across ** (kind.d - 1)
