@@ -30,7 +30,16 @@ from ..support.arms import (
     world_inertia,
 )
 from ..support.broad_phase import Pairs, pairs_with
-from ..support.contact_points import places_of, put_back, reordered, sorted_rows, spread_order, with_gap, with_gaps
+from ..support.contact_points import (
+    places_of,
+    put_back,
+    reordered,
+    rotations,
+    sorted_rows,
+    spread_order,
+    with_gap,
+    with_gaps,
+)
 from ..support.kept_contacts import (
     REACH,
     begin_ways,
@@ -224,6 +233,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
             x, q, v, omega, J, residual = _substep_2d(x, q, v, omega, push, spin, J, gap, spread, arms, fastest, ways,
                                                       h, pile)
     check_end(x, v, dt)
+    check_end(q, omega, dt)
     return PileState(x, q, v, omega, *without_gone(with_gaps(contacts, found, order), put_back(J, order)))
 
 
@@ -336,7 +346,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
         if np.any(moved):
             low, high, turn = bounds(x, q, pile.half)
             wide, pairs = _pairs_now(low, high, v, moved, wide, pairs, dt, pile)
-            contacts, inv_inertia = with_gap(contacts, gap), world_inertia(turn, pile.inv_inertia)
+            contacts, inv_inertia = with_gap(contacts, gap), world_inertia(rotations(q, len(low)), pile.inv_inertia)
             new, J_new, at, left, changed = _found_anew(find_contacts, x, turn, pairs, moved, contacts, J, ways, pile,
                                                         step == 0)
             allowed = check_overlap(new, v, dt, pile.half, allowed, residual)
@@ -355,6 +365,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
             x, q, v, omega, residual = _substep(x, q, v, omega, push, spin, lanes, ways, h, pile)
         gap, J = gaps_and_impulses(lanes)
     check_end(x, v, dt)
+    check_end(q, omega, dt)
     return PileState(x, q, v, omega, *without_gone(with_gap(contacts, found), J))
 
 

@@ -157,9 +157,11 @@ def way_and_times(before, after, i, j, reach):
 
 
 def may_touch(low, high, i, j, p):
-    """Return whether the boxes of bodies i and j overlap, or that of i reaches plane j − n; one of both can move."""
+    """Return whether the boxes of bodies i and j overlap, or that of i reaches plane j − n, and an impulse moves or
+    turns one of both.
+    """
     n = p.half.shape[0]
-    if p.inv_mass[i] + p.inv_mass[j] == 0.0:
+    if p.inv_mass[i] + p.inv_mass[j] == 0.0 and not (np.any(p.inv_inertia[i:i + 1]) or np.any(p.inv_inertia[j:j + 1])):
         return False
     return boxes_overlap(low, high, i, j) if j < n else box_reaches(low, high, i, p.planes[j - n])
 

@@ -15,12 +15,16 @@ class Arms(NamedTuple):
     r_b: np.ndarray          # (m, d) the same for b [m]
     k_n: np.ndarray          # (m,) effective inverse mass along the normal [1/kg]
     k_t: np.ndarray          # (m,) effective inverse mass along the surface [1/kg]: in space a bound for all directions
-                             # both are 1 where no impulse changes that velocity: sweeps divide by them
+                             # both are NO_IMPULSE where no impulse changes that velocity
 
 
-def divisor(k):
-    """k, or 1 where it is not above 0."""
-    return k if k > 0.0 else 1.0
+NO_IMPULSE = 1e200           # an effective inverse mass with which a sweep gives no impulse [1/kg]
+NO_LEVER = 1e-18             # square of the distance of a line from a centre, over that of its point [-]: round-off
+
+
+def divisor(k, turning):
+    """k, or NO_IMPULSE where it is round-off of `turning`, what k would be with the longest levers."""
+    return k if k > NO_LEVER * turning else NO_IMPULSE
 
 
 def arms_2d(x, inv_mass, inv_inertia, c):
@@ -32,8 +36,9 @@ def arms_2d(x, inv_mass, inv_inertia, c):
         a_x, a_y, b_x, b_y = c.p[k, 0] - x[a, 0], c.p[k, 1] - x[a, 1], c.p[k, 0] - x[b, 0], c.p[k, 1] - x[b, 1]
         arms.r_a[k, 0], arms.r_a[k, 1], arms.r_b[k, 0], arms.r_b[k, 1] = a_x, a_y, b_x, b_y
         light, I_a, I_b = inv_mass[a] + inv_mass[b], inv_inertia[a], inv_inertia[b]
-        arms.k_n[k] = divisor(light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2)
-        arms.k_t[k] = divisor(light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2)
+        turning = I_a * (a_x * a_x + a_y * a_y) + I_b * (b_x * b_x + b_y * b_y)
+        arms.k_n[k] = divisor(light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2, turning)
+        arms.k_t[k] = divisor(light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2, turning)
     return arms
 
 
@@ -56,7 +61,7 @@ def arms_3d(x, inv_mass, inv_inertia, c):
             along += dot(lever, times(inv_inertia, body, lever))
             both = inv_inertia[body, 0, 0] + inv_inertia[body, 1, 1] + inv_inertia[body, 2, 2]
             trace += dot(arm, arm) * both - dot(arm, times(inv_inertia, body, arm))
-        arms.k_n[k], arms.k_t[k] = divisor(light + along), divisor(2.0 * light + trace - along)
+        arms.k_n[k], arms.k_t[k] = divisor(light + along, trace), divisor(2.0 * light + trace - along, trace)
     return arms
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..checks import BadInput
 from ..vectors import dot
-from .tuples import across, axes, axis, minus, plus, put, put_rotation, row, scaled
+from .tuples import across, axes, axis, minus, plus, put, row, scaled
 
 # Of the longest half size of both boxes [-]: of two faces that separate alike, take that of a unless b's is better by
 # so much, or normals take turns; an edge must be better by so much than any face, which holds more points.
@@ -126,15 +126,16 @@ def disc_bounds(x, q, half):
 
 
 def ball_bounds(x, q, half):
-    """(low, high, turn) of spheres, whose mass need not be spread evenly.
+    """(low, high, turn) of spheres: they look the same however they turn, so their axes are those of the world.
 
     Raises BadInput for different half sizes of a sphere.
     """
     n = half.shape[0]
     check_round(half)
-    turn = np.empty((n, 3, 3))
+    turn = np.zeros((n, 3, 3))
     for i in range(n):
-        put_rotation(turn[i], axes(q, i))
+        for e in range(3):
+            turn[i, e, e] = 1.0
     return x[:n] - half, x[:n] + half, turn
 
 
@@ -281,12 +282,20 @@ def box_contacts_2d(x, turn, half, planes, pairs, reach):
 
 # ---------------------------------------------------------------------------------------------- boxes in space
 
+def rotations(q, n):
+    """The rotation matrices (n, 3, 3) of the first n bodies, q (n + p, 4)."""
+    turn = np.empty((n, 3, 3))
+    for i in range(n):
+        for k, axis_k in enumerate(axes(q, i)):
+            turn[i, 0, k], turn[i, 1, k], turn[i, 2, k] = axis_k
+    return turn
+
+
 def box_bounds(x, q, half):
     """(low, high, turn) of boxes in space."""
     n = half.shape[0]
-    turn, reach = np.empty((n, 3, 3)), np.empty((n, 3))
+    turn, reach = rotations(q, n), np.empty((n, 3))
     for i in range(n):
-        put_rotation(turn[i], axes(q, i))
         for e in range(3):
             along_x, along_y, along_z = abs(turn[i, e, 0]), abs(turn[i, e, 1]), abs(turn[i, e, 2])
             reach[i, e] = half[i, 0] * along_x + half[i, 1] * along_y + half[i, 2] * along_z

@@ -51,9 +51,3 @@ def times(A, i, b):
 def put(A, k, a):
     """Write a into row k of A (m, 3), in place."""
     A[k, 0], A[k, 1], A[k, 2] = a
-
-
-def put_rotation(R, axes):
-    """Write three axes into the columns of R (3, 3), in place."""
-    for k in range(3):
-        R[0, k], R[1, k], R[2, k] = axes[k]

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from solutions.given import contact
+from solutions.checks import Diverged
+from solutions.given import contact, simulator
 from solutions.support import kept_contacts
 from solutions.support.arms import normal_velocities
 from solutions.support.broad_phase import near_pairs
@@ -327,6 +328,64 @@ def test_a_ball_whose_mass_is_not_spread_evenly_turns_about_its_own_principal_ax
         R = turn.as_matrix()
         assert np.allclose(R @ (moments * (R.T @ end.omega[0])), np.cross((0.0, 0.0, -0.2), end.J[0]), atol=1e-12)
         assert np.linalg.norm(end.omega[0]) > 1.0
+
+
+def test_a_free_body_that_spins_without_bound_is_named():
+    """The free turn is explicit: with three different moments and long steps it gains speed, but never ends in NaN."""
+    advance, state, pile = piled(3, [(0.0, 0.0, 50.0)], np.full((1, 3), 0.5), substeps=1, inertia=(0.05, 0.08, 0.1))
+    omega = state.omega.copy()
+    omega[0] = 100.0, 100.0, 30.0
+    with pytest.raises(Diverged), np.errstate(over="ignore", invalid="ignore"):
+        advance(*ROUND[3], state._replace(omega=omega), DT, 240, pile._replace(hertz=30.0))
+
+
+@pytest.mark.parametrize("angle", np.radians([0.0, 17.0, 35.0, 36.0, 80.0]))
+def test_a_wheel_on_an_axle_gets_no_speed_from_round_off(angle):
+    """Its contact presses through its centre, so no impulse changes its velocity there, and none brakes it."""
+    n = np.array((-np.sin(angle), np.cos(angle)))
+    state, p = simulator.make_bodies_2d([(0.3, 0.2)], [0.0], np.inf, 1.0, [(0.5, 0.5)],
+                                        [(*n, 0.5 - 1e-6 - n @ (0.3, 0.2))], (0.0, -G), 0.5, 10, 0.02)
+    omega = state.omega.copy()
+    omega[0] = 1.0
+    end = simulator.advance_contact(simulator.contact_step_2d, simulator.weight, simulator.disc_bounds,
+                                    simulator.round_contacts, 0.0, state._replace(omega=omega), 0.01, 5, p)
+    assert end.contacts.a.size == 1 and abs(end.omega[0] - 1.0) < 1e-12
+
+
+@pytest.mark.parametrize("m", [1.0, 1e12, np.inf])
+def test_a_bar_that_turns_through_a_floor_within_a_step_is_named(m):
+    state, p = simulator.make_bodies_2d([(0.0, 0.5)], [0.0], m, 0.3, [(1.0, 0.05)], [(0.0, 1.0, 0.0)], (0.0, 0.0), 0.5,
+                                        20, 0.02)
+    omega = state.omega.copy()
+    omega[0] = 30.0
+    with pytest.raises(Diverged):
+        simulator.advance_contact(simulator.contact_step_2d, simulator.weight, simulator.box_bounds_2d,
+                                  simulator.box_contacts_2d, 0.0, state._replace(omega=omega), 0.1, 4, p)
+
+
+def test_a_bar_on_a_pivot_meets_a_floor_as_a_very_heavy_one_does():
+    ends = []
+    for m in (1e12, np.inf):
+        state, p = simulator.make_bodies_2d([(0.0, 0.5)], [0.0], m, 0.3, [(1.0, 0.05)], [(0.0, 1.0, 0.0)], (0.0, 0.0),
+                                            0.5, 20, 0.02)
+        omega = state.omega.copy()
+        omega[0] = 1.0
+        ends.append(simulator.advance_contact(simulator.contact_step_2d, simulator.weight, simulator.box_bounds_2d,
+                                              simulator.box_contacts_2d, 0.0, state._replace(omega=omega), 0.01, 60, p))
+    heavy, pivot = ends
+    assert abs(pivot.q[0] - heavy.q[0]) < 1e-9 and pivot.omega[0] < 0.0 < 0.45 < pivot.q[0]
+
+
+@pytest.mark.parametrize("spin", [0.0, 300.0, 3000.0])
+def test_a_ball_that_passes_another_one_is_named_however_fast_it_spins(spin):
+    state, p = simulator.make_bodies([(0.0, 0.0, 0.1), (0.0, 0.0, 0.305)], [(1.0, 0.0, 0.0, 0.0)] * 2, [1.0, np.inf],
+                                     [[0.004] * 3, [np.inf] * 3], [[0.1] * 3] * 2, [(0.0, 0.0, 1.0, 0.0)], (0.0,) * 3,
+                                     0.0, 10, 0.02)
+    v, omega = state.v.copy(), state.omega.copy()
+    v[1, 2], omega[0, 2] = -30.0, spin
+    with pytest.raises(Diverged):
+        simulator.advance_contact(simulator.contact_step, simulator.weight, simulator.ball_bounds,
+                                  simulator.round_contacts, 0.0, state._replace(v=v, omega=omega), 0.02, 1, p)
 
 
 def both_ways(advance, shape, state, pile, steps):

@@ -20,14 +20,17 @@ SPEEDS = ["plain", pytest.param("compiled", marks=pytest.mark.long)]
 
 
 def scene(shape, d, x, half, v, omega, planes, m=1.0, q=None, mu=0.0):
-    """(step, bounds, narrow, PileState, Bodies) of bodies that fly without gravity."""
-    n, velocities = len(x), np.zeros((len(x) + len(planes), d))
+    """(step, bounds, narrow, PileState, Bodies) of bodies that fly without gravity.
+
+    No impulse turns what has an infinite mass.
+    """
+    n, velocities, moment = len(x), np.zeros((len(x) + len(planes), d)), np.where(np.isinf(m), np.inf, 0.1)
     if d == 2:
-        state, p = simulator.make_bodies_2d(x, np.zeros(n) if q is None else q, m, 0.1, half, planes, np.zeros(2), mu,
-                                            10, 0.01)
+        state, p = simulator.make_bodies_2d(x, np.zeros(n) if q is None else q, m, moment, half, planes, np.zeros(2),
+                                            mu, 10, 0.01)
     else:
         state, p = simulator.make_bodies(x, np.tile((1.0, 0.0, 0.0, 0.0), (n, 1)) if q is None else q, m,
-                                         np.full((n, 3), 0.1), half, planes, np.zeros(3), mu, 10, 0.01)
+                                         np.broadcast_to(moment, (3, n)).T, half, planes, np.zeros(3), mu, 10, 0.01)
     velocities[:n] = v
     turns = np.zeros(state.omega.shape)
     turns[:n] = omega

@@ -170,7 +170,7 @@ def test_by_theory_towers_of_equal_boxes_are_stable_at_a_quarter_of_the_substep_
 
 
 def test_by_theory_squares_are_stable_at_the_highest_hertz_and_high_towers_of_flat_boxes_are_not():
-    assert all(grows(n, HIGHEST) < 1e-6 for n in range(2, 25))
+    assert all(grows(n, HIGHEST) < 1e-6 for n in range(1, 25))
     assert grows(10, 0.307) < 1e-6 < grows(10, 0.3085)
     assert grows(13, 0.268, 2.0) < 1e-6 < 1e-3 < grows(13, HIGHEST, 2.0)
     assert grows(24, 0.26, 4.0) < 1e-6 < grows(24, 0.263, 4.0)

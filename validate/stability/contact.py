@@ -545,7 +545,7 @@ def tower_of_boxes(n, wide=1.0):
         if i > 0:
             normal[k, i - 3:i], along[k, i - 3:i] = (0.0, -1.0, -r_x), (-1.0, 0.0, 0.5)  # the lower box, r_y = ½
     return Tower(normal, along, np.tile((1.0, 1.0, 12.0 / (1.0 + wide**2)), n),
-                 spread([3, 2, 0, 1, *(k for joint in range(2, n) for k in (2 * joint + 1, 2 * joint))]))
+                 spread([*[3, 2][:2 * n - 2], 0, 1, *(k for joint in range(2, n) for k in (2 * joint + 1, 2 * joint))]))
 
 
 def substep_matrix(tower, c, zeta):
