@@ -314,7 +314,7 @@ def soft_contact(gap, hertz, zeta, dt):
 def friction_disc(J, limit):
     """Return the point of the disc |J| ≤ limit that is nearest to J.
 
-    *Find* it.  J and the answer are tuples of three numbers; limit is a number.
+    *Find* it.  J and the answer are tuples of three numbers; limit is a number, which may be 0 or ∞.
 
     Two separate limits along two tangents would allow √2 times the friction along the diagonal.
     """
@@ -353,7 +353,7 @@ def kept_impulses(contacts, old, J_old, near):
 def has_left_margin(low, high, wide_low, wide_high):
     """Return whether the box of any body, corners low and high (n, d), sticks out of its widened box.
 
-    wide_low and wide_high are the corners of the widened boxes.
+    wide_low and wide_high are the corners of the widened boxes.  There may be no bodies, n = 0.
     While this is False, only pairs that the last search found (with the widened boxes) can touch.  Return True for NaN.
     """
     ### BEGIN SOLUTION 9.15

@@ -22,9 +22,10 @@ NO_IMPULSE = 1e200           # an effective inverse mass with which a sweep give
 NO_LEVER = 1e-18             # square of the distance of a line from a centre, over that of its point [-]: round-off
 
 
-def divisor(k, turning):
-    """k, or NO_IMPULSE where it is round-off of `turning`, what k would be with the longest levers."""
-    return k if k > NO_LEVER * turning else NO_IMPULSE
+def divisors(k_n, k_t):
+    """(k_n, k_t) of two bodies that only turn, or NO_IMPULSE for what is 0 or round-off of the other."""
+    least = NO_LEVER * (k_n + k_t)
+    return k_n if k_n > least else NO_IMPULSE, k_t if k_t > least else NO_IMPULSE
 
 
 def arms_2d(x, inv_mass, inv_inertia, c):
@@ -36,9 +37,10 @@ def arms_2d(x, inv_mass, inv_inertia, c):
         a_x, a_y, b_x, b_y = c.p[k, 0] - x[a, 0], c.p[k, 1] - x[a, 1], c.p[k, 0] - x[b, 0], c.p[k, 1] - x[b, 1]
         arms.r_a[k, 0], arms.r_a[k, 1], arms.r_b[k, 0], arms.r_b[k, 1] = a_x, a_y, b_x, b_y
         light, I_a, I_b = inv_mass[a] + inv_mass[b], inv_inertia[a], inv_inertia[b]
-        turning = I_a * (a_x * a_x + a_y * a_y) + I_b * (b_x * b_x + b_y * b_y)
-        arms.k_n[k] = divisor(light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2, turning)
-        arms.k_t[k] = divisor(light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2, turning)
+        arms.k_n[k] = light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2
+        arms.k_t[k] = light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2
+        if light == 0.0:                                                 # both only turn
+            arms.k_n[k], arms.k_t[k] = divisors(arms.k_n[k], arms.k_t[k])
     return arms
 
 
@@ -61,7 +63,9 @@ def arms_3d(x, inv_mass, inv_inertia, c):
             along += dot(lever, times(inv_inertia, body, lever))
             both = inv_inertia[body, 0, 0] + inv_inertia[body, 1, 1] + inv_inertia[body, 2, 2]
             trace += dot(arm, arm) * both - dot(arm, times(inv_inertia, body, arm))
-        arms.k_n[k], arms.k_t[k] = divisor(light + along, trace), divisor(2.0 * light + trace - along, trace)
+        arms.k_n[k], arms.k_t[k] = light + along, 2.0 * light + trace - along
+        if light == 0.0:                                                 # both only turn
+            arms.k_n[k], arms.k_t[k] = divisors(arms.k_n[k], arms.k_t[k])
     return arms
 
 
