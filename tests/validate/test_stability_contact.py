@@ -164,9 +164,9 @@ def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
 
 
 @pytest.mark.parametrize("wide", [1.0, 2.0, 4.0, 10.0])
-def test_by_theory_towers_of_equal_boxes_are_stable_at_a_quarter_of_the_substep_rate(wide):
+def test_by_theory_towers_of_equal_boxes_in_the_plane_are_stable_at_a_quarter_of_the_substep_rate(wide):
     """1e-6 is allowed: stresses that nothing removes give eigenvalues of 1 that are double."""
-    assert all(grows(n, 0.25, wide) < 1e-6 for n in range(2, 25, 2))
+    assert all(grows(n, 0.25, wide) < 1e-6 for n in range(2, 25))
 
 
 def test_by_theory_squares_are_stable_at_the_highest_hertz_and_high_towers_of_flat_boxes_are_not():

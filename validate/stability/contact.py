@@ -532,9 +532,8 @@ def column_of_discs(masses):
 
 
 def tower_of_boxes(n, wide=1.0):
-    """Return the Tower of n equal boxes of 1 kg, `wide` times as wide as high; velocities are v_x, v_y and ω of each.
+    """Return the Tower of n equal boxes of 1 kg, 1 m high and `wide` m wide; velocities are v_x, v_y and ω of each.
 
-    Friction holds.  Lengths are over the height of a box, which has no effect on errors in these units.
     Contacts 2k and 2k + 1 are at the left and the right corner below box k.  A pile visits the right one first, but at
     the floor the left one.
     """
@@ -648,7 +647,7 @@ def highest_hertz(lesson, check):
              ("10,000 on 1", (1.0, 1e4), 10.0))
     for name, masses, zeta in piles:
         rho = seen(masses, HIGHEST, zeta)
-        check(f"At {HIGHEST} of the substep rate, the highest hertz that a pile accepts, columns are stable.",
+        check(f"At {HIGHEST} of the substep rate, the highest hertz that a pile accepts, columns of discs are stable.",
               f"part of an error that a substep leaves, {name} [-]",
               law=left(column_of_discs(masses), HIGHEST, zeta), found=rho, within=1e-7,
               saw=f"{HIGHEST} of the substep rate, {name}: a substep leaves {rho:.5f} of an error.")
@@ -667,8 +666,8 @@ def highest_hertz(lesson, check):
           for name, tower in (("10 squares", (10,)), ("13 boxes, twice as wide as high", (13, 2.0)))),
         *(series(name, few, [seen(m, c) for c in few], DOTS) for name, m in columns)],
         f"Above 1 a pile trembles or sways: towers of 10 squares from 0.308 on, of 13 flat boxes from 0.27 on, and "
-        f"others of unequal masses sooner.  A pile accepts {HIGHEST}.  At 0.25 no tower of equal boxes was found that "
-        "sways more and more, up to 24 boxes.")
+        f"others of unequal masses sooner.  A pile accepts {HIGHEST}.  In the plane theory finds no tower of up to "
+        "24 equal boxes, one to ten times as wide as high, that sways more and more at 0.25.")
 
 
 # ---------------------------------------------------------------------------------------------- extremes
