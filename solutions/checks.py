@@ -174,7 +174,7 @@ def whole_number(thing, value, least):
     """Return value as an int.  Raises BadInput unless it is a whole number from `least` to COUNTABLE."""
     converted = finite_number(thing, value)
     if converted != np.floor(converted) or not least <= converted <= COUNTABLE:
-        raise BadInput(thing, converted, "give a whole number that is neither too small nor too large to count to")
+        raise BadInput(thing, converted, "give a whole number such as 1, 2 or 100")
     return int(converted)
 
 

@@ -193,6 +193,37 @@ def test_a_list_in_place_of_an_array_is_told_what_makes_an_array_of_it(tmp_path)
     assert (first.got, first.hint) == ("a list", "np.array(…) makes an array of it")
 
 
+AS_AN_ARRAY = {              # what is written of an array, and fails with a list
+    "half": lambda x: x * 0.5, "quotient": lambda x: x / 2.0, "sum": lambda x: x + 1.0, "longer": lambda x: x + x[0],
+    "difference": lambda x: x - x, "sign": lambda x: -x, "square": lambda x: x**2, "product": lambda x: x @ x,
+    "column": lambda x: x[:, 0], "shape": lambda x: x.shape,
+    "transposed": lambda x: x.T, "order": lambda x: x > 0.0, "size": lambda x: abs(x)}
+
+
+@pytest.mark.parametrize("use", AS_AN_ARRAY.values(), ids=AS_AN_ARRAY)
+def test_a_list_that_is_used_as_an_array_is_named(use):
+    with pytest.raises((TypeError, AttributeError)) as found:
+        use([1.0])
+    assert points._advice("9.11", found.value, points.words_of(found.value)) == points.LISTED
+
+
+def test_an_exercise_that_gets_a_list_from_another_one_says_so(tmp_path):
+    change = {"return (G * w) @ np.ascontiguousarray(G.T)": "return ((G * w) @ G.T).tolist()",
+              "F = solve_contacts(delassus_matrix(G, w), G @ (w * load.ravel()), mu)":
+              "A = delassus_matrix(G, w)\n    F = solve_contacts(0.5 * (A + A.T), G @ (w * load.ravel()), mu)"}
+    outcomes, _ = run_of(tmp_path, "contact", ["9.2", "9.11"], change)
+    assert {o.exercise for o in outcomes if o.status != "passed"} == {"9.11"}
+    assert {o.hint for o in outcomes if o.status == "not yet"} == {points.LISTED}
+
+
+def test_an_error_in_given_code_names_the_line_of_the_answer_that_called_it(tmp_path):
+    change = {"pairs = movable_pairs(near_pairs(": "pairs = movable_pairs(0 * near_pairs(",
+              "p.planes), p)": "p.planes), 1)"}
+    outcomes, _ = run_of(tmp_path, "simulator", ["10.5"], change)
+    line = 1 + (tmp_path / "mine" / "simulator.py").read_text().split("movable_pairs(0")[0].count("\n")
+    assert {o.error.rpartition(" (")[2] for o in outcomes} == {f"simulator.py, line {line})"}
+
+
 @pytest.mark.long
 def test_an_error_where_none_was_expected_is_said(tmp_path):
     outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: "raise ValueError('too fast')"})

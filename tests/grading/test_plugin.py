@@ -11,7 +11,7 @@ import pytest
 
 from validate.grading import plugin, points, wire
 from validate.notebook.pytest_process import quiet
-from validate.subject import modules
+from validate.subject import generate, modules
 from validate.subject.generate import exercises
 
 LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them, too$", re.MULTILINE)
@@ -200,3 +200,18 @@ def test_imports_that_a_grader_need_not_have_are_named(tmp_path):
                                                           "springs.py": ["matplotlib", "scipy"]}
     config = types.SimpleNamespace(getoption=lambda name: "solutions")
     assert plugin.imports_without_a_grader(config) == {}
+
+
+def test_what_is_not_written_yet_is_counted_and_not_shown_as_failures(tmp_path):
+    """The table has one line for each exercise, in the order of the course; a failure is still shown as one."""
+    text = generate.stub((modules.SOLUTIONS / "springs.py").read_text())
+    stub = 'raise NotImplementedError("Exercise 2.2: air_force")'
+    assert stub in text
+    (tmp_path / "springs.py").write_text(text.replace(stub, "return 1.0"))
+    files = [str(points.LESSONS / f"test_{name}.py") for name in ("springs", "simulator")]
+    said = quiet(*files, f"--of={tmp_path}", f"--rootdir={modules.ROOT}",
+                 *(f"--exercise={number}" for number in ("2.2", "2.3", "2.10", "10.1")))
+    assert re.findall(r"^ +([\d.]+)  0 of", said, re.M) == ["2.2", "2.3", "2.10", "10.1"]
+    assert re.findall(r"^_+ (test_\w+)", said, re.M) == [
+        "test_air_pushes_resting_points_and_exerts_no_force_on_points_at_wind_speed"]
+    assert re.search(r"^\d+ failed, .*\d+ not attempted in", said, re.M), said

@@ -1291,13 +1291,13 @@ def test_no_box_has_left_while_all_are_inside(lesson, draw):
         for what, parts in (("exactly as low as they may be", (wide[0], high)),
                             ("exactly as high as they may be", (low, wide[1])), ("as wide as they may be", wide)):
             truth(f"whether any box has left, all {what}", lesson.has_left_margin(*parts, *wide), False)
-        truth("whether any box has left, no bodies",
-              lesson.has_left_margin(*(part[:0] for part in (low, high, *wide))), False)
         everywhere = np.full(low.shape, np.inf)
         truth("whether any box has left where the widened boxes are all of space",
               lesson.has_left_margin(low, high, -everywhere, everywhere), False)
         truth("whether any box has left, all moved by 1.01 times the margin", lesson.has_left_margin(
             low + 1.01 * margin, high + 1.01 * margin, *wide), True)
+        truth("whether any box has left", lesson.has_left_margin(*(part[:0] for part in (low, high, *wide))), False,
+              given=f"no bodies: arrays of shape (0, {d})")
 
 
 @exercise("9.15", points=0.25, hint="low below wide_low, for one body and one axis, is enough")

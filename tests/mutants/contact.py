@@ -2671,6 +2671,15 @@ edits("9.9", {"takes b = 0 for an answer": ("return worst", "return worst if b.a
 for number in ("9.10", "9.17"):
     edits(number, {"returns 0 where b = 0": ("return J", "return J if b.any() else 0.0 * J")})
 edits("9.16", {
+    "changes the velocities by the whole impulse, not by its change":
+        ("J[k, 0], J[k, 1] = J[k, 0] + d_x, J[k, 1] + d_y",
+         "d_x, d_y = J[k, 0], J[k, 1] = J[k, 0] + d_x, J[k, 1] + d_y"),
+    "limits the change of the normal impulse to zero or more, not the impulse":
+        ("J_n += (aim[k] - u_n - give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))",
+         "J_n += max(0.0, (aim[k] - u_n - give[k] * k_n * J_n) / (k_n * (1.0 + give[k])))"),
+    "limits the change of the friction by its cone, not the friction":
+        ("J_t = -limit if J_t < -limit else limit if J_t > limit else J_t",
+         "J_t += max(-limit, min(limit, -u_t / arms.k_t[k])) + u_t / arms.k_t[k]"),
     "returns the impulses as they are where all bodies are at rest":
         ("for k in range(contacts.a.size)", "for k in range(contacts.a.size if v.any() or omega.any() else 0)"),
     "leaves out contacts of two bodies with an inverse mass of 0, which may turn":

@@ -421,7 +421,7 @@ def pytest_terminal_summary(terminalreporter, config):
         return
     table = score(config.points.all())
     terminalreporter.section("points")
-    for exercise, (earned, possible) in table.items():
+    for exercise, (earned, possible) in sorted(table.items(), key=lambda row: needs.in_order(row[0])):
         terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")
         for said in dict.fromkeys(text for o in config.points.all() for text in (o.below, o.idea)
                                   if o.exercise == exercise and text):

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import os
+import re
 import traceback
 from pathlib import Path
 from typing import NamedTuple
@@ -19,7 +20,9 @@ from .expect import MOST_DIGITS, NotYet, tidy
 
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 LESSONS = TESTS / "lessons"  # the grading tests
-OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent}                      # no subject's file is in here
+SOLUTIONS = TESTS.parent / "solutions"
+OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent,                      # no subject's file is in here
+        *(SOLUTIONS / name for name in ("given", "support", "checks.py", "vectors.py"))}
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, or 5 on a slow machine
 AGAIN = 10.0                 # and so long where a test of the exercise, or of one that it calls, has taken too long [s]
@@ -27,6 +30,9 @@ READING = "reading the file"   # the quantity where a file could not be loaded
 FILE = "the file"            # the quantity where it has no function that a test calls
 OWN_NAME = "name the function as in the file that you received"
 VALUES = "return as many values as the docstring says, in its order"
+LISTED = "a list stands where an array is needed; np.array(…) makes an array of it. Which function returned the list?"
+A_LIST = re.compile(r"'list'|\blist indices|concatenate list|multiply sequence")          # as Python speaks of it
+NOT_ATTEMPTED = "not attempted"   # the status of a test whose exercise is not written yet
 DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 20.0             # and so long in the sandbox [s]
 SHAPES = (AttributeError, TypeError, ValueError, IndexError, KeyError)   # what a result of another kind ends in
@@ -87,14 +93,21 @@ class Points:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item, call):
-        report = yield
         mark = item.get_closest_marker("exercise")
+        if mark and call.excinfo and call.excinfo.errisinstance(NotImplementedError):
+            item.repr_failure = lambda excinfo: words_of(excinfo.value)          # its place would take 0.2 s to find
+        report = yield
         if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
             found = outcome(mark, name_of(item), call.excinfo, item.stash.get(TRACE, None))
             self.keep(item, found._replace(printed=beginning(report.capstdout)) if call.excinfo else found)
+            report.attempted = found.status != NOT_ATTEMPTED
             if call.when == "setup" and isinstance(call.excinfo.value, BadInput):
                 report.longrepr = str(call.excinfo.value)            # how it came to that is not the student's
         return report
+
+    def pytest_report_teststatus(self, report):
+        """Count what is not written yet as such: a class that begins would read thousands of lines of failures."""
+        return None if getattr(report, "attempted", True) else (NOT_ATTEMPTED, "o", NOT_ATTEMPTED.upper())
 
 
 class FailingCases:
@@ -155,7 +168,7 @@ def outcome(mark, name, excinfo, trace=None):
         return Outcome(exercise, name, points, "passed")
     error = excinfo.value
     if isinstance(error, NotImplementedError):
-        return Outcome(exercise, name, points, "not attempted", got=words_of(error), hint=hint)
+        return Outcome(exercise, name, points, NOT_ATTEMPTED, got=words_of(error), hint=hint)
     find = needs.asks_to_find(exercise)
     if isinstance(error, NotYet):
         advice = _advice(exercise, error, "") or hint
@@ -208,7 +221,7 @@ def _place(error):
         return f" ({error.where})" if error.where else ""
     files = [(Path(entry.filename), entry.lineno) for entry in _frames(error) if not entry.filename.startswith("<")]
     own = [f" ({file.name}, line {line})" for file, line in files
-           if "site-packages" not in file.parts and not OURS.intersection(file.parents)]
+           if "site-packages" not in file.parts and not OURS.intersection((file, *file.parents))]
     return own[-1] if own else ""
 
 
@@ -225,6 +238,8 @@ def _advice(exercise, error, said):
         return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
         return VALUES
+    if A_LIST.search(said):
+        return LISTED
     if said.startswith("it took too long"):                          # in the sandbox
         return "limit the number of rounds of each loop"
     if isinstance(error, NameError):
