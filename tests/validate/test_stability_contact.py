@@ -139,6 +139,9 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("highest-hertz", "advance_pile_2d", half_the_hertz),
     ("highest-hertz", "advance_pile_2d", pile_with(zeta=5.0)),
     ("highest-hertz", "advance_pile_2d", pile_with(substeps=2)),
+    ("highest-hertz-in-space", "advance_pile", space_with(zeta=5.0)),
+    ("highest-hertz-in-space", "advance_pile", space_with(hertz=45.0)),
+    ("highest-hertz-in-space", "advance_pile", space_with(substeps=2)),
     ("extremes-in-space", "advance_pile", keeps_the_push_in_space),
     ("extremes-in-space", "advance_pile", space_with(mu=0.5)),
     ("judge", "cone_residual", content),
@@ -189,3 +192,26 @@ def test_a_tower_of_flat_boxes_comes_to_rest_where_theory_says_so_and_not_where_
         state, pile = cases.pile_of(worked, cases.BOX, x, (1.0, 0.5), 1.0, substeps=1, hertz=c / cases.DT)
         fastest[c] = np.max(np.abs(cases.after(worked, cases.BOX, state, pile, 12.0).v))
     assert fastest[0.25] < 1e-3 < 0.02 < fastest[HIGHEST]
+
+
+def tower_of_cubes(n, c):
+    return cases.rest_in_space(worked, n, 1.0, c)
+
+
+def test_by_theory_towers_of_cubes_are_stable_at_a_fifth_of_the_substep_rate_and_not_at_the_highest_hertz():
+    towers = {n: tower_of_cubes(n, 0.1)[2] for n in (2, 3, 4, 5, 8, 12)}
+    left = {c: [cases.largest(cases.substep_matrix(tower, c, 10.0)) - 1.0 for tower in towers.values()]
+            for c in (0.2, HIGHEST)}
+    assert max(left[0.2]) < 1e-6 and max(left[HIGHEST][:2]) < 1e-6 < 1e-3 < min(left[HIGHEST][2:])
+
+
+@pytest.mark.long
+def test_a_tower_of_four_cubes_comes_to_rest_at_a_fifth_of_the_substep_rate_and_not_at_the_highest_hertz():
+    """From rest, after a push of 0.1 mm/s.  A cube that turns gets other contacts, which adds to the sway."""
+    speeds = {}
+    for c in (0.2, HIGHEST):
+        state, pile, _ = tower_of_cubes(4, c)
+        state.v[3, 0] = cases.NUDGE
+        ends = [cases.after(worked, cases.CUBE, state, pile, seconds).v for seconds in (7.9, 8.0)]
+        speeds[c] = np.max(np.abs(ends))
+    assert speeds[0.2] < 1e-5 < 5e-3 < speeds[HIGHEST]

@@ -51,7 +51,7 @@ GROWTH = 1.05                # goal: the power of n with which the cost of a ste
 ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
 
 
-FEW, FEWER = (2, 140.0), (1, 70.0)       # (substeps, hertz): each as stiff as towers allow without swaying on
+FEW, FEWER = (2, 140.0), (1, 70.0)       # (substeps, hertz): each as stiff as towers of squares allow
 LOOSE, FIRM = {"discs": FEWER, "boxes": FEWER}, {"discs": FEW, "boxes": FEW}
 SOFT_SPACE = {"spheres": FEWER, "bricks": FEWER}
 

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import BadInput, Diverged
 from solutions.impulses import cross_2d
+from solutions.support.lanes import colours_of
 from solutions.support.scenes import HIGHEST
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, bullet_pile, fallen, pymunk_pile
@@ -512,7 +513,7 @@ NUDGE = 1e-4                 # velocity of the top of a tower [m/s]
 class Tower(NamedTuple):
     """Bodies that stand on each other: k contacts, and d numbers that describe the velocities of all bodies."""
     normal: np.ndarray       # (k, d): what maps velocities to u_n of each contact
-    along: np.ndarray        # (k, d) the same for u_t, or (0, d) without friction
+    along: np.ndarray        # (k, t, d) the same for the t components of u_t: 1 in the plane, 0 without friction
     inv_mass: np.ndarray     # (d,) [1/kg, 1/(kg m²)]
     order: list              # in which contacts are visited
 
@@ -528,7 +529,7 @@ def column_of_discs(masses):
     A pile numbers contacts by bodies: that of the lowest body with its upper neighbour, with the floor, then upwards.
     """
     (rows, w), n = standing(masses), len(masses)
-    return Tower(rows, np.zeros((0, n)), w, spread([1, 0, *range(2, n)] if n > 1 else [0]))
+    return Tower(rows, np.zeros((n, 0, n)), w, spread([1, 0, *range(2, n)] if n > 1 else [0]))
 
 
 def tower_of_boxes(n, wide=1.0):
@@ -543,8 +544,26 @@ def tower_of_boxes(n, wide=1.0):
         normal[k, i:i + 3], along[k, i:i + 3] = (0.0, 1.0, r_x), (1.0, 0.0, 0.5)         # u = v + ω × r, r_y = −½
         if i > 0:
             normal[k, i - 3:i], along[k, i - 3:i] = (0.0, -1.0, -r_x), (-1.0, 0.0, 0.5)  # the lower box, r_y = ½
-    return Tower(normal, along, np.tile((1.0, 1.0, 12.0 / (1.0 + wide**2)), n),
+    return Tower(normal, along[:, None], np.tile((1.0, 1.0, 12.0 / (1.0 + wide**2)), n),
                  spread([*[3, 2][:2 * n - 2], 0, 1, *(k for joint in range(2, n) for k in (2 * joint + 1, 2 * joint))]))
+
+
+def tower_in_space(contacts, n, wide):
+    """Return the Tower of n equal boxes of 1 kg, 1 m high and `wide` m wide both ways; velocities are v and ω of each.
+
+    contacts: the ContactSet of a pile of such boxes, whose floor is body n.  Only which corners touch, and the order of
+    the visits, are read from it.
+    """
+    k = contacts.a.size
+    rows = np.zeros((k, 3, n + 1, 6))                    # of u in x, y and z; what does not move is left out below
+    for body, sign in ((contacts.a, 1.0), (contacts.b, -1.0)):
+        r = 0.5 * np.sign(contacts.p - np.outer(body + 0.5, (0.0, 0.0, 1.0))) * (wide, wide, 1.0)
+        for axis, e in enumerate(np.eye(3)):             # e · (ω × r) = ω · (r × e)
+            rows[np.arange(k), axis, body] += sign * np.column_stack((np.tile(e, (k, 1)), np.cross(r, e)))
+    rows = rows[:, :, :n].reshape(k, 3, 6 * n)
+    flat, up = 12.0 / (1.0 + wide**2), 6.0 / wide**2
+    return Tower(np.sign(contacts.n[:, 2:]) * rows[:, 2], rows[:, :2], np.tile((1.0, 1.0, 1.0, flat, flat, up), n),
+                 np.argsort(colours_of(contacts, n), kind="stable"))
 
 
 def substep_matrix(tower, c, zeta):
@@ -556,48 +575,70 @@ def substep_matrix(tower, c, zeta):
         motion:                 gap += u_n
         a sweep at rest:        J_n −= u_n/k_n
         in both sweeps:         J_t −= u_t/k_t
-    with k = row M⁻¹ rowᵀ.  Each change of an impulse acts on v at once.
+    with k_n = row M⁻¹ rowᵀ, and for k_t the sum of that over the rows of `along`.  Each change of an impulse acts on v
+    at once.
     """
     (normal, along, w, order), s = tower, 2.0 * np.pi * c
-    contacts, friction, d = len(normal), len(along), w.size
-    give, k_n, k_t = 1.0 / (s * (2.0 * zeta + s)), normal**2 @ w, along**2 @ w
-    errors = np.eye(2 * contacts + friction + d)         # all single errors at once, one in each column
-    gap, J_n, J_t, v = np.split(errors, np.cumsum((contacts, contacts, friction)))
-    v = v + w[:, None] * (normal.T @ J_n + along.T @ J_t)
+    (contacts, t, d), give = along.shape, 1.0 / (s * (2.0 * zeta + s))
+    k_n, k_t = normal**2 @ w, np.sum(along**2 @ w, axis=1)
+    errors = np.eye((2 + t) * contacts + d)              # all single errors at once, one in each column
+    gap, J_n, J_t, v = np.split(errors, np.cumsum((contacts, contacts, t * contacts)))
+    J_t = J_t.reshape(contacts, t, errors.shape[1])
+    v = v + w[:, None] * (normal.T @ J_n + np.einsum("ktd,kte->de", along, J_t))
     for aim, soft in ((-s * gap / (2.0 * zeta + s), give), (0.0 * gap, 0.0)):
         for k in order:
             change = (aim[k] - normal[k] @ v - soft * k_n[k] * J_n[k]) / (k_n[k] * (1.0 + soft))
-            slip = along[k:k + 1] @ v                    # of no row without friction
-            hold = -slip / k_t[k:k + 1, None]
-            J_n[k], J_t[k:k + 1] = J_n[k] + change, J_t[k:k + 1] + hold
-            v = v + w[:, None] * (np.outer(normal[k], change) + along[k:k + 1].T @ hold)
+            hold = -(along[k] @ v) / k_t[k]
+            J_n[k], J_t[k] = J_n[k] + change, J_t[k] + hold
+            v = v + w[:, None] * (np.outer(normal[k], change) + along[k].T @ hold)
         gap = gap + (soft > 0.0) * (normal @ v)
-    return np.concatenate((gap, J_n, J_t, v))
+    return np.concatenate((gap, J_n, J_t.reshape(t * contacts, errors.shape[1]), v))
 
 
-def sway_of_a_pile(lesson, n, wide, c, steps):
-    """Return v_x of the top of n boxes of 1 m height, over a push, after each number of steps of one substep.
+def tower_pile(lesson, shape, n, wide, c):
+    """Return (PileState, Pile) of n boxes of 1 kg, 1 m high and `wide` m wide, on each other, with a step of DT."""
+    d = 2 if shape is BOX else 3
+    x, half = np.zeros((n, d)), np.full(d, 0.5 * wide)
+    x[:, -1], half[-1] = np.arange(n) + 0.5, 0.5
+    return pile_of(lesson, shape, x, half, 1.0, substeps=1, hertz=c / DT)
 
-    Before the push, the pile settles for 4 s.  What is left of its own motion is measured without a push, and taken
-    away.  Contacts are kept in a run of the pile, so each number of steps is a run of its own.
+
+def rest_in_space(lesson, n, wide, c):
+    """Return (PileState, Pile, Tower) of n boxes in space that rest at the depths and with the forces of theory.
+
+    A pile that settles turns and tilts its boxes a little, and then other corners touch.
     """
-    x = np.stack((np.zeros(n), np.arange(n) + 0.5), axis=1)
-    state, pile = pile_of(lesson, BOX, x, (0.5 * wide, 0.5), 1.0, substeps=1, hertz=c / DT)
-    rest = after(lesson, BOX, state, pile, 4.0)
-    push = np.zeros(rest.v.shape)
-    push[n - 1, 0] = NUDGE
+    state, pile = tower_pile(lesson, CUBE, n, wide, c)
+    contacts = after(lesson, CUBE, state, pile, DT).contacts
+    tower, upper = tower_in_space(contacts, n, wide), upper_of(contacts, n)
+    forces, depths = 0.25 * (n - upper) * G, np.zeros(n)                 # of the four contacts below each box
+    depths[upper] = tower.normal**2 @ tower.inv_mass * forces / (2.0 * np.pi * pile.hertz) ** 2
+    state.x[:n, 2] -= np.cumsum(depths)
+    J = DT * forces[:, None] * np.sign(contacts.n[:, 2:]) * (0.0, 0.0, 1.0)
+    return state._replace(contacts=contacts, J=J), pile, tower
+
+
+def sway_of_a_pile(lesson, shape, rest, pile, steps):
+    """Return v_x of the top of a pile after each number of steps of one substep, over the push that it gets.
+
+    What is left of the pile's own motion is measured without a push, and taken away.  Contacts are kept in a run of the
+    pile, so each number of steps is a run of its own.
+    """
+    top, push = len(pile.half) - 1, np.zeros(rest.v.shape)
+    push[top, 0] = NUDGE
     with_push = rest._replace(v=rest.v + push)
-    ends = [[after(lesson, BOX, begin, pile, k * DT).v[n - 1, 0] for begin in (with_push, rest)] for k in steps]
+    ends = [[after(lesson, shape, begin, pile, k * DT).v[top, 0] for begin in (with_push, rest)] for k in steps]
     return -np.diff(ends)[:, 0] / NUDGE
 
 
-def sway_by_theory(n, wide, c, steps):
+def sway_by_theory(tower, c, steps):
     """Return the same by theory, for steps that are multiples of steps[0]."""
-    few, left = matrix_power(substep_matrix(tower_of_boxes(n, wide), c, 10.0), steps[0]), {}
-    error = np.eye(len(few))[-3]
+    few, left = matrix_power(substep_matrix(tower, c, 10.0), steps[0]), {}
+    v_x = -3 * tower.along.shape[1]                      # of the top body, which has 3 velocities or 6
+    error = np.eye(len(few))[v_x]
     for k in range(steps[0], steps[-1] + 1, steps[0]):
         error = few @ error
-        left[k] = error[-3]
+        left[k] = error[v_x]
     return np.array([left[k] for k in steps])
 
 
@@ -653,7 +694,9 @@ def highest_hertz(lesson, check):
               saw=f"{HIGHEST} of the substep rate, {name}: a substep leaves {rho:.5f} of an error.")
     steps = np.arange(10, 121, 10)
     for wide, name in ((1.0, "squares"), (2.0, "boxes, twice as wide as high")):
-        swayed, law = sway_of_a_pile(lesson, 6, wide, HIGHEST, steps), sway_by_theory(6, wide, HIGHEST, steps)
+        state, pile = tower_pile(lesson, BOX, 6, wide, HIGHEST)
+        swayed = sway_of_a_pile(lesson, BOX, after(lesson, BOX, state, pile, 4.0), pile, steps)
+        law = sway_by_theory(tower_of_boxes(6, wide), HIGHEST, steps)
         check(f"At {HIGHEST} of the substep rate a tower of six boxes sways as theory says, and less and less.",
               f"largest difference of the speed of the top of six {name}, over the push that it was given [-]",
               law=0.0, found=np.max(np.abs(swayed - law)), within=4e-3,
@@ -668,6 +711,44 @@ def highest_hertz(lesson, check):
         f"Above 1 a pile trembles or sways: towers of 10 squares from 0.308 on, of 13 flat boxes from 0.27 on, and "
         f"others of unequal masses sooner.  A pile accepts {HIGHEST}.  In the plane theory finds no tower of up to "
         "24 equal boxes, one to ten times as wide as high, that sways more and more at 0.25.")
+
+
+def swaying_from(tower):
+    """Return hertz times a substep [-] from which a tower sways more and more, by theory; NaN if it is above ½."""
+    edge = bisect(lambda c: largest(substep_matrix(tower, c, 10.0)) > 1.0 + 1e-6, 0.02, 0.5, 1e-3)
+    return edge if np.isfinite(edge) else np.nan
+
+
+@case("highest-hertz-in-space", "The highest stable hertz of towers in space", compiled=False, in_quick=False)
+def highest_hertz_in_space(lesson, check):
+    """Compare the sway of towers of boxes in space with theory, and show from which hertz on it grows.
+
+    The matrix of a substep is that of the plane, with four contacts between two boxes, two directions of friction in
+    each, and for k_t the sum over both directions, as the lesson bounds it.  The top of a tower at rest gets a push.
+    Boxes sag and tilt, which theory leaves out: differences of 1e-3 of the push were measured.
+    """
+    steps = np.array([20, 60, 120])
+    for n, wide, c, name in ((4, 1.0, 0.2, "four cubes"), (4, 1.0, HIGHEST, "four cubes"), (5, 1.0, 0.25, "five cubes"),
+                             (4, 2.0, 0.2, "four boxes, twice as wide as high")):
+        rest, pile, tower = rest_in_space(lesson, n, wide, c)
+        swayed, law = sway_of_a_pile(lesson, CUBE, rest, pile, steps), sway_by_theory(tower, c, steps)
+        part = largest(substep_matrix(tower, c, 10.0))
+        check("A tower of boxes in space sways as theory says, also where it sways more and more.",
+              f"{name}, {c:g} of the substep rate: largest difference of the speed of the top, over the push that it "
+              "got [-]", law=0.0, found=np.max(np.abs(swayed - law)), within=6e-3,
+              saw=f"After 120 substeps at {c:g} of the substep rate the top of {name} has {swayed[-1]:.3f} of its "
+                  f"push, theory {law[-1]:.3f}; a substep leaves {part:.4f} of an error.")
+    tower = lambda n, wide: rest_in_space(lesson, n, wide, 0.1)[2]
+    few = (3, 4, 5, 6, 8, 10, 12)
+    many = ("½ m", 0.5), ("1 m: cubes", 1.0), ("4 m", 4.0)
+    return Picture("From which hertz on a tower sways more and more, by theory", "boxes in the tower",
+                   "hertz times a substep", [
+        *(series(f"in space, width {name}", few, [swaying_from(tower(n, wide)) for n in few], DOTS)
+          for name, wide in many),
+        series("in the plane, width 1 m", few, [swaying_from(tower_of_boxes(n)) for n in few], LINE),
+        series(f"{HIGHEST}, which a pile accepts", (few[0], few[-1]), (HIGHEST, HIGHEST), LINE)],
+        "Above its point a tower never comes to rest.  In space the points lie lower than in the plane.  Towers of "
+        f"cubes need less than {HIGHEST}, which a pile accepts: discs, balls and low towers come to rest there.")
 
 
 # ---------------------------------------------------------------------------------------------- extremes
