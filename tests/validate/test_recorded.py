@@ -1,4 +1,4 @@
-"""The recorded runs of pybullet are those of today's scenes: what a machine without pybullet shows must not be older."""
+"""The recorded runs of pybullet are those of today's scenes: a machine without pybullet shows nothing older."""
 
 import json
 

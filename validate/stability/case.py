@@ -48,7 +48,7 @@ class Checks(list):
 
     def agree(self, claim, quantity, error, within):
         """Add a Finding that a function errs by no more than `within`; error is the largest in many random cases."""
-        self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
+        self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {abs(error):.1e}.")
 
     def count(self, claim, quantity, done, of, saw):
         """Add a Finding that `done` of `of` trials had the right outcome; `saw` continues "3 of 3 …"."""

@@ -396,7 +396,7 @@ def sag_of_a_soft_contact(lesson, check):
             check("A soft contact sinks by k_n F/(2π hertz)² for any step.",
                   f"relative error of the depth of {name}, 1/{1.0 / dt:.0f} s in {substeps} [-]",
                   law=0.0, found=worst, within=2e-11,
-                  saw=f"1/{1.0 / dt:.0f} s in {substeps} substeps: {name} sinks as predicted, to {worst:.0e}.")
+                  saw=f"1/{1.0 / dt:.0f} s, divided by {substeps}: {name} sinks as predicted, to {worst:.0e}.")
         curves.append((series(f"theory, {name}", fine, 1e3 * times * G / (2.0 * np.pi * fine) ** 2, LINE),
                        series(name, hertzes, [1e3 * sag(lesson, shape, hertz, DT, 1) for hertz in hertzes], DOTS)))
     return Picture("How deep a soft contact sinks", "hertz [1/s]", "depth [mm]",

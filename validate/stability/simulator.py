@@ -191,7 +191,7 @@ def rocking_to_the_end(lesson, check):
         check("A block changes its corner in the steps in which theory has its impacts.",
               f"largest difference of the ends of these steps, {b:g} m × {h:g} m, {len(expected)} impacts [s]",
               law=0.0, found=off, within=1e-9,
-              saw=f"A block of half sizes {b:g} m and {h:g} m changes its corner {len(times)} times in {T:g} s.")
+              saw=f"Impacts of a block of half sizes {b:g} m and {h:g} m in {T:g} s: {len(times)}.")
     block = lesson.RockingBlock(1.0, 0.1, 0.5, 0.26 / 3.0, G)
     x, v = lesson.advance_rocking(lesson.rk4_step, 0.0, np.zeros(1), np.zeros(1), 0.01, 100, block)
     check("An upright block does not move.", "lean and rate after 1 s [rad, rad/s]", law=0.0, found=largest(x, v),
