@@ -65,7 +65,7 @@ def case_errors(selection, case, p, with_engines):
     engines_here = selection.engines_for(p) if with_engines else ()
     return {
         "params": p._asdict() if hasattr(p, "_asdict") else {},
-        "truth": truth.tolist(),
+        "truth": truth.tolist(), "error_bar": (agreed(selection.name, p) or {}).get("bar"),
         "quantities": scene.quantity_names(p) if scene.quantity_names else [],
         "ours": [*(our_curve(selection, r, p, truth) for r in selection.ours_for(p)),
                  *(unfinished_curve(r, why) for r, why in selection.unfinished_for(p))],
