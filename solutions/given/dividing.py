@@ -35,6 +35,7 @@ class Rough(NamedTuple):
     """What find_suspects reads."""
     half: np.ndarray         # (n, d) half sizes of boxes around the bodies, the least one its thickness [m]
     inv_mass: np.ndarray
+    inv_inertia: np.ndarray
     planes: np.ndarray
     joints: Joints
 
@@ -84,7 +85,8 @@ def first_touch(bounds, narrow, before, after, dt, p):
     """
     shapes = p.half
     boxes, boxes_new = bounds(before.x, before.q, shapes), bounds(after.x, after.q, shapes)
-    suspects = find_suspects(before, after, boxes, boxes_new, dt, Rough(shapes.half, p.inv_mass, p.planes, p.joints))
+    rough = Rough(shapes.half, p.inv_mass, p.inv_inertia, p.planes, p.joints)
+    suspects = find_suspects(before, after, boxes, boxes_new, dt, rough)
     if suspects.way.size == 0:
         return 1.0
     sides, free, allowed = both_sides(p.planes), 0.0, TOO_DEEP * suspects.size       # also where a turn dips in

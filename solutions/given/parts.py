@@ -165,6 +165,8 @@ def parting_aims(u_n, pressed, contacts, dt, p):
 
     An open contact may close: −gap/dt.  A closed one leaves with −e times the speed at which it came before forces and
     joints acted, u_n − pressed, if that is faster than what gravity, or all of them, add in a step; a slower one rests.
+    One that parts faster may come back with e times that speed, if another impact of the step turns it round: stopping
+    it would gain energy.  *Source:* Moreau 1988.
     Gravity counts with its full size for any normal: bodies that lean on each other are pressed sideways, too.
     With e > 0 an open contact has to close before it bounces.  It is not stopped in this step, unless forces alone
     could close it: another impact of the same step may throw its bodies at each other.
@@ -180,7 +182,7 @@ def parting_aims(u_n, pressed, contacts, dt, p):
         if gap > 0.0:
             aim[k] = -np.inf if e > 0.0 and (came < -added or gap > added * dt) else -gap / dt
         else:
-            aim[k] = -e * came if e > 0.0 and came < -added else 0.0
+            aim[k] = -e * came if e > 0.0 and abs(came) > added else 0.0
     return aim
 
 

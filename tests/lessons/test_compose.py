@@ -283,6 +283,22 @@ def test_a_ball_that_a_spring_throws_on_a_wall_bounces_with_its_restitution():
 
 
 @pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("dt", [1e-2, 1e-4])
+def test_elastic_balls_in_a_row_of_which_two_part_keep_energy_and_momentum(d, dt):
+    """A contact that parts may come back at its speed when the next impact turns it round (Moreau); stopped there, it
+    would gain 13 % of the energy.  1e-5 is what the sweeps leave.
+    """
+    still = (0.0,) * (d - 1)
+    balls = [Body((x, *still), 1.0, Ball(0.5), e=1.0, v=(v, *still)) for x, v in ((0.0, -1.0), (1.0, 0.0), (2.0, -3.0))]
+    model = make_model(balls, (0.0,) * d)
+    for steps in (1, 2, 6):
+        s = run(model, steps * dt, steps)
+        assert np.sum(s.v[:, 0]) == pytest.approx(-4.0, abs=1e-12)
+        assert model_energy(model, s) == pytest.approx(5.0, rel=1e-5)
+    assert np.all(np.diff(s.v[:, 0]) > -1e-4)
+
+
+@pytest.mark.parametrize("d", [2, 3])
 def test_an_oblique_elastic_impact_without_friction_keeps_the_energy_and_turns_nothing(d):
     """The bodies still overlap in the step after it, with another normal; the impulse that is kept must not rub."""
     still, along = (0.0,) * d, np.eye(d)[0]

@@ -6,6 +6,8 @@ import pytest
 from solutions.given.compose import compose, run_parts, state_of
 from solutions.given.dividing import divided_step, pose_within, whole_step
 from solutions.support.model import WORLD, Ball, Body, Box, Capsule, HalfSpace, Hinge, Polygon, make_model
+from validate.subject import modules
+from validate.worlds import ours
 
 DT = 1.0 / 60.0                                # [s]
 TRIANGLE = Polygon(((-0.1, -0.1), (0.2, -0.1), (-0.1, 0.2)))
@@ -142,3 +144,22 @@ def test_a_plane_that_a_fast_body_leaves_hides_no_other_impact():
     lid = Body((0.0, 1.0), shape=Box((1.0, 0.01)), mu=1.0, e=1.0)
     s = states(make_model([floor, lid, Body((0.0, 0.3), 1.0, Ball(0.1), v=(0.0, 100.0))], (0.0, 0.0)), 1)[0]
     assert s.x[2, 1] == pytest.approx(0.89, abs=1e-9)
+
+
+@pytest.mark.skipif(not modules.can_compile(), reason="numba has no wheel for this machine")
+@pytest.mark.xdist_group("compiled simulator")
+@pytest.mark.parametrize("d", [2, pytest.param(3, marks=pytest.mark.long)])
+def test_a_compiled_loop_divides_its_steps_as_the_plain_one_does(d):
+    """Two fast balls, and a wall and a post that nothing moves; parts of a step are compiled when they are needed."""
+    still = (0.0,) * (d - 1)
+    post = Body((0.5, 3.0, *still[1:]), shape=Ball(0.2), mu=1.0, e=1.0)
+    fast = [Body((-1.0, y, *still[1:]), 1.0, Ball(0.1), e=1.0, v=(100.0, *still)) for y in (0.0, 3.0)]
+    model, ends = make_model([wall(d), post, *fast], (0.0,) * d), []
+    for compiled in (False, True):
+        world = ours.build(model, DT, compiled=compiled)
+        for _ in range(3):
+            world.step()
+        ends.append(world.state())
+    assert np.max(ends[0].x[2:, 0]) < 0.4
+    for plain, quick in zip(*ends, strict=True):
+        assert quick == pytest.approx(plain, abs=1e-9)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 import tempfile
 import traceback
 import zipfile
@@ -132,7 +133,10 @@ def run(
     except submissions.Ungraded as e:
         found = {"output": f"Not graded: {e}."}
     except Exception as e:                        # Gradescope reports a missing score as a failure of the autograder
-        traceback.print_exc()                     # for instructors only: it may name hidden inputs
+        if isinstance(e, (BadInput, OSError)):
+            print(f"autograder: {e}", file=sys.stderr)
+        else:
+            traceback.print_exc()                 # for instructors only: it may name hidden inputs
         why = f"The grader itself failed ({type(e).__name__}), so there is no score."
         found = {"output": f"{why} Please tell your instructor."}
     write_whole(results, found)

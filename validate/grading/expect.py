@@ -38,8 +38,11 @@ class NotYet(AssertionError):
 
 # ---------------------------------------------------------------------------------------------- comparing
 
-def numbers(quantity, got, shape, given=""):
-    """Return got as a float array; raise NotYet if it has another shape, or holds NaN or infinity."""
+def numbers(quantity, got, shape, given="", expected=None):
+    """Return got as a float array; raise NotYet if it has another shape, or holds NaN or infinity.
+
+    expected: the array of numbers that were expected, if it is known.
+    """
     if got is None:
         raise NotYet(quantity, of_shape(shape), NOTHING, "", "None", given)
     try:
@@ -50,14 +53,15 @@ def numbers(quantity, got, shape, given=""):
         raise NotYet(quantity, of_shape(shape), of_shape(array.shape), "", f"shape {array.shape}", given)
     if not np.all(np.isfinite(array)):
         first = first_of(~np.isfinite(array))
-        raise NotYet(quantity, "finite numbers", f"{number(array[first])}{place(first)}", "", "not finite", given)
+        wanted = "finite numbers" if expected is None else f"{number(expected[first])}{place(first)}"
+        raise NotYet(quantity, wanted, f"{number(array[first])}{place(first)}", "", "not finite", given)
     return array
 
 
 def close(quantity, got, expected, tolerance, given=""):
     """Require got to equal expected, entry by entry, within an absolute tolerance.  given: the inputs, in words."""
     expected = np.asarray(expected, dtype=float)
-    array = numbers(quantity, got, expected.shape, given)
+    array = numbers(quantity, got, expected.shape, given, expected)
     off = np.abs(array - expected)
     if not np.all(off <= tolerance):
         allowed = f"{tolerance:.1e}" if tolerance else "none: exactly this"

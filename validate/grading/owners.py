@@ -67,8 +67,8 @@ def name_of(stem, bare, metadata):
     if match := CANVAS.fullmatch(stem):
         who, number = re.sub(r"_late(?=_\d+$)", "", match["who"], flags=re.IGNORECASE), match["number"] or ""
         return Name(match["rest"], ((who, who.removesuffix(f"_{number}")),), number)
-    student = of_lesson(stem)[0] if bare else ""
-    return Name(stem, ((student or stem,),))
+    who = (of_lesson(stem)[0] if bare else "") or stem
+    return Name(stem, ((who, re.sub(r" ?\(\d+\)$", "", who)),))                   # "ada (1)", as browsers write it
 
 
 class People:

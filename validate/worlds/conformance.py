@@ -6,6 +6,7 @@ step.
 """
 
 import importlib.util
+import signal
 import sys
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ from enum import StrEnum
 from functools import partial
 from html import escape
 from itertools import pairwise
+from multiprocessing import Pipe, get_context
 from pathlib import Path
 from typing import NamedTuple
 
@@ -124,15 +126,21 @@ def sentence(error):
 
 def run_to_end(build, described, p, steps, **settings):
     """Return the Outcome of a run of `described` with parameters p, and close its world."""
-    model, world = described.model(p), None
+    model, world, call = described.model(p), None, "build(model, dt)"
     try:
         with np.errstate(all="ignore"):
             world = build(model, described.scene.duration / steps, **settings)
+            if world is None:
+                raise BadInput("what it returned", None, "return a world with step() and state()")
+            call = "step()"
             for _ in range(steps):
                 world.step()
+            call = "state()"
             found = finite(np.array(described.observe(checked_state(world.state(), model), p), float))
+            if found.failure:
+                found = Outcome(None, f"{call}: {found.failure} after {steps:,} steps")
     except (Exception, SystemExit) as error:                 # a reader's program may do anything
-        found = Outcome(None, sentence(error))
+        found = Outcome(None, f"{call}: {sentence(error)}")
     finally:
         why = failure_to_close(world)
     return Outcome(None, f"close(): {why}") if why else found
@@ -161,8 +169,8 @@ def checked_state(state, model):
     return State(*rows)
 
 
-def measured(reader, name, others, most):
-    """Return the Row of a scene."""
+def measured(engine, name, others, most):
+    """Return the Row of a scene.  engine: an Apart."""
     described = DESCRIBED[name]
     scene, p = described.scene, described.scene.parameters
     truth = np.array(scene.truth(p, scene.duration), float)
@@ -171,17 +179,12 @@ def measured(reader, name, others, most):
              "others": {product.name: error_of(product, described, p, truth, steps[-1]) for product in others}}
     no_runs = {"steps": (), "errors": (), "order": None}
     try:
-        why = str(reader.refuses(described.model(p)) or "")
-    except (Exception, SystemExit) as error:
-        return Row(**about, **no_runs, verdict=Judgement.FAILS, words=f"refuses(model): {sentence(error)}")
-    if why:
-        return Row(**about, **no_runs, verdict=Judgement.REFUSES, words=why)
-    try:
-        with alarm(WITHIN):
-            found = [run_to_end(reader.build, described, p, n) for n in steps]
-    except TooLong as error:
-        words = f"its runs of {steps[0]:,} to {steps[-1]:,} steps are {error}"
-        return Row(**about, **no_runs, verdict=Judgement.FAILS, words=words)
+        why, found = engine.runs(name, steps)
+    except EOFError as error:
+        return Row(**about, **no_runs, verdict=Judgement.FAILS, words=str(error))
+    if found is None:
+        verdict = Judgement.FAILS if isinstance(why, Failed) else Judgement.REFUSES
+        return Row(**about, **no_runs, verdict=verdict, words=why)
     errors = tuple(None if one.failure else relative(one.observed, truth) for one in found)
     rows = [{"dt": scene.duration / n, "steps": n, "error": error} for n, error in zip(steps, errors)]
     order = shown_order(rows, 10.0 * scene.truth_uncertainty)
@@ -192,6 +195,66 @@ def measured(reader, name, others, most):
     elif described.shown:
         verdict, words = Judgement.SHOWN, described.shown
     return Row(**about, steps=steps, errors=errors, order=order, verdict=verdict, words=words)
+
+
+class Failed(str):
+    """Why an engine has no runs, where it did not refuse the Model."""
+
+
+def runs_of(reader, described, steps, within):
+    """Return ("", Outcomes of the runs of an engine), or (why there are none, None)."""
+    p = described.scene.parameters
+    try:
+        why = str(reader.refuses(described.model(p)) or "")
+    except (Exception, SystemExit) as error:
+        return Failed(f"refuses(model): {sentence(error)}"), None
+    if why:
+        return why, None
+    try:
+        with alarm(within):
+            return "", [run_to_end(reader.build, described, p, n) for n in steps]
+    except TooLong as error:
+        return Failed(f"its runs of {steps[0]:,} to {steps[-1]:,} steps are {error}"), None
+
+
+def serve(path, pipe):
+    """Answer each question (scene, steps, within) from a pipe with what `runs_of` says of the engine in a file."""
+    with beside(Path(path)):
+        reader = load_engine(path)
+        while True:
+            name, steps, within = pipe.recv()
+            pipe.send(runs_of(reader, DESCRIBED[name], steps, within))
+
+
+class Apart:
+    """A process of its own with a reader's engine: one in another language may crash."""
+
+    def __init__(self, path):
+        self.path, self.process, self.pipe = path, None, None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        if self.process:
+            self.process.kill()
+            self.process.join()
+
+    def runs(self, name, steps):
+        """Return what `runs_of` says of a scene.  Raises EOFError where the process ends before it answers."""
+        if self.process is None or not self.process.is_alive():
+            self.pipe, there = Pipe()
+            self.process = get_context("spawn").Process(target=serve, args=(self.path, there), daemon=True)
+            self.process.start()
+            there.close()
+        try:
+            self.pipe.send((name, steps, WITHIN))
+            return self.pipe.recv()
+        except (EOFError, OSError):
+            self.process.join()
+            code = self.process.exitcode
+            how = f"signal {signal.Signals(-code).name}" if code < 0 else f"code {code}"
+            raise EOFError(f"it ended the process, with {how}") from None
 
 
 def error_of(product, described, p, truth, steps):
@@ -233,9 +296,9 @@ def conform(path, names, others, quick, out, console):
         if name not in DESCRIBED:
             raise BadInput(f"scene {name!r}", "not a Model yet", f"choose from: {', '.join(DESCRIBED)}")
     rows, page = [], writable(Path(out)) / f"engine-{reader.name}.html"
-    with beside(Path(path)):
+    with Apart(path) as engine:
         for name in names or DESCRIBED:
-            rows.append(measured(reader, name, others, MOST[quick]))
+            rows.append(measured(engine, name, others, MOST[quick]))
             console.print(f"{name}: {rows[-1].verdict}", highlight=False, soft_wrap=True)
     console.print(table(reader, rows))
     page.write_text(page_of(reader, rows, others), encoding="utf-8")
@@ -246,7 +309,8 @@ def conform(path, names, others, quick, out, console):
 def summary(rows):
     """Return the number of scenes with each verdict, in a sentence."""
     counts = {verdict: sum(row.verdict is verdict for row in rows) for verdict in Judgement}
-    return f"{len(rows)} scenes: " + "; ".join(f"{verdict} in {n}" for verdict, n in counts.items() if n) + "."
+    scenes = "one scene" if len(rows) == 1 else f"{len(rows)} scenes"
+    return f"{scenes}: " + "; ".join(f"{verdict} in {n}" for verdict, n in counts.items() if n) + "."
 
 
 def number(value):
