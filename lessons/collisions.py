@@ -221,7 +221,7 @@ def all_pairs(low, high):
     times as long.
     Begin with the empty list  found = [(0, 0) for _ in range(0)],  from which the compiler infers its type.
     Append pairs, and return as_pairs(found).
-    Raises what check_boxes raises; call it first.
+    Raises what check_boxes(low, high) raises; call it first.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.10: all_pairs")
@@ -305,10 +305,11 @@ def gjk(a, b):
     p = a[:1], q = b[:1], weights = np.ones(1).  At most MAX_GJK_STEPS times:
         v = Σ weight (p − q)                                      the nearest point so far
         i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the difference that is farthest towards 0
-        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_subsimplex(p, q)
+        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q
+        p, q, weights = nearest_subsimplex(p, q)                  only those points that span the nearest one
     Return ball_contact(Σ weight p, 0, Σ weight q, 0).  Where the bodies overlap, its gap is 0 (or round-off) and
     its normal is meaningless.
-    Raises what check_hulls raises; call it first.
+    Raises what check_hulls(a, b) raises; call it first.
     *Source:* Gilbert, Johnson and Keerthi 1988.
     """
     # YOUR CODE HERE

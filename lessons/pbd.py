@@ -165,7 +165,8 @@ def distance_sweep(x, network):
 
     These are the corrections of constraint_correction for two points, times s.  They depend on neither network.sweeps
     nor alpha.
-    distance_between and move_apart (vectors.py) compute them fast.  Returns a new array.
+    distance_between(x, i, j) and move_apart(x, i, j, k_i, k_j, x) of vectors.py compute them fast.
+    Returns a new array.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_constraint_network refuses it.
     *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.

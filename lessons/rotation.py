@@ -323,7 +323,7 @@ def midpoint_free_rotation(q, L, I_body, dt):
         m = ℓ + ½dt m × w,    w = m/I_body
     Newton's method: start from a copy of ℓ and repeat, at most NEWTON_LIMIT times,
         r = m − ℓ − ½dt m × w;     column k of its derivative:  𝐞ₖ + ½dt (w − m/Iₖ) × 𝐞ₖ
-        m ← m − δ,   δ = solve3(three columns, r)
+        m ← m − δ,   δ = solve3(a, b, c, r)   for the columns a, b, c
     until max|δ| ≤ NEWTON_TOLERANCE max|m|.  Finally take w = m/I_body from the last m and update q as in
     quaternion_update, but multiply from the right, because w is in body coordinates:   q ← unit(q (1, ½dt w)).
     The new ℓ is then 2m − ℓ.  It has the length and the energy of the old one, because

@@ -164,7 +164,8 @@ def contact_step_2d(load, bounds, narrow, t, state, dt, p):
 
     velocities:   new_velocities_2d
     detection:    low, high, turn = bounds(x, q, p.half),   then find_contacts
-    contact:      arms_2d, and kept_impulses of the last contacts (near = p.margin), which are applied at once by
+    contact:      arms_2d(x, p.inv_mass, p.inv_inertia, contacts), and kept_impulses of the last contacts (near =
+                  p.margin), which are applied at once by
                   apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia), in place
                   then p.sweeps times velocity_sweep_2d with aim = closing_speeds(gap, dt), give = 0 and pile = p
     positions:    x ← x + dt v,   q ← q + dt ω
@@ -179,8 +180,9 @@ def contact_step_2d(load, bounds, narrow, t, state, dt, p):
 def contact_step(load, bounds, narrow, t, state, dt, p):
     """Return the PileState of all bodies in space after dt: the loop of contact_step_2d with
 
-    new_velocities,  world_inertia(turn, p.inv_inertia) in place of p.inv_inertia wherever an impulse acts,  arms_3d,
-    apply_impulses,  velocity_sweep(v, omega, J, aim, give, contacts, arms, p.inv_mass, inv_inertia, p.mu)  and
+    new_velocities,  world_inertia(turn, p.inv_inertia) in place of p.inv_inertia wherever an impulse acts,  arms_3d and
+    apply_impulses with the arguments of arms_2d and apply_impulses_2d,
+    velocity_sweep(v, omega, J, aim, give, contacts, arms, p.inv_mass, inv_inertia, p.mu)  and
     turn_quaternions(q, omega, dt).
     """
     # YOUR CODE HERE
@@ -223,7 +225,7 @@ def slip_time(v, omega, ball):
     *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
         u = v + ω × r,      r = (0, 0, −radius)
     The rate is constant.  Friction is as large as Coulomb allows, μ m max(0, −g_z): the floor never pulls.  Without
-    load there is no friction, even for μ = ∞ (cone_radius of lesson 3).
+    load there is no friction, even for μ = ∞: cone_radius(mu, F_N) of lesson 3.
     I = I_body[0] is the same about all axes.
     Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     All numbers are finite, but μ may be ∞; advance_rigid_body has checked that.

@@ -134,7 +134,7 @@ def impulse_size(u_n, k_n, e):
     *Find* it from k_n [1/kg], the change of u_n per unit of impulse j; without rotation k_n = 1/m_a + 1/m_b.  Where the
     bodies are already separating, u_n ≥ 0, the impulse is 0.
 
-    Raises what check_restitution and check_inverse_mass raise; call them first.
+    Raises what check_restitution(e) and check_inverse_mass(k_n) raise; call them first.
     *Source:* first lecture deck, “Computing impulse”, 1st: objects cannot rotate; second lecture deck, “Coefficient of
     restitution”.  The slides leave out the condition u_n < 0.
     """
@@ -256,7 +256,8 @@ def cone_impulse(u, n, K, u_sep, mu):
                                                   with J_t = tangential(J, n) of that J
 
     n · K d > 0 for every μ, infinity included: it is positive for the J of stick, and d leans less towards J_t than
-    that J.  solve3 of lesson 5 solves for J, given the columns of K.  Raises what check_contact raises; call it first.
+    that J.  solve3(K[0], K[1], K[2], r) of lesson 5 returns K⁻¹ r: K is symmetric, and its rows are its columns.
+    Raises what check_contact(u, n, K, mu) raises; call it first.
     *Source:* Coulomb's law on velocities after the impact; second lecture deck, “Coulomb's law”.  The side of
     the rim is a modelling choice (see the notebook).
     *Left out:* slip that changes direction during the impact.
@@ -301,7 +302,7 @@ def gap_multiplier(phi, u_n, k_n, dt):
     λ closes it exactly, φ⁺ = 0:     0 ≤ φ⁺  ⊥  λ ≥ 0.
 
     φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k_n [1/kg].
-    Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).
+    Raises what check_inverse_mass(k_n) raises, and check_positive("step dt [s]", dt).
     *Source:* second lecture deck, the gap function and its complementarity; Moreau 1988.
     """
     ### BEGIN SOLUTION 7.12
@@ -447,7 +448,7 @@ def solve_impacts(body, r, n, e, mu):
     Answers need not be unique.
 
     The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.
-    Raises what check_impacts raises; call it first.
+    Raises what check_impacts(body, r, n, e, mu) raises; call it first.
     *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; second lecture deck, “Multi-contact problems”.
     *Left out:* how an impact travels from point to point; contacts between many bodies.
     """

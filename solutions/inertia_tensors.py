@@ -257,7 +257,7 @@ def check_inertia(I):
     """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness.
 
     I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = MOMENT_ROUND_OFF.  The first argument of BadInput is one of
-    "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (from check_finite)
+    "an entry of the inertia tensor [kg m²]"           infinite or NaN: check_finite(thing, I)
     "the asymmetry of an inertia tensor [kg m²]"       max|I − Iᵀ| > ε max|I|
     "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: no resistance; a line of points has I₁ = 0
     "the largest principal moment [kg m²]"             I₃ > (I₁ + I₂)(1 + ε): impossible, I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0
@@ -356,9 +356,9 @@ def mesh_body(density, x, faces):
     the distance D, products of size D³ cancel in w, and squares of size D² multiply what rounding leaves.  A body of
     one metre would lose half of its digits at D = 30 m.
 
-    Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
-    (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all
-    coordinates,
+    Raises BadInput unless the density is positive, check_positive("density [kg/m³]", density), the corners are finite
+    and the mesh is closed (check_closed).
+    Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all coordinates,
     ε = MOMENT_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
     *Source:* as for mesh_integrals.
     """

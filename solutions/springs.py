@@ -173,8 +173,8 @@ def spring_forces(x, v, network):
                       F_i += T r/l,    F_j −= T r/l
 
     Include the forces on fixed points, because spring_network_acceleration holds those points.
-    distance_between, product_between and move_apart (vectors.py) are fast functions for links.  Array expressions are
-    equally correct, but if i contains a point twice, F[i] += f adds only once.
+    distance_between(x, i, j), product_between(x, v, i, j) and move_apart (vectors.py) are fast functions for links.
+    Array expressions are equally correct, but if i contains a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
     spring then has no direction.
     *Source:* first lecture deck, “spring.point1.force += force; spring.point2.force -= force”.

@@ -289,8 +289,8 @@ def machine(rng, gravity):
 def test_impacts_friction_and_joints_keep_both_momenta_and_gain_no_energy(seed):
     """Also where three bodies meet at once, and with friction: without outer forces both momenta are constant.
 
-    The spring acts for a step along the line of its beginning: the angular momentum errs with the first order, and so
-    does the energy.
+    Bodies that are moved out of each other take angular momentum with them, and a spring acts for a step along the line
+    of its beginning: both err with the first order, and so does the energy.
     """
     model = machine(np.random.default_rng(seed), NO_GRAVITY)
     begin = start_of(model)

@@ -736,7 +736,8 @@ def height(phi, v_n, a_n):
 
 
 @exercise("7.13", points=0.5,
-          hint="take the root at which the gap closes: the first for v_n < 0, the second if the gap opens first")
+          hint="take the root at which the gap closes: the first for v_n < 0, the second if the gap opens first; at "
+                "most dt, and 0 where φ = 0 and a_n pulls the ball in")
 def test_the_moment_of_impact_is_a_root_of_the_gap(lesson, draw):
     phi, speed = draw(0.2, 2.0), draw(0.5, 5.0)
     for v_n, a_n in ((-speed, -draw(1.0, 10.0)),

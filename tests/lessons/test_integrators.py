@@ -29,7 +29,8 @@ METHODS = {
 HINTS = {
     "1.1": "x gains dt times the old v, v gains dt times a: both derivatives are taken at the start of the step",
     "1.2": "take half an Euler step; then a whole step from the start with the derivatives found there, a at t + ½dt",
-    "1.3": "each stage uses the derivative of the stage before it; weights 1/6, 1/3, 1/3, 1/6 for both x and v",
+    "1.3": "each stage uses the derivative of the stage before it, at t, t + ½dt twice and t + dt; "
+           "weights 1/6, 1/3, 1/3, 1/6 for both x and v",
     "1.4": "first the new velocity by Euler, then the position with the mean of old and new velocity",
     "1.5": "first the velocity; then the position with the new velocity",
     "1.6": "x gains dt v + ½dt² a; the new acceleration is that at tₙ + dt, "

@@ -817,3 +817,4 @@ edit("3.19", "exchanges the axes of the blade's impulse", "[np.sign(v_t[0]) * al
 edit("3.19", "forgets the mass along the blade: a light block goes back faster, a heavy one never quite stops",
      "m * abs(v_t[0])", "abs(v_t[0])")
 edit("3.19", "forgets the mass across the blade", "m * abs(v_t[1])", "abs(v_t[1])")
+edit("3.10", "asks for the slip at the end of the step, not at the middle", "t + middle, x", "t + dt, x")

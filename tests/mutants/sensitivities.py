@@ -722,3 +722,8 @@ def bounced_curve_is():
 edit("12.12", "takes all balls to begin at the floor, so that the floor forgets the height", '"B"', '"D"')
 edit("12.12", "forgets the restitution: a mirror image has the slope −1", '"B"', '"C"')
 edit("12.12", "forgets that a ball from higher comes later: what is higher stays higher", '"B"', '"A"')
+edit("12.10", "gives up where a whole step does not help, and never tries its half", "range(MOST_HALVINGS + 1)",
+     "range(1)")
+edit("12.10", "accepts a step after which the miss is up to twice as large", "if np.sqrt(r @ r) < misses[i]:",
+     "if np.sqrt(r @ r) < 2.0 * misses[i]:")
+edit("12.6", "does not refuse an event that grazes", f"np.abs(rate) <= {SIZES}", "False")

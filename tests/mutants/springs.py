@@ -854,3 +854,4 @@ def grid_pairs(rows, cols, offsets):
     pairs = [(nodes[r, c], nodes[r + dr, c + dc]) for dr, dc in offsets for r, c in np.ndindex(rows, cols)
              if r + dr in range(rows) and c + dc in range(cols)]
     return np.array(pairs) if pairs else np.empty((0, 2), dtype=int)
+edit("2.7", "does not refuse a spring whose ends coincide", "if length == 0.0:", "if False:")

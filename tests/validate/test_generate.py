@@ -1,5 +1,6 @@
 """lessons/ is what solutions/ gives, and nothing of the answers is in it."""
 
+import ast
 import re
 import shutil
 
@@ -20,6 +21,17 @@ def test_every_exercise_raises_its_number_and_name_and_no_marker_leaks():
         if name != "__init__.py":
             for number, function in generate.exercises((SOLUTIONS / name).read_text()).items():
                 assert f'raise NotImplementedError("Exercise {number}: {function}")' in text
+
+
+def test_a_check_from_another_file_is_named_with_its_arguments():
+    """A student sees the docstring of the exercise, and not the file of the check."""
+    for path in SOLUTIONS.glob("*.py"):
+        functions = [node for node in ast.parse(path.read_text()).body if isinstance(node, ast.FunctionDef)]
+        here = {node.name for node in functions}
+        for node in functions:
+            doc, called = ast.get_docstring(node) or "", {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+            for name in {*re.findall(r"\bcheck_\w+", doc)} & called - here:
+                assert f"{name}(" in doc, (path.name, node.name, name)
 
 
 def test_no_line_of_an_answer_is_left_in_a_lesson():

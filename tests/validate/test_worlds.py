@@ -152,7 +152,7 @@ def test_a_force_of_floats_moves_its_body_as_the_closed_form_says(product, setti
 @pytest.mark.parametrize("product", [PYMUNK, PYBULLET], ids=str)
 def test_with_its_own_drag_an_engine_slows_a_body_exactly(product):
     T, steps, k, m = 1.0, 100, 0.8, 2.0
-    model = make_model([Body((0.0, 0.0), m, v=(3.0, 1.0))], (0.0, 0.0), loads=[Drag(k)])
+    model = make_model([Body((0.0, 0.0), m, v=(3.0, 1.0))], (0.0, 0.0), loads=[Drag(0.5 * k), Drag(0.5 * k)])
     state, _ = run(product, model, T, steps, own_drag=True)
     assert state.v[0] == pytest.approx(np.exp(-k / m * T) * np.array((3.0, 1.0)), rel=1e-12)
 

@@ -1,7 +1,8 @@
 """pybullet.  It pushes, then moves.  Friction and restitution of a pair are products, as in a Model.
 
-A planar Model moves in the plane x, z.  In maximal coordinates joints are constraints.  In reduced coordinates a tree
-of hinges is one body with links, and a BallJoint is a constraint.
+It turns no body by more than π/4 in a step, however fast it spins.  A planar Model moves in the plane x, z.  In maximal
+coordinates joints are constraints.  In reduced coordinates a tree of hinges is one body with links, and a BallJoint is
+a constraint.
 """
 
 from typing import NamedTuple

@@ -84,10 +84,10 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
 def let_damp(space, model):
     """Let the space damp as much as the drag, which is left out of the Model that is returned."""
     kept = tuple(load for load in model.loads if not isinstance(load, Drag))
-    rates = {load.k / body.m for load in model.loads if isinstance(load, Drag) for body in model.bodies
-             if can_move(body)}
+    k = sum(load.k for load in model.loads if isinstance(load, Drag))
+    rates = {k / body.m for body in model.bodies if can_move(body)}
     if len(rates) > 1:
-        raise BadInput("own_drag", f"{len(rates)} rates k/m", "take it for one drag on bodies of one mass")
+        raise BadInput("own_drag", f"{len(rates)} rates k/m", "take it for bodies of one mass")
     space.damping = np.exp(-sum(rates))                  # the share of the velocity that is left after one second
     return model._replace(loads=kept)
 
