@@ -11,7 +11,7 @@ import pytest
 
 from validate.grading import plugin, points, wire
 from validate.notebook.pytest_process import quiet
-from validate.subject import generate, modules
+from validate.subject import generate, modules, needs
 from validate.subject.generate import exercises
 
 LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them, too$", re.MULTILINE)
@@ -203,15 +203,26 @@ def test_imports_that_a_grader_need_not_have_are_named(tmp_path):
 
 
 def test_what_is_not_written_yet_is_counted_and_not_shown_as_failures(tmp_path):
-    """The table has one line for each exercise, in the order of the course; a failure is still shown as one."""
+    """Lessons come in the order of the course, with their exercises where one is attempted."""
     text = generate.stub((modules.SOLUTIONS / "springs.py").read_text())
     stub = 'raise NotImplementedError("Exercise 2.2: air_force")'
     assert stub in text
     (tmp_path / "springs.py").write_text(text.replace(stub, "return 1.0"))
+    (tmp_path / "simulator.py").write_text(generate.stub((modules.SOLUTIONS / "simulator.py").read_text()))
     files = [str(points.LESSONS / f"test_{name}.py") for name in ("springs", "simulator")]
     said = quiet(*files, f"--of={tmp_path}", f"--rootdir={modules.ROOT}",
                  *(f"--exercise={number}" for number in ("2.2", "2.3", "2.10", "10.1")))
-    assert re.findall(r"^ +([\d.]+)  0 of", said, re.M) == ["2.2", "2.3", "2.10", "10.1"]
+    assert re.findall(r"^(\w+): 0 of", said, re.M) == ["springs", "simulator", "all"]
+    assert re.findall(r"^ +([\d.]+)  0 of 1(  o)?$", said, re.M) == [("2.2", ""), ("2.3", "  o"), ("2.10", "  o")]
+    assert "deselected" not in said and "next: " not in said
     assert re.findall(r"^_+ (test_\w+)", said, re.M) == [
         "test_air_pushes_resting_points_and_exerts_no_force_on_points_at_wind_speed"]
     assert re.search(r"^\d+ failed, .*\d+ not attempted in", said, re.M), said
+
+
+def test_the_points_end_with_the_exercise_that_comes_next():
+    outcomes = [points.Outcome(number, "a test", 1.0, "passed" if number == "2.1" else points.NOT_ATTEMPTED)
+                for number in needs.of_lesson("springs")]
+    said = plugin.lines_of_points(outcomes)
+    assert said[0] == f"springs: 1 of {len(outcomes)}" and said[1:3] == ["   2.1  1 of 1", "   2.2  0 of 1  o"]
+    assert said[-1] == "next: 2.2 air_force"

@@ -34,6 +34,7 @@ from .points import (
     FILE,
     LESSONS,
     LIMIT,
+    NOT_ATTEMPTED,
     PUBLIC,
     TESTS,
     TRACE,
@@ -180,7 +181,8 @@ def pytest_collection_modifyitems(config, items):
     count_left_out(config, len(wanted) - len(keep))
     if len(keep) < len(items):
         kept = {*keep}
-        config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+        if not config.getoption("--of"):                             # a student has not chosen what is left out
+            config.hook.pytest_deselected(items=[item for item in items if item not in kept])
         items[:] = keep
     if config.getoption("--of"):                                     # a student's code may warn, as in the sandbox
         for item in items:
@@ -389,6 +391,30 @@ def pytest_sessionfinish(session):
         Path(session.config.getoption("--case")).write_text(text)
 
 
+def lines_of_points(outcomes):
+    """Return the points of each lesson, and below it those of its exercises, as soon as one of them is attempted."""
+    table, states, lines = score(outcomes), needs.states((o.exercise, o.status) for o in outcomes), []
+    lessons = {}
+    for exercise in sorted(table, key=needs.in_order):
+        lessons.setdefault(needs.table()[exercise]["lesson"], []).append(exercise)
+    for lesson, exercises in lessons.items():
+        lines.append(f"{lesson}: {total(table[number] for number in exercises)}")
+        for number in exercises if any(states[number] != NOT_ATTEMPTED for number in exercises) else ():
+            lines.append(f"{number:>6}  {total([table[number]])}{'  o' * (states[number] == NOT_ATTEMPTED)}")
+            lines += [f"{'':8}{said}" for said in dict.fromkeys(text for o in outcomes for text in (o.below, o.idea)
+                                                               if o.exercise == number and text)]
+    whole = [lesson for lesson in lessons if states.keys() >= {*needs.of_lesson(lesson)}]
+    begin = next((number for lesson in whole if (number := needs.next_of(lesson, states))), None)
+    return [*lines, f"all: {total(table.values())}", *(["o: not written yet"] * (NOT_ATTEMPTED in states.values())),
+            *([f"next: {begin} {needs.table()[begin]['function']}"] if begin else [])]
+
+
+def total(points):
+    """Return the sum of some (earned, possible), in words."""
+    earned, possible = map(sum, zip(*points))
+    return f"{earned:g} of {possible:g}"
+
+
 def imports_without_a_grader(config):
     """Return {file: modules that it imports, and that the sandbox of a grader need not have} of the lessons tested."""
     folder, found = modules.subject_folder(config.getoption("--of")), {}
@@ -419,16 +445,9 @@ def pytest_terminal_summary(terminalreporter, config):
         terminalreporter.line(f"{left_out} long {tests} {were} left out: {how} runs {them}, too")
     if not hasattr(config, "points") or not config.points.outcomes:
         return
-    table = score(config.points.all())
     terminalreporter.section("points")
-    for exercise, (earned, possible) in sorted(table.items(), key=lambda row: needs.in_order(row[0])):
-        terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")
-        for said in dict.fromkeys(text for o in config.points.all() for text in (o.below, o.idea)
-                                  if o.exercise == exercise and text):
-            terminalreporter.line(f"{'':8}{said}")
-    earned = sum(e for e, _ in table.values())
-    possible = sum(p for _, p in table.values())
-    terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")
+    for line in lines_of_points(config.points.all()):
+        terminalreporter.line(line)
     for file, names in imports_without_a_grader(config).items():
         terminalreporter.line(f"{file} imports {', '.join(names)}: a grader need not have that, and a file that does "
                               "not load there has no points. Keep pictures in the notebook.")

@@ -697,8 +697,8 @@ def rubbing(lesson, rng):
     return state, record, lesson.arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), contacts
 
 
-@random_law("Each pair has its restitution e_a e_b of the speed before forces acted; what they explain rests; gravity "
-            "presses none that fall freely; an open contact may close.",
+@random_law("Each pair has its restitution e_a e_b of the speed before forces acted, also where it parts; what they "
+            "explain rests; gravity presses none that fall freely; an open contact may close.",
             "pairs: largest error of the speeds of parting [m/s]", EXACT)
 def aims_of_pairs(lesson, rng):
     state, p, arms, contacts = rubbing(lesson, rng)
@@ -714,7 +714,7 @@ def aims_of_pairs(lesson, rng):
         e, u_n, gap = p.e_of[a] * p.e_of[b], speed_at(state, contacts, k)[0] @ n, contacts.gap[k]
         falls = not np.any(held[[i for i in (a, b) if not fixed[i]] or [a]])
         came, added = u_n - pressed[k], max(0.0 if falls else dt * np.linalg.norm(p.gravity), -pressed[k])
-        bounces = e > 0.0 and (-came > added or gap > added * dt)
+        bounces = e > 0.0 and (-came > added or (gap > added * dt if gap > 0.0 else came > added))
         truth.append((-np.inf if gap > 0.0 else -e * came) if bounces else (-gap / dt if gap > 0.0 else 0.0))
     return lesson.parting_aims(speeds, pressed, contacts, dt, p), np.array(truth)
 
