@@ -58,7 +58,7 @@ def test_right_answers_of_the_simulator_get_all_points_where_no_answers_are(tmp_
     write_answers(tmp_path)
     tests = "tests/lessons/test_simulator.py"
     said, code = run_in(tmp_path, sys.executable, "-m", "pytest", "--of=lessons", "-p", "no:cacheprovider", tests)
-    assert re.search(r"^ +all  20 of 20$", said, re.M) and code == 0, said
+    assert re.search(r"^all: 20 of 20$", said, re.M) and code == 0, said
 
 
 # ---------------------------------------------------------------------------------------------- the zip, installed

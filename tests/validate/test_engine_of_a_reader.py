@@ -117,17 +117,22 @@ def test_an_unknown_scene_and_an_unknown_engine_get_one_sentence(capsys, tmp_pat
         assert code == 2 and words in error and len(error.strip().splitlines()) == 1
 
 
+LONG = pytest.mark.long      # of the same kind as others: each starts a process
+
+
 @pytest.mark.parametrize(("text", "words"), [
     ("def build(model, dt): raise ValueError('no\\nmore')", "ValueError: no"),
     ("def build(model, dt): return None", "build(model, dt): BadInput: what it returned is None"),
     (WORLD + "def build(model, dt): return World(3)", "state() is int"),
-    (WORLD + "def build(model, dt): return World([[0.0]] * 4)", "the shapes of state()"),
+    pytest.param(WORLD + "def build(model, dt): return World([[0.0]] * 4)", "the shapes of state()", marks=LONG),
     (WORLD + STILL + "def refuses(model): return 1 / 0", "refuses(model): ZeroDivisionError"),
-    (WORLD + STILL + "import numpy\ndef refuses(model): return numpy.zeros(2)", "refuses(model): ValueError"),
+    pytest.param(WORLD + STILL + "import numpy\ndef refuses(model): return numpy.zeros(2)",
+                 "refuses(model): ValueError", marks=LONG),
     (WORLD + STILL + "import os\ndef refuses(model): os.kill(os.getpid(), 11)",
      "it ended the process, with signal SIGSEGV"),
-    (WORLD + STILL + "import os\ndef refuses(model): os._exit(3)", "it ended the process, with code 3"),
-    (WORLD + STILL + "World.close = lambda self: 1 / 0", "close(): ZeroDivisionError"),
+    pytest.param(WORLD + STILL + "import os\ndef refuses(model): os._exit(3)",
+                 "it ended the process, with code 3", marks=LONG),
+    pytest.param(WORLD + STILL + "World.close = lambda self: 1 / 0", "close(): ZeroDivisionError", marks=LONG),
     (WORLD + STILL.replace("start_of(model))", "tuple(a * float('nan') for a in start_of(model)))"), "not finite"),
 ])
 def test_an_engine_that_fails_is_named_with_its_first_line(capsys, tmp_path, text, words):
