@@ -401,12 +401,17 @@ def lines_of_points(outcomes):
         lines.append(f"{lesson}: {total(table[number] for number in exercises)}")
         for number in exercises if any(states[number] != NOT_ATTEMPTED for number in exercises) else ():
             lines.append(f"{number:>6}  {total([table[number]])}{'  o' * (states[number] == NOT_ATTEMPTED)}")
-            lines += [f"{'':8}{said}" for said in dict.fromkeys(text for o in outcomes for text in (o.below, o.idea)
-                                                               if o.exercise == number and text)]
+            lines += [f"{'':8}{said}" for said in dict.fromkeys(text for o in outcomes if o.exercise == number
+                                                               for text in (o.below, o.idea, why_open(o)) if text)]
     whole = [lesson for lesson in lessons if states.keys() >= {*needs.of_lesson(lesson)}]
     begin = next((number for lesson in whole if (number := needs.next_of(lesson, states))), None)
     return [*lines, f"all: {total(table.values())}", *(["o: not written yet"] * (NOT_ATTEMPTED in states.values())),
             *([f"next: {begin} {needs.table()[begin]['function']}"] if begin else [])]
+
+
+def why_open(o):
+    """Return why an exercise counts as not attempted, where it is not simply open: a lesson below it does not load."""
+    return "" if o.status != NOT_ATTEMPTED or o.got.startswith("Exercise ") else o.got
 
 
 def total(points):
