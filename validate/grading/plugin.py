@@ -410,8 +410,8 @@ def lines_of_points(outcomes):
 
 
 def why_open(o):
-    """Return why an exercise counts as not attempted, where it is not simply open: a lesson below it does not load."""
-    return "" if o.status != NOT_ATTEMPTED or o.got.startswith("Exercise ") else o.got
+    """Return why an exercise is open, where it is not its own: another one is, or its lesson does not load."""
+    return "" if o.status != NOT_ATTEMPTED or o.got.startswith(f"Exercise {o.exercise}:") else f"open: {o.got}"
 
 
 def total(points):
