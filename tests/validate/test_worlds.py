@@ -24,7 +24,7 @@ from solutions.support.model import (
     touching_pairs,
     world_place,
 )
-from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, size_of
+from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron, size_of
 from validate.engines.products import BOX2D, BUILDERS, MUJOCO, PYBULLET, PYMUNK, RAPIER
 from validate.scene import by_order
 from validate.subject import modules
@@ -40,7 +40,18 @@ every = pytest.mark.parametrize(("product", "settings"), KINDS, ids=[f"{p}{'-red
 FLOOR = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)
 GROUND = Body((0.0, 0.0, 0.0), shape=HalfSpace((0.0, 0.0, 1.0)), mu=1.0, e=1.0)
 TRIANGLE = Polygon(((-0.3, -0.2), (0.3, -0.2), (0.0, 0.4)))
+SQUARE = (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)
 SHAPES = (Ball(0.2), Box((0.3, 0.1)), Capsule(0.3, 0.1), TRIANGLE)
+
+
+def square(half):
+    """Make a Polygon."""
+    return Polygon(tuple((half * x, half * y) for x, y in SQUARE))
+
+
+def cube(half):
+    """Make a Polyhedron."""
+    return Polyhedron(tuple((half * x, half * y, z) for x, y in SQUARE for z in (-half, half)))
 
 
 def run(product, model, T, steps, **settings):
@@ -494,8 +505,12 @@ def test_rapier_turns_a_fast_body_by_its_own_law_without_a_limit():
                [Hinge(0, WORLD, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]),
     make_model([Body((0.0, 0.0), 1.0, inertia=1e13)], (0.0, 0.0)),
     make_model([FLOOR._replace(mu=20.0), Body((0.0, 0.2), 1.0, Ball(0.2), mu=1.0)], (0.0, -G)),
-    make_model([Body((0.0, 0.0), 1e-14, Ball(0.1))], (0.0, 0.0))],
-    ids=["spin", "moment", "friction", "mass"])
+    make_model([Body((0.0, 0.0), 1e-14, Ball(0.1))], (0.0, 0.0)),
+    make_model([Body((0.0, 0.0), 2.0 * derived.SINGLE[1])], (0.0, -G)),
+    make_model([Body((0.0, 0.0), 1.0, inertia=0.5 * derived.SINGLE[0])], (0.0, -G)),
+    make_model([Body((0.0, 0.0), 1.0, square(0.9e-4))], (0.0, -G)),
+    make_model([Body((0.0, 0.0, 0.0), 1.0, cube(0.9e-3))], (0.0, 0.0, -G))],
+    ids=["spin", "moment", "friction", "mass", "heavy", "light", "corners", "thin"])
 def test_what_an_engine_would_drop_is_refused_before_it_builds(product, settings, model, request):
     """An engine that does not refuse it can hold such a motion, moment or friction."""
     if not product.installed():
@@ -505,8 +520,34 @@ def test_what_an_engine_would_drop_is_refused_before_it_builds(product, settings
         with pytest.raises(BadInput, match="refuses"):
             product.world.build(model, 0.01, **settings)
     refusers = {"spin": (PYMUNK, BOX2D, MUJOCO), "moment": (MUJOCO, PYBULLET), "friction": (PYBULLET,),
-                "mass": (MUJOCO,)}[request.node.callspec.id.split("-")[0]]
+                "mass": (MUJOCO,), "heavy": (BOX2D, RAPIER), "light": (BOX2D, RAPIER, MUJOCO), "corners": (BOX2D,),
+                "thin": (PYMUNK, BOX2D, RAPIER, PYBULLET)}[request.node.callspec.id.split("-")[0]]
     assert bool(why) == (product in refusers)
+
+
+@pytest.mark.parametrize("product", [BOX2D, RAPIER], ids=str)
+@pytest.mark.parametrize("limit", derived.SINGLE)
+@pytest.mark.parametrize("moment", [False, True])
+def test_single_precision_carries_the_masses_and_moments_that_are_not_refused(product, limit, moment):
+    """A body falls and turns as one of 1 kg does."""
+    m, I = (1.0, limit) if moment else (limit, 1.0)
+    found, _ = run(product, make_model([Body((0.0, 0.0), m, inertia=I, omega=1.0)], (0.0, -G)), 1.0, 100)
+    assert (found.x[0, 1], found.omega[0], found.q[0]) == pytest.approx((-0.5 * G, 1.0, 1.0), rel=5e-3)
+
+
+@pytest.mark.parametrize(("product", "shape", "support"), [
+    (BOX2D, square(1.1e-4), HalfSpace((0.0, 1.0))),
+    (RAPIER, cube(5.1e-3), Box((5.1e-3,) * 3)), (RAPIER, cube(5.1e-3), cube(5.1e-3)),
+    (PYBULLET, cube(1.1e-3), Box((1.1e-3,) * 3)), (PYBULLET, cube(1.1e-3), cube(1.1e-3))])
+def test_the_smallest_shapes_that_are_not_refused_rest_on_others(product, shape, support):
+    """It falls by half of its size and stays there.  The engines that overlap do so by less than a fifth of it."""
+    d, size = len(shape.corners[0]), abs(shape.corners[0][0])
+    up = np.eye(d)[-1]
+    below = Body((0.0,) * d if isinstance(support, HalfSpace) else tuple(-size * up), shape=support, mu=1.0)
+    model = make_model([Body(tuple(1.5 * size * up), 1e3 * size**3, shape, 1.0), below], tuple(-G * up))
+    T = np.sqrt(2.0 * size / G)
+    found, _ = run(product, model, 8.0 * T, 400)
+    assert found.x[0, -1] == pytest.approx(size, rel=0.2)
 
 
 @pytest.mark.parametrize("product", [MUJOCO, BOX2D], ids=str)

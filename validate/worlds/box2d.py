@@ -1,7 +1,7 @@
 """Box2D 3, by pyb2d3: single precision and soft steps, made for games.
 
 Its friction of a pair is √(μ_a μ_b), so each body gets the square of its μ.  Its restitution of a pair is the greater
-one.  It turns no body by more than π/4 in a step: faster spins are cut off.  Polygons below 0.1 mm fall through planes.
+one.  It turns no body by more than π/4 in a step: faster spins are cut off.
 """
 
 from functools import cache
@@ -31,6 +31,7 @@ from .derived import (
     acceleration_at_start,
     as_numbered,
     beyond,
+    beyond_single,
     checked_step,
     grip,
     in_plane,
@@ -42,6 +43,8 @@ from .derived import (
 UNITS = 0.01                 # its unit of length [m]: the slop is then 0.05 mm and not 5 mm
 SUBSTEPS = 4                 # per step, by default
 MOST_CORNERS = 8             # of a polygon
+MERGED = 2e-4                # corners of a polygon that are not farther apart become one [m]
+STRAIGHT = 1e-4              # and one that is not farther from the line between its neighbours is left out [m]
 LONG = 200.0                 # half length of the box that stands for a half-space [m]
 
 
@@ -78,8 +81,22 @@ def refuses(model):
         return "its restitution of a pair is the greater of two, which cannot be the product in all pairs here"
     if any(isinstance(body.shape, Polygon) and len(body.shape.corners) > MOST_CORNERS for body in model.bodies):
         return f"its Polygon has at most {MOST_CORNERS} corners"
+    if any(isinstance(body.shape, Polygon) and loses_corners(body.shape.corners) for body in model.bodies):
+        return "it leaves out a corner of a Polygon that is so near to others"
     return (unsupported(model, Ball, Box, Capsule, Polygon, HalfSpace, Hinge, Weld, Distance)
-            or beyond(model, LONG))
+            or beyond(model, LONG) or beyond_single(model))
+
+
+def loses_corners(corners):
+    """Return whether the engine would leave out a corner of a polygon.  One without three corners falls through planes.
+
+    *Source:* Box2D, `src/hull.c`, b2ComputeHull: four and two times its slop, which is half a hundredth of its UNITS.
+    """
+    here = np.array(corners)
+    side = np.roll(here, -1, axis=0) - here
+    across = side + np.roll(side, 1, axis=0)                         # from the corner before to the one behind
+    height = np.abs(across[:, 0] * side[:, 1] - across[:, 1] * side[:, 0]) / np.linalg.norm(across, axis=1)
+    return np.min(np.linalg.norm(side, axis=1)) <= MERGED or np.min(height) <= STRAIGHT
 
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):

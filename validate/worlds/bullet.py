@@ -47,6 +47,7 @@ from .derived import (
     pressed_in,
     round_only,
     smallest,
+    thinnest,
     touches,
     tree,
     weld_place,
@@ -56,6 +57,7 @@ from .derived import (
 OVERLAP = 1e-6               # [m]: a contact exists in the first step
 ROUGHEST = 10.0              # its largest friction of a pair [-]
 WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
+THIN = 1e-3                  # half of the width below which a polyhedron falls into boxes and other polyhedra [m]
 BREAKING = 0.02              # the engine's default [-]
 SLAB = 50.0                  # half size of the box that stands for a half-space [m]
 FAR = 1000.0                 # where bodies are while they get their moments [m]
@@ -99,6 +101,8 @@ def refuses(model):
     """Return why it cannot run a model, or ""."""
     if carries(model):
         return "in maximal coordinates it ignores the velocity of a body without mass"
+    if thinnest(model) < THIN:
+        return f"its polyhedra must be at least {2.0 * THIN:g} m wide"
     return (unsupported(with_plain_springs(model), Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint,
                         Weld)
             or ("" if round_only(model) else beyond(model, SLAB)) or cuts_moments(model, WIDE) or cuts_friction(model))

@@ -35,6 +35,7 @@ STICKY = 1e6                 # stands for infinite friction in an engine [-]: it
 SLIGHT = 1e-9                # difference of velocities over the larger one, up to which they are the same [-]
 SPINS_ON = "a body that nothing can turn has an angular velocity, which this engine would drop"
 OPENS = "bodies begin with velocities that open a joint, and its coordinates cannot hold such velocities"
+SINGLE = 1e-37, 1e18         # smallest and largest mass [kg] and moment [kg m²] that single precision carries
 PLANE = 1e-12                # allowed distance from a vertical plane, over the largest coordinate [-]
 
 
@@ -300,6 +301,23 @@ def cuts_moments(model, most):
     """
     moments = [I for body in model.bodies for I in np.atleast_1d(body.inertia) if most < I < np.inf]
     return f"a moment of inertia of {moments[0]:.3g} kg m² counts as infinite in it" if moments else ""
+
+
+def beyond_single(model):
+    """Return why an engine of single precision refuses a mass or a moment of inertia that is too small or too large.
+
+    Measured in free fall: below 1e-38 a body stands still or its place is no number.  Above 1.8e19, whose square is too
+    large, Rapier's bodies do not fall.  "" where there is none.
+    """
+    low, high = SINGLE
+    found = [x for body in model.bodies for x in (body.m, *np.atleast_1d(body.inertia)) if x < low or high < x < np.inf]
+    return f"its single precision is too narrow for a mass or a moment of inertia of {found[0]:.3g}" if found else ""
+
+
+def thinnest(model):
+    """Return half of the smallest width of all polyhedra along their axes [m]; ∞ without one."""
+    return min((float(np.min(np.ptp(body.shape.corners, axis=0))) / 2.0 for body in model.bodies
+                if isinstance(body.shape, Polyhedron)), default=np.inf)
 
 
 def stiff_joints(model):

@@ -30,11 +30,20 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Pol
 from ..engines import quiet_import
 from ..reference.orientation import quaternion
 from . import Push, World, unsupported
-from .derived import Embedding, acceleration_at_start, checked_step, grip, with_plain_springs
+from .derived import (
+    Embedding,
+    acceleration_at_start,
+    beyond_single,
+    checked_step,
+    grip,
+    thinnest,
+    with_plain_springs,
+)
 
 SUBSTEPS = 4                 # per step, by default
 SLOP = 1e-5                  # overlap that it leaves [m]; its default is 5 mm
 RIGID = 1e8                  # stiffness of a rod per mass of its lighter end [1/s²]
+THIN = 5e-3                  # half of the width below which a polyhedron falls into boxes and other polyhedra [m]
 FAST = 1e6                   # its greatest speed [m/s]; its default is 400
 
 
@@ -57,7 +66,10 @@ def module():
 
 def refuses(model):
     """Return why it cannot run a model, or ""."""
-    return unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge, BallJoint, Weld, Distance)
+    if thinnest(model) < THIN:
+        return f"its polyhedra must be at least {2.0 * THIN:g} m wide"
+    return beyond_single(model) or unsupported(model, Ball, Box, Capsule, Polygon, Polyhedron, HalfSpace, Hinge,
+                                               BallJoint, Weld, Distance)
 
 
 def build(model, dt, substeps=SUBSTEPS, ahead=0.0):
