@@ -382,7 +382,9 @@ def overrides(pairs, names):
     from .measure.selection import changed
     changes = []
     for pair in pairs:
-        name, _, text = pair.partition("=")
+        name, sign, text = pair.partition("=")
+        if not (name and sign):
+            raise BadInput(f"--set {pair!r}", "not NAME=VALUE", "write it like --set k=400")
         if name in dict(changes):
             raise BadInput(f"--set {name}", "given twice", "give each parameter once")
         if len(names) != 1:

@@ -45,6 +45,8 @@ def run(capsys, *arguments):
     (["--scene", "oscillator", "--set", "k=inf"], "finite number"),
     (["--scene", "oscillator", "--set", "k=1e999"], "finite number"),
     (["--scene", "oscillator", "--set", "k=soft"], "soft"),
+    (["--scene", "oscillator", "--set", "k"], "NAME=VALUE"),
+    (["--scene", "oscillator", "--set", "=3"], "NAME=VALUE"),
     (["--scene", "cloth", "--set", "n=2.5"], "whole number"),
     (["--scene", "tensors", "--set", "shape=egg"], "capsule"),
     (["--scene", "catenary", "--set", "span=1e300"], "catenary with span = 1e+300"),

@@ -161,13 +161,13 @@ def collected(intake, settings, jobs, executor, out):
             results[submission.student] = result
         else:
             todo.append(submission)
-    if todo:
+    coming = on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)
+    if todo:                                                           # a wrong address was named before this takes long
         with console.status("worked answers, with the secret inputs"):
             local.check_seed(settings)
     columns = TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     with Progress(*columns, console=console) as bars:
         bar = bars.add_task("submissions", total=len(intake.submissions), completed=len(results))
-        coming = on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)
         for student, result, why in coming:
             if result:
                 results[student] = result
