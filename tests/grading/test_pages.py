@@ -256,7 +256,7 @@ def test_a_students_page_shows_the_reported_fields_and_nothing_else(tmp_path):
     write(tmp_path, [ada, result("bob")])
     page = Seen(tmp_path / "students" / "ada.html")
     answers = "It falls (plain)", "down, not up", "2.0e-1 off", "at the floor", "here I am", "bouncing.py is a link"
-    words = "not attempted", "Not handed in", "With other inputs", "With the public inputs"
+    words = "not attempted", "No file of this lesson could be read", "With other inputs", "With the public inputs"
     for text in (*reported.values(), *answers, *words):
         assert text in page.text, text
     for text in ("bob", "secret", "no speed"):
