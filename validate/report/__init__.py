@@ -85,7 +85,8 @@ def environment():
                          split_places=tables.split_places, summary_line=words.summary_line,
                          dimensions={product.name: product.dimensions for product in PRODUCTS},
                          theory_of=words.theory_of, meanings={v.value: words.LEGEND[v] for v in Verdict},
-                         unpredicted=words.unpredicted, part_names=words.part_names, part_products=words.part_products)
+                         unpredicted=words.unpredicted, engines_of=words.engines_of, part_names=words.part_names,
+                         part_products=words.part_products)
     return pages
 
 

@@ -25,8 +25,9 @@ def right(results, stability):
     """Counts of the verdicts on our methods, and how many orders are as high as theory says."""
     every = curves_of(results, "ours")
     count = Counter(Verdict(c["verdict"]) for _, _, c in every)
-    measured = [c for _, _, c in every if c["order"] is not None and c["expected"] != EXACT]
-    ordered = [c for c in measured if c["expected"] in (1, 2, 4)]
+    measured = [one for one in every if one[2]["order"] is not None and one[2]["expected"] != EXACT]
+    ordered = [one for one in measured if one[2]["expected"] in (1, 2, 4)]
+    below = [one for one in ordered if not one[2]["order"] > one[2]["expected"] - 0.3]
     wrong = {r["scene"]: r["title"] for r, _, c in every if Verdict(c["verdict"]) is Verdict.DEPARTS}
     curves, predicted = set(), set()
     for r, _, c in (*every, *curves_of(results, "engines")):
@@ -43,15 +44,20 @@ def right(results, stability):
         "unfinished": unfinished(every), "measured": len(words.measured_limits(results, stability)),
         "truths": words.truths_by_engines(results), "agreed": words.truths_by_agreement(results),
         "orders": len(ordered), "orders_open": len(measured) - len(ordered),
-        "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
+        "orders_reached": len(ordered) - len(below),
+        "orders_below": [{**place_of(*one), "order": one[2]["order"], "expected": one[2]["expected"]} for one in below],
         "exact": sum(c["expected"] == EXACT and Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in every),
     }
 
 
 def unfinished(every):
     """[{label, case, scene, title}] of the curves of ours that do not come to their end."""
-    return [{"label": c["label"], "case": name, "scene": r["scene"], "title": r["title"]} for r, name, c in every
-            if Verdict(c["verdict"]) is Verdict.UNFINISHED]
+    return [place_of(*one) for one in every if Verdict(one[2]["verdict"]) is Verdict.UNFINISHED]
+
+
+def place_of(result, case, curve):
+    """{label, case, scene, title} of a curve."""
+    return {"label": curve["label"], "case": case, "scene": result["scene"], "title": result["title"]}
 
 
 def faster(results, cores=None):

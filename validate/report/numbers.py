@@ -16,6 +16,7 @@ def number(x, digits=3):
         return "–"
     if x < 0:
         return f"−{number(-x, digits)}"
+    x = abs(x)                                                       # of −0
     if x == 0 or 1e-2 <= x < 1e4:
         short = f"{x:.{digits}g}"
         return short if "e" not in short else rounded(x, digits).replace(",", "")

@@ -44,6 +44,7 @@ LEGEND = {                   # every verdict has one name and one sign
 ARROWS = {"ω": "angular velocity ω", "L": "angular momentum L", "v": "velocity v of the centre", "τ": "torque τ",
           "Rω": "speed Rω of the rim"}                                        # what the arrows of a film in 3D mean
 TOO_STEEP = 1.5              # by which a slope may be larger than the expected order [-]
+ROUNDED = 1e-11              # largest error that is called round-off [-]: of some 1e5 steps
 BUSY = 0.25                  # cores that other programs use, from which times are doubtful [-]
 BUSY_LOAD = 1.5              # the same where only the load of the machine is known: the run itself counts as 1 [-]
 
@@ -272,6 +273,11 @@ def omissions(results):
             for r in results for row in r["times"]["ablations"]]
 
 
+def engines_of(result):
+    """Return a curve of each engine of a scene, in whichever cases it runs."""
+    return list({c["label"]: c for case in result["cases"].values() for c in case["engines"]}.values())
+
+
 def unpredicted(result):
     """Return {reason: labels} of the curves of a scene whose error no theory predicts."""
     found = {}
@@ -314,6 +320,12 @@ def best_order(curves):
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 
+def to_round_off(curve):
+    """Return whether a curve has no error but round-off, at every step."""
+    errors = [row["error"] for row in curve["rows"] if row["error"] is not None]
+    return curve["expected"] == EXACT and max(errors, default=0.0) <= ROUNDED
+
+
 def seen_in_steps(result):
     """Return one sentence: the result of the plot of errors against steps."""
     case = next(iter(result["cases"].values()))
@@ -321,7 +333,7 @@ def seen_in_steps(result):
     if best is None:
         return ""
     if best["expected"] == EXACT:
-        return f"“{best['label']}” is exact up to round-off at every step."
+        return f"“{best['label']}” is exact up to round-off at every step." if to_round_off(best) else ""
     if not any(shows_order(c) for c in case["ours"] if c is not best):
         return f"The error of “{best['label']}” falls with order {slope(best)}."
     return f"Of our methods, “{best['label']}” falls fastest, with order {slope(best)}."
@@ -489,7 +501,7 @@ def _ours(result):
     if shown:
         orders = "; ".join(f"{c['label']} {slope(c)} ({c['expected']})" for c in shown)
         yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
-    exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
+    exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if to_round_off(c) and is_right(c)]
     if exact and result["refinement"]:
         yield f"Exact up to round-off at every step, as derived: {listed(exact)}."
 
