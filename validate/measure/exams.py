@@ -17,7 +17,7 @@ from ..check import Role
 
 LONGEST = {True: 0.05, False: 3.0}   # run of a quick validation, and of a full one [s]
 REPEATS, ENOUGH = 3, 1.0             # of a timed run, which is repeated so often or for so long [s]
-PROBE = 2                            # steps from which the length of a run is estimated
+PROBE, LONG_ENOUGH = 2, 0.01         # the length of a run is estimated from so many calls, or more until they last [s]
 
 
 class Contestant(NamedTuple):
@@ -87,7 +87,7 @@ def results(exam, one, truth, longest):
     pace = seconds_per_step(exam, one)
     for steps in exam.steps:
         if pace is None or pace * steps > longest:
-            row["left"] = "" if pace is None else f"runs longer than {longest:g} s are not made here"
+            row["left"] = "" if pace is None else f"no run here takes longer than {longest:g} s"
             break
         found = judged(exam, one, truth, steps)
         row["runs"].append(found)
@@ -102,14 +102,23 @@ def seconds_per_step(exam, one):
     try:
         advance, close = one.begin(exam.duration / exam.steps[-1])
         try:
-            advance(PROBE * getattr(one.runner.who, "substeps", 1))
-            began = time.perf_counter()
-            advance(PROBE * getattr(one.runner.who, "substeps", 1))
-            return (time.perf_counter() - began) / PROBE
+            return per_step(advance, PROBE * getattr(one.runner.who, "substeps", 1), exam.steps[-1])
         finally:
             close()
     except (Exception, SystemExit):                  # a subject's code may do anything; its page says what it did
         return None
+
+
+def per_step(advance, steps, most):
+    """Return the seconds per step of so many steps, or of ever more until they last long enough to be timed."""
+    advance(steps)
+    while True:
+        began = time.perf_counter()
+        advance(steps)
+        seconds = time.perf_counter() - began
+        if seconds >= LONG_ENOUGH or 4 * steps > most:
+            return seconds / steps
+        steps *= 4
 
 
 def judged(exam, one, truth, steps):

@@ -14,10 +14,10 @@ def on_strings(x, m, g):
                       [Distance(k, k - 1 if k else WORLD, (0.0, 0.0), (0.0, 0.0)) for k in range(len(x))])
 
 
-def on_hinges(x, m, g, inertia=LEAST):
+def on_hinges(x, m, g):
     """Return the Model of the same points with moments, whose only coordinates are the angles of hinges."""
     above = ((0.0, 0.0), *map(tuple, x))
-    return make_model([Body(tuple(place), m, inertia=inertia) for place in x], (0.0, -g),
+    return make_model([Body(tuple(place), m, inertia=LEAST) for place in x], (0.0, -g),
                       [Hinge(k, k - 1 if k else WORLD, above[k]) for k in range(len(x))])
 
 

@@ -126,7 +126,8 @@ def limit(p, dt):
     step in which a ball crosses half of a gap merges two impacts; then there is no bound.
 
     Touching balls conserve the sums; a late impact of a ball inside the next one does not change them.  What is left is
-    half a step of the swing, and the cubes in the sines of five angles of up to 0.3: at most 5 · angle³/6 · w² T.
+    half a step of the swing, and the cubes in the sines.  Energy keeps Σ θ² at angle², so Σ |θ|³ is at most angle³: the
+    cubes change the sum of the rates by angle³/6 · w² T at most, and that of the angles by T times that.
     """
     w2, size = p.g / p.L, np.linalg.norm(truth(p, T))
     fastest = 2.0 * np.sqrt(w2) * np.sin(0.5 * p.angle)
