@@ -238,7 +238,8 @@ def test_the_list_of_scenes_is_that_of_the_code():
     today = required.derived([])
     assert [kept[part] for part in ("scenes", "slow")] == [today[part] for part in ("scenes", "slow")], \
         "run: python -m validate.report.required"
-    assert set(kept["findings"]) == {f"{case.lesson}/{case.slug}" for case in all_cases()}
+    assert set(kept["findings"]) == {f"{case.lesson}/{case.slug}" for case in all_cases()}, \
+        "run: python -m validate.report.required LESSON"
 
 
 CHANGES = [("throw.html", "agrees", "departs"), ("index.html", "Throw", "Draw"),

@@ -112,7 +112,7 @@ def test_a_bad_file_gets_one_sentence(capsys, tmp_path, text, words):
 
 
 def test_an_unknown_scene_and_an_unknown_engine_get_one_sentence(capsys, tmp_path):
-    for more, words in ((of("cloth"), "not a Model yet"), (["--engine", "havok"], "choose from: pymunk")):
+    for more, words in ((of("cloth"), "described.py"), (["--engine", "havok"], "choose from: pymunk")):
         code, _, error, _ = run(capsys, tmp_path, EXAMPLE, *more)
         assert code == 2 and words in error and len(error.strip().splitlines()) == 1
 

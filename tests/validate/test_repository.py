@@ -13,7 +13,7 @@ import pytest
 
 from validate.engines.products import PRODUCTS
 from validate.grading.plugin import part_of
-from validate.subject.modules import ROOT, SOLUTIONS, lesson_names
+from validate.subject.modules import ROOT, SOLUTIONS, lesson_names, scene_files
 
 
 def test_the_lock_names_only_the_public_index():
@@ -146,6 +146,25 @@ def test_no_import_runs_upwards_in_the_order_that_contributing_gives():
     for name in known.keys() - {"validate"}:
         for other in set(imports_of(name, known[name], known)) & known.keys() - {"validate"}:
             assert line_of(other) <= line_of(name), f"{name} imports {other}, which stands below it"
+
+
+@reads_sources
+def test_scenes_and_stability_cases_import_no_others_and_no_report_and_a_reference_no_solution():
+    known = modules_of("validate", "solutions")
+    scenes = {f"validate.scenes.{path.parent.name}.{name}" for name, path in scene_files().items()}
+    cases = {name for name in known if name.startswith("validate.stability.")}
+
+    def imported(name):
+        return {other for other in imports_of(name, known[name], known) if other in known} - {name}
+    for name in known:
+        others = imported(name)
+        if name.startswith("validate.reference"):
+            assert not [other for other in others if other.startswith("solutions")], name
+        if name.startswith(("validate.scenes", "validate.stability")):
+            assert not [other for other in others if other.startswith("validate.report")], name
+            assert not others & scenes, f"{name} imports the scene {others & scenes}"
+        if name.startswith("validate.scenes"):
+            assert not others & cases, f"{name} imports the case {others & cases}"
 
 
 @reads_sources

@@ -101,7 +101,7 @@ def main(arguments):
         return 2
     if other_needs:
         needs.FILE.write_text(table, encoding="utf-8")
-        print(f"validate/{needs.FILE.name}")
+        print(needs.FILE.relative_to(ROOT))
     texts = lessons()
     for name in changed:
         if name in texts:
