@@ -187,6 +187,8 @@ def ball_box(x, r, box):
     """Return the Contact of a ball (a) of radius r at x (3,) and a Box (b), even where the ball's centre is inside.
 
     y = Rᵀ (x − x_box);   outside: the ball_contact with the point x_box + R q of radius 0, q_i = y_i limited to ±half_i
+    Take it in the box's axes, between y and q, and turn its n by R.  The difference of y and q is exact.  So n is right
+    even where the centre is outside a face by round-off only.
     inside or on a face (|y_i| ≤ half_i for all i): leave through the nearest face, along the axis i of the least depth
     half_i − |y_i|:
         n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n,   t = 0
@@ -290,6 +292,8 @@ def box_separation(a, b):
     gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
     out.
     *Source:* Gottschalk, Lin and Manocha 1996.
+    *Left out:* beams a million times as long as they are thick, whose edges may be parallel to round-off and yet part
+    them.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.14: box_separation")
@@ -311,6 +315,8 @@ def gjk(a, b):
     its normal is meaningless.
     Raises what check_hulls(a, b) raises; call it first.
     *Source:* Gilbert, Johnson and Keerthi 1988.
+    *Left out:* bodies that are a hundred times as long as they are thick, or more.  Round-off may then hide the nearest
+    point until MAX_GJK_STEPS are over: gaps were too large by up to 1e-5 of the size.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.15: gjk")

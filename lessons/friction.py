@@ -133,8 +133,8 @@ def friction_impulse(v_t, m, j_n, mu):
     *Find* it.  Of all impulses J_t along the surface with |J_t| ≤ μ j_n, take the one after which ½ m |v_t + J_t/m|² is
     least.  Such an impulse stops the body, if the cone allows it.
 
-    If it does, return exactly the impulse that leaves v_t + J_t/m = 0: a velocity of the size of round-off would count
-    as motion.  Where v_t = 0 the impulse is 0.
+    If it does, compute the impulse without a detour.  Then v_t + J_t/m is 0, or the rounding of one product: a larger
+    velocity would count as motion.  Where v_t = 0 the impulse is 0.
     This principle of maximum dissipation has both cases of Coulomb's law in it.
     j_n ≥ 0 [N s] is the normal impulse; take μ j_n from cone_radius.
     *Source:* second lecture deck, “Maximum dissipation principle”, where v̂_t = v_t/|v_t| is meant by v_t; Moreau 1973

@@ -217,7 +217,8 @@ def pseudo_inverse_step(task, theta, target, arm):
 def damped_step(task, theta, target, arm):
     """Return θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
 
-    No step is longer than |e|/(2λ).  Where J Jᵀ has no inverse, λ must be above 0.  Limits are not kept.
+    No step is longer than |e|/(2λ).  Where J Jᵀ has no inverse, λ must be above 0, and above about 1e-6 of the largest
+    σ of J: a smaller λ² is lost beside J Jᵀ.  Limits are not kept.
     Given are row_products(J) for J Jᵀ, solve_symmetric(A, e) for A⁻¹ e, and sum_of_rows(J, y) for Jᵀ y: compiled, they
     are faster than NumPy.
     *Source:* Wampler 1986; Nakamura and Hanafusa 1986.  Levenberg 1944 for least squares.

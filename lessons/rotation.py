@@ -263,7 +263,8 @@ def rolling_step(load, t, x, q, v, omega, dt, ball):
 def average_rolling_step(load, t, x, q, v, omega, dt, ball):
     """Given.  Advance as rolling_step does, but the positions with the mean of old and new velocities; second order.
 
-    It is exact while the ball slides or rolls along a line, because its velocities are then linear in t.
+    It is exact while the ball slides or rolls along a line, because its velocities are then linear in t.  Of q this
+    holds only if ω keeps its direction, so not for a ball that spins about the vertical, too.
     """
     _, _, v_new, omega_new = rolling_step(load, t, x, q, v, omega, dt, ball)
     turn = exponential(0.5 * dt * (omega + omega_new))

@@ -447,7 +447,8 @@ def solve_impacts(body, r, n, e, mu):
     with μ = 2 or 5, nine were left; for μ above 1 it is not known how often an answer is missed.
     Answers need not be unique.
 
-    The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.
+    Without friction the order of the points does not matter at convergence, and a box that lands flat leaves the floor
+    flat.  With friction it may decide how several points share the load, and so turn a sliding box a little.
     Raises what check_impacts(body, r, n, e, mu) raises; call it first.
     *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; second lecture deck, “Multi-contact problems”.
     *Left out:* how an impact travels from point to point; contacts between many bodies.

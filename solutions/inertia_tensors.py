@@ -331,7 +331,7 @@ def check_closed(count, faces):
     there, back = np.zeros(faces.size, dtype=np.int64), np.zeros(faces.size, dtype=np.int64)
     for f in range(faces.shape[0]):
         for k in range(3):
-            i, j = faces[f, k], faces[f, (k + 1) % 3]
+            i, j = np.int64(faces[f, k]), np.int64(faces[f, (k + 1) % 3])    # products of 32 bits might overflow
             if i < 0 or i >= count:
                 raise BadInput("a triangle's corner", i,
                                "give numbers from 0 up to, but not including, the number of corners")

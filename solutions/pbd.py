@@ -192,6 +192,8 @@ def constraint_projection_step(acceleration, t, x, v, dt, network):
     between two fixed ends and pulled sideways.
     *Source:* second lecture deck, “Projection method”; an implicit Euler method, which loses more energy with
     longer steps.
+    *Left out:* a network at 10⁴ times its longest link from the origin, where coordinates are rounded by more than the
+    tolerance.
     """
     ### BEGIN SOLUTION 8.5
     goal = predict(acceleration, t, x, v, dt, network)
@@ -256,8 +258,8 @@ def pbd_sag(g, dt, stiffness, sweeps):
     finds.
     *Find* the sag at which a step ends where it began.
 
-    s: stiffness, above 0 and up to 1; n: sweeps.  The sag is not a property of the link: half the step gives a quarter
-    of it.
+    s: stiffness, up to 1, and above 0 by so much that 1 − s keeps its digits; n: sweeps.  The sag is not a property of
+    the link: half the step gives a quarter of it.
     *Source:* Müller et al. 2006, section 3.3; second lecture deck, “If not enough iterations, constraints appear soft!”
     """
     ### BEGIN SOLUTION 8.8
@@ -281,8 +283,8 @@ def fold_constraint(x, fold):
     ∇_a = −β_c ∇_c − β_d ∇_d,   β_c = (b − c)·e/|e|²,  β_d = (b − d)·e/|e|²          leverage of each wing at a
     ∇_b = −∇_a − ∇_c − ∇_d                                                            no net force from outside
 
-    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area,
-    also where its corners are different but on one line.
+    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") where a computed area is 0.
+    Different corners on one line may leave an area of round-off, which passes.
     *Source:* Müller et al. 2006, section 4.1; Bridson et al. 2003 for an angle that is smooth at a flat fold.
     """
     ### BEGIN SOLUTION 8.9
@@ -466,7 +468,8 @@ def volume_gradient(x, faces):
 
     Row k of ∇V is ∂V/∂x_k; it is 0 for a corner that belongs to no face.  Faces are counter-clockwise seen from
     outside.  Where they are clockwise, the surface is inside-out, and V and ∇V have the opposite sign.
-    *Find* V as a sum over the faces, and its gradient.  The origin may be anywhere, inside or outside.
+    *Find* V as a sum over the faces, and its gradient.  The origin may be anywhere, inside or outside.  Far away it
+    costs digits: at a distance of 10⁴ sizes V is off by about 1e-6.
 
     *Source:* Müller et al. 2006, section 4.4, balloons; the divergence theorem.
     """

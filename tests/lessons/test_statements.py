@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from solutions.checks import BadInput
 from validate.notebook.live.hand import HERTZ, ZETA
 from validate.reference.integrators import Planet, kepler_position, perihelion
 from validate.reference.rotation import HeavyTop
@@ -162,6 +163,29 @@ def test_one_step_towards_the_polar_decomposition_keeps_the_columns_nearly_unit_
         R = R + 0.1 * rotation.skew(omega) @ R
         R = 0.5 * R @ (3.0 * np.eye(3) - R.T @ R)
     assert 1e-4 < np.abs(R.T @ R - np.eye(3)).max() < 1e-3
+
+
+# ---------------------------------------------------------------------------------------------- 4 and 6: inputs
+
+def test_a_mesh_with_narrow_whole_numbers_is_closed_or_refused_as_with_wide_ones():
+    """Edges are told apart by products of two numbers, which 8 or 32 bits do not hold."""
+    tensors = bind("inertia_tensors")
+    for kind, count, faces in ((np.uint8, 128, [[89, 91, 127], [35, 55, 17]]),
+                               (np.int32, 50_000, [[46345, 46346, 46347]])):
+        with pytest.raises(BadInput, match="open edge"):
+            tensors.check_closed(count, np.array(faces, kind))
+
+
+def test_a_ball_on_the_face_of_a_turned_box_has_the_normal_of_that_face():
+    """Also where round-off puts its centre outside."""
+    collisions, rng = bind("collisions"), np.random.default_rng(3)
+    for _ in range(500):
+        R, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        box = collisions.Box(rng.normal(size=3), R, rng.uniform(0.1, 1.0, 3))
+        k, side, y = rng.integers(3), rng.choice((-1.0, 1.0)), rng.uniform(-0.8, 0.8, 3) * box.half
+        y[k] = side * box.half[k]
+        n = collisions.ball_box(box.x + R @ y, rng.choice((0.0, 0.1)), box).n
+        assert side * n @ R[:, k] > 1.0 - 1e-12
 
 
 # ---------------------------------------------------------------------------------------------- 7 impulses

@@ -419,6 +419,7 @@ edit("6.8", "treats a minute distance outside as inside", "depth[i] < 0.0", "dep
 edit("6.8", "takes +1 for the sign of coordinates above −1 pm", "y[i] >= 0.0", "y[i] >= -1e-12")
 edit("6.8", "takes the full edges for the half edges", "depth = box.half", "depth = 0.5 * box.half")
 edit("6.8", "returns q in the box's axes", "box.x + box.R @ q", "box.x + q")
+edit("6.8", "leaves the normal outside in the box's axes", "n = box.R @ own.n", "n = own.n")
 edit("6.8", "forgets the box's centre in the nearest point", "box.x + box.R @ q", "box.R @ q")
 edit("6.8", "drops the absolute value of the coordinates in the depth", "box.half - np.abs(y)", "box.half - y")
 edit("6.8", "forgets r in the gap inside", "-depth[i] - r", "-depth[i]")
@@ -428,7 +429,8 @@ edit("6.8", "exchanges the two points inside",
      "Contact(x - r * n, x + depth[i] * n,", "Contact(x + depth[i] * n, x - r * n,")
 edit("6.8", "puts p_a on the other side of the ball", "x - r * n, x", "x + r * n, x")
 edit("6.8", "puts p_b on the other side", "x + depth[i] * n", "x - depth[i] * n")
-edit("6.8", "gives the ball's contact outside a radius of zero", "ball_contact(x, r, box", "ball_contact(x, 0.0, box")
+edit("6.8", "gives the ball's contact outside a radius of zero",
+     "ball_contact(y, r, q, 0.0)", "ball_contact(y, 0.0, q, 0.0)")
 edit("6.8", "treats the ball as inside where a single coordinate is", "if depth[i] < 0.0", "if np.max(depth) < 0.0")
 edit("6.8", "limits the coordinates from above only",
      "np.minimum(box.half, np.maximum(-box.half, y))", "np.minimum(box.half, y)")
@@ -444,7 +446,7 @@ edit("6.8", "treats a centre as inside that is outside by less than a millionth 
 edit("6.8", "takes a centre for inside where the components of the way to the nearest point add up to 0",
      "if depth[i] < 0.0", "if depth[i] < 0.0 and np.sum(y - np.minimum(box.half, np.maximum(-box.half, y)))")
 edit("6.8", "returns NEVER for the time of a contact inside", "-depth[i] - r, 0.0", "-depth[i] - r, NEVER")
-edit("6.8", "returns NEVER for the time of a contact outside", "q, 0.0)", "q, 0.0)._replace(t=NEVER)")
+edit("6.8", "returns NEVER for the time of a contact outside", "own.gap, 0.0)", "own.gap, NEVER)")
 
 
 @right("6.8", "with lists in the contact")

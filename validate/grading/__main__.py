@@ -162,7 +162,7 @@ def collected(intake, settings, jobs, executor, out):
         else:
             todo.append(submission)
     coming = on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)
-    if todo:                                                           # a wrong address was named before this takes long
+    if todo:                                                           # after a wrong address has been named
         with console.status("worked answers, with the secret inputs"):
             local.check_seed(settings)
     columns = TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()

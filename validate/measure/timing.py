@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..check import jsonable
+from ..check import Verdict, jsonable
 from . import traces
 from .accuracy import labels_that_agree, relative
 from .calls import costs_of_calls
@@ -74,7 +74,7 @@ def times(name, plan, result):
         "time_to_error": times_to_error(rows),
         "races": races(rows, result["cases"][case], [product.name for product in plan.live], plan.quick, calls)
                  if items else [],
-        "ablations": ablations(selection, p, labels_that_agree(result)),
+        "ablations": ablations(selection, p, result),
     })
 
 
@@ -248,13 +248,16 @@ def clock(item, inner, steps=None):
 
 # ---------------------------------------------------------------------------------------------- ablations
 
-def ablations(selection, p, agreeing):
+def ablations(selection, p, result):
     """Return [{what, cost: ratio of times with it included, same: the motion is unchanged, note}] for omitted parts."""
+    agreeing = labels_that_agree(result)
     scene = selection.scene
     runner = min((r for r in scene.our_runners if r.label in agreeing), key=selection.rank, default=None)
     if runner is None:
-        return [unpriced(what, extra if isinstance(extra, str) else "no method of ours agrees with the truth here")
-                for what, extra in scene.ablations.items()]
+        verdicts = {Verdict(c["verdict"]) for c in next(iter(result["cases"].values()))["ours"]}
+        none = ("no method of this scene is written yet" if verdicts == {Verdict.NOT_ATTEMPTED} else
+                "no method of ours agrees with the truth here")
+        return [unpriced(what, extra if isinstance(extra, str) else none) for what, extra in scene.ablations.items()]
     speed = selection.speeds(runner)[-1]
     bound, step = selection.bound(runner, speed)
     steps = scene.steps[min(2, len(scene.steps) - 1)] if speed == "compiled" else scene.steps[0]

@@ -294,7 +294,8 @@ def conform(path, names, others, quick, out, console):
     reader, others = load_engine(path), others if quick else (OURS, *others)     # our loop has to be compiled
     for name in names:
         if name not in DESCRIBED:
-            raise BadInput(f"scene {name!r}", "not listed in validate/worlds/described.py", f"choose from: {', '.join(DESCRIBED)}")
+            raise BadInput(f"scene {name!r}", "not listed in validate/worlds/described.py",
+                           f"choose from: {', '.join(DESCRIBED)}")
     rows, page = [], writable(Path(out)) / f"engine-{reader.name}.html"
     with Apart(path) as engine:
         for name in names or DESCRIBED:
