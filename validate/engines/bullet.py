@@ -14,6 +14,7 @@ _idle: list = []             # connected clients that are free for another run
 ITERATIONS = 50              # of the contact solver, by default
 IMPACT_ITERATIONS = 50
 CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]
+WARMER = 0.85                # the same in Bullet itself, which pybullet overrides [-]
 WARM = 0.1                   # share of the last impulses with which the contact solver begins, by default [-]
 APART = 100.0                # of bodies in a step that is done beforehand, more than the size of any of them [m]
 UPRIGHT = np.eye(3)          # rotation of a body that is not rotated

@@ -12,17 +12,20 @@ from ..check import Allowed, JointsAllowed
 from ..reference.contact_laws import ITERATED, Motion, Physics, Step, Touching
 from ..reference.joint_laws import LOST, Reading
 from ..reference.orientation import quaternion_matrix
-from .bullet import CONTACT_ERP, WARM
+from .bullet import CONTACT_ERP
 
 SLOP = 1e-5                  # of pybullet, by default [m]
 FIRST, LATER = 2, 8          # number of watched steps at the beginning of a run, and afterwards
 MOTION = 60, 12              # the same of a run in which bodies meet
 
 
-def ends_early(iterations):
-    """Return the rules of a solver that ends each step after so many iterations, with any residual left."""
+def ends_early(iterations, *more):
+    """Return the rules of a solver that ends each step after so many iterations, with any residual left.
+
+    more: quantities that this concerns as well
+    """
     why = f"its {iterations} iterations per step end before the impulses are found"
-    return tuple((name, why) for name in ("bounce", "gain", "short", *ITERATED))
+    return tuple((name, why) for name in ("bounce", "gain", "short", *ITERATED, *more))
 
 
 def sweeps_rules(sweeps):
@@ -47,16 +50,15 @@ def pymunk_rules(iterations, creeps="", rests=True):
 def bullet_rules(iterations, creeps=False, rests=True, slop=SLOP):
     """Return what is Allowed to pybullet.
 
-    creeps: its solver begins with a tenth of the last impulses, as by default, and does not finish a tower at rest
+    creeps: its iterations do not finish bodies at rest either
     slop: overlap that its contacts leave [m]
 
     *Source:* Bullet's btSequentialImpulseConstraintSolver.cpp: an iteration visits the friction of a contact only if
     its normal impulse is above zero.
     """
     why = "it leaves the friction of a contact as it was when its normal impulse falls to zero"
-    rules = ("loose", why), *ends_early(iterations)
-    slow = f"with warmStartingFactor {WARM} its sweeps do not accumulate over the steps, so that bodies at rest creep"
-    return Allowed(iterations, slop, CONTACT_ERP, (*rules, ("rest", slow)) if creeps else rules, rests)
+    rules = ("loose", why), *ends_early(iterations, *["rest"] * creeps)
+    return Allowed(iterations, slop, CONTACT_ERP, rules, rests)
 
 
 def mujoco_rules(iterations):

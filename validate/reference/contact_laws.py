@@ -245,11 +245,22 @@ def laws_of_contacts(step, allowed):
     beyond, pressed = np.maximum(0.0, size - limit) / most, J_n > PRESSED * most
     short = short_of_limit(t, u, J_t, limit, inverse_masses_at(inverse, step.centres, contacts)[1])
     largest = lambda rows: float(np.max(rows, initial=0.0))
-    return {"pull": largest(-J_n) / most, "cone": largest(beyond[pressed]), "loose": largest(beyond[~pressed]),
-            "short": largest(short[pressed]) / most,
+    return {"pull": largest(-J_n - tilted(t)) / most, "cone": largest(beyond[pressed]),
+            "loose": largest(beyond[~pressed]), "short": largest(short[pressed]) / most,
             "bounce": max(0.0, float(np.sum(J_n * parting))) / (float(np.sum(np.abs(J_n) * (fall + closing))) or 1.0),
             "gain": max(0.0, float(np.sum(t.J * u))) / (float(np.sum(np.abs(J_n))) * fall or 1.0),
             "normal": largest(normal) / fall, "slip": largest(slip[pressed]) / fall}
+
+
+def tilted(t):
+    """Return how much (c,) [N s] of the friction is along the normal.
+
+    An engine that takes an axis of friction from a slow motion does not find it quite across the normal.
+    """
+    if t.axes is None:
+        return 0.0
+    along, J = (np.abs(np.einsum("cad,cd->ca", t.axes, rows)) for rows in (t.n, t.J))
+    return np.sum(along * J, axis=1)
 
 
 def short_of_limit(t, u, J_t, limit, k_t):

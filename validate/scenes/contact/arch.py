@@ -14,7 +14,7 @@ from solutions.checks import BadInput
 from solutions.contact import make_contacts
 from validate.check import states
 from validate.engines import watched
-from validate.engines.bullet import UPRIGHT, Rigid
+from validate.engines.bullet import UPRIGHT, WARM, WARMER, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
 from validate.reference.contact import arch, bisected, hinged_thickness, least_friction, least_thickness
@@ -139,13 +139,17 @@ def pymunk_stands(p, number, kept, dt, iterations, slop):
     return np.max(np.abs(np.array([body.position for body in bodies]) - stones.x)) < MOVED
 
 
-def pybullet_stands(p, number, kept, dt, iterations, residual):
-    """Return whether all stones are within MOVED of their positions after WATCHED; kept: gets its watched steps."""
+def pybullet_stands(p, number, kept, dt, iterations, residual, warm=WARM):
+    """Return whether all stones are within MOVED of their positions after WATCHED; kept: gets its watched steps.
+
+    The ground has maximal coordinates, as the stones have: else its contacts would have a cone of friction, and those
+    between stones a pyramid.
+    """
     (t, mu), bullet, bodies = given(p, number), Rigid(dt, (0.0, 0.0, -G), iterations), []
     pb = bullet.pb
     pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
     slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
+    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=1)
     pb.changeDynamics(ground, -1, lateralFriction=np.sqrt(mu), restitution=0)
     stones = arch(p.n, t)
     for k in range(p.n):
@@ -155,6 +159,7 @@ def pybullet_stands(p, number, kept, dt, iterations, residual):
                                   (stones.x[k, 0], 0.0, stones.x[k, 1]), (0.0,) * 3, True, R=UPRIGHT,
                                   shape=pb.createCollisionShape(pb.GEOM_MESH, vertices=hull), mu=np.sqrt(mu)))
     bullet.begin()
+    pb.setPhysicsEngineParameter(warmStartingFactor=warm)
     watched.run(watched.Bullet(pb, dt, bullet.gravity), round(WATCHED / dt), kept)
     x = np.array([bullet.position(body) for body in bodies])[:, [0, 2]]
     bullet.close()
@@ -186,12 +191,14 @@ RUNNERS = (
            laws=watched.pymunk_rules(100), **NUDGED),
     engine(PYMUNK, "default", partial(make, holds=partial(pymunk_stands, dt=1.0 / 240.0, iterations=10, slop=0.1)),
            "polygons; 10 iterations, collision_slop 0.1; 1 s of 1/240 s", laws=watched.pymunk_rules(10), **NUDGED),
-    engine(PYBULLET, "", partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=200, residual=0)),
-           "hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations; 1 s of 1/240 s",
+    engine(PYBULLET, "",
+           partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=200, residual=0, warm=WARMER)),
+           f"hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations, warmStartingFactor {WARMER}; "
+           "1 s of 1/240 s",
            laws=watched.bullet_rules(200, creeps=True), **NUDGED),
     engine(PYBULLET, "default",
            partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
-           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s",
+           f"hulls, maximal coordinates; 50 iterations, warmStartingFactor {WARM}; 1 s of 1/240 s",
            laws=watched.bullet_rules(50, creeps=True), **NUDGED),
 )
 

@@ -296,14 +296,14 @@ def softly(p, t):
 def too_few(sweeps):
     """Return the reason why this number of sweeps per step does not carry the heavy box, and no error reports it."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
-    return Departure(f"a mass ratio of 1,000 already takes 6,912 sweeps, which are {steps:.0f} of its steps. Before they "
-                     "are over, the heavy box squeezes the light one out. No error warns of it",
+    return Departure(f"a mass ratio of 1,000 already takes 6,912 sweeps, which are {steps:.0f} of its steps. Before "
+                     "they are over, the heavy box squeezes the light one out. No error warns of it",
                      lambda p, t: np.zeros(1), Whose.DEFAULT)
 
 
-NO_REFUSAL = Departure("a mass ratio of a million would take 6.9 million sweeps. It ends each step after its iterations, "
-                       "and by default reports no residual", lambda p, t: np.array([1.0 * (p.kind == "stands")]),
-                       Whose.DEFAULT)
+NO_REFUSAL = Departure("a mass ratio of a million would take 6.9 million sweeps. It ends each step after its "
+                       "iterations, and by default reports no residual",
+                       lambda p, t: np.array([1.0 * (p.kind == "stands")]), Whose.DEFAULT)
 
 
 def up_to(**most):

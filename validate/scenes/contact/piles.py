@@ -16,6 +16,7 @@ from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
 from validate.check import states
 from validate.engines import watched
+from validate.engines.bullet import WARM, WARMER
 from validate.engines.contact import DT, KINDS, MU, G, bullet_pile, fallen, inverse_tensors, pymunk_pile
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
@@ -211,11 +212,12 @@ RUNNERS = (
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=flat,
            laws=watched.pymunk_rules(10, STILL_CREEPS)),
     engine(PYBULLET, "", partial(make, rival=partial(bullet_pile, iterations=50), wider=PYRAMID),
-           "maximal coordinates; solverResidualThreshold 0, 50 iterations; steps of 1/240 s",
+           f"maximal coordinates; solverResidualThreshold 0, 50 iterations, warmStartingFactor {WARM}, because with "
+           f"{WARMER} twelve spheres roll on; steps of 1/240 s",
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
            laws=watched.bullet_rules(50, creeps=True)),
     engine(PYBULLET, "default", partial(make, rival=partial(bullet_pile, iterations=50, residual=1e-7), wider=PYRAMID),
-           "maximal coordinates; 50 iterations; steps of 1/240 s",
+           f"maximal coordinates; 50 iterations, warmStartingFactor {WARM}; steps of 1/240 s",
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
            laws=watched.bullet_rules(50, creeps=True)),
 )

@@ -14,7 +14,7 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.contact import make_contacts, make_pile, make_pile_2d
 from validate.check import states
-from validate.engines.bullet import CONTACT_ERP, WARM
+from validate.engines.bullet import CONTACT_ERP, WARM, WARMER
 from validate.engines.mujoco import SOFT
 from validate.methods import DIRECT, PILE, PILE_IN_SPACE, SWEEPS
 from validate.reference.contact import Settling, Towers, rounded_force, rounded_overlap, sway_of_tower, unrest_in_pymunk
@@ -28,7 +28,6 @@ T = 1.0
 MU = 0.5                     # nothing slides
 SUBSTEPS, HERTZ, ZETA = 8, 240.0, 10.0       # of the pile: substeps per step, frequency [1/s], damping ratio [-]
 SETTLING = 1.5               # duration of the pile's run [s]
-WARMER = 0.85                # share of the last impulses with which pybullet's solver begins [-]
 ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
 FINE, DEFAULT = {"iterations": 100, "slop": 1e-4}, {"iterations": 10, "slop": 0.1}       # of pymunk; slop [m]
 SETTLED = Settling(DT, SUBSTEPS, HERTZ, ZETA, MU, SETTLING)

@@ -272,7 +272,7 @@ def watch(bullet, p, dt):
 
 
 in_pymunk = partial(built, PYMUNK, model, read, overlap=0.0)
-in_pybullet = partial(built, PYBULLET, model, read, watch, iterations=ITERATIONS, overlap=0.0, ground=False)
+in_pybullet = partial(built, PYBULLET, model, read, watch, iterations=ITERATIONS, overlap=0.0)
 BY_CHANCE = "the phase of an impact in its step is random, and each impact passes this error on"
 LONG_LIVED = "its contact points persist over several steps, so it does not converge to this motion"
 RUNNERS = (
