@@ -77,18 +77,6 @@ def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
     return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()))
 
 
-# ---------------------------------------------------------------------------------------------- contacts
-
-def sag(load, m, below):
-    """Return the depth [m] of each of the four contacts under a cube that carry F/4: F (1 − d) τ² (1/m + 1/m')/4.
-
-    m: mass of the cube [kg];    below: mass of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
-    k = 1/(d τ²) and the regularisation R = (1 − d)/d (1/m + 1/m').
-    *Source:* the documentation of MuJoCo, chapter Computation.
-    """
-    return 0.25 * load * (1.0 - IMPEDANCE) * TIME_CONSTANT**2 * (1.0 / m + 1.0 / below)
-
-
 # ---------------------------------------------------------------------------------------------- switches
 
 def disabled(model, bit):

@@ -163,7 +163,8 @@ RUNNERS = (
     engine(MUJOCO, "", built(MUJOCO, on_a_point, read_distance), f"{TILTED}a ball that cannot turn; {SOFT}",
            order=1, limit=limits, predicted=hops,
            departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
-                               "slope that can hold it, a block creeps", held, Whose.LAW)),
+                               "slope that can hold it, a block creeps, more slowly with an impratio above the default",
+                               held, Whose.DEFAULT)),
 )
 
 
