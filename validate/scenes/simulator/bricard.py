@@ -86,7 +86,8 @@ DEPENDENT = "its sweeps over rows that depend on each other end before they agre
 HINGES = watched_joints(model, fastest)
 RUNNERS = (
     ours(JOINTS_IN_SPACE, limit=limits, predicted=predict_bricard(T, truth, floor), in_quick=False),
-    engine(PYBULLET, "", built(PYBULLET, model, read, HINGES), "two points for each hinge, maximal coordinates, erp 1",
+    engine(PYBULLET, "", built(PYBULLET, model, read, HINGES, erp=0.2, iterations=500),
+           "two points for each hinge, maximal coordinates, erp 0.2, 500 iterations",
            order=1, limit=no_limit, predicted=DEPENDENT, laws=watched.sweeps_over_joints(DEPENDENT), most_in_quick=50),
     engine(MUJOCO, "", built(MUJOCO, model, read, HINGES), "hinges as coordinates, one of them closed by `connect`",
            order=1, limit=no_limit, predicted="the hinge that closes the loop is a spring with a damper",
