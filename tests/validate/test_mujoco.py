@@ -122,7 +122,7 @@ def test_its_block_hops_slides_and_creeps_as_its_contact_law_says(case, verdict)
 
 
 @needs_mujoco
-def test_another_impedance_would_be_seen_on_the_incline_and_in_the_sag():
+def test_another_impedance_would_be_seen_on_the_incline():
     scene = modules.bind_scene("incline")
     p, steps = scene.cases["thrown up, sticks, μ = 0.6"], 1000
     engine = next(r.who for r in scene.engine_runners if r.who.product == MUJOCO)
@@ -131,5 +131,3 @@ def test_another_impedance_would_be_seen_on_the_incline_and_in_the_sag():
         law = incline.soft(p)._replace(d=IMPEDANCE * factor)
         middle, half = law.hopping(p.v0, scene.duration / steps, steps)
         assert bool(abs(way - middle) <= 4.0 * half + CLOSE * abs(way)) is near
-    found = curve_of("mass_ratio", "overlap, 10 : 1")
-    assert found["verdict"] is Verdict.FOLLOWS_OWN_LAW and found["departure"] > 1.0

@@ -177,7 +177,7 @@ def bullet_ahead(p, dt):
 
 
 def bullet_limit(p, dt):
-    """The same as a limit; for longer steps there is none."""
+    """The same as a limit.  There is none for longer steps: those that fit were measured."""
     found = bullet_ahead(p, dt)
     return np.inf if found is None else np.linalg.norm(found.error) / np.linalg.norm(truth(p, T)) + found.band
 
