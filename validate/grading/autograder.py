@@ -83,6 +83,8 @@ def gradescope(
 ):
     if not seed.strip():
         raise BadInput("--seed", "empty", "give a secret")
+    if out.is_dir():                                   # the check of the worked answers takes long: say this before
+        raise BadInput(f"--out {str(out)!r}", "not writable (it is a folder)", "name another file")
     lessons, worth = choice.chosen(lesson or [], exercises)
     local.check_seed(marking.settings(lessons, seed, worth))
     course = json.dumps({"lessons": lessons, "exercises": worth, "seed": seed, "late": late}, indent=1)
