@@ -1523,7 +1523,7 @@ def doubled_hinge(lesson, rng):
     return tuple(two), tuple(one)
 
 
-@random_law("A hinge on the world and a rod to another body stay as they are, whatever turns.",
+@random_law("A hinge on the world and a rod to another body stay as they are while both bodies turn.",
             "hinge and rod: largest error of the place and the length [m]", EXACT)
 def hinge_and_rod(lesson, rng):
     """Two bodies that turn; the first hangs on a point off its centre, and a rod leads from a point of it to the other.
