@@ -316,7 +316,7 @@ def gjk(a, b):
     Raises what check_hulls(a, b) raises; call it first.
     *Source:* Gilbert, Johnson and Keerthi 1988.
     *Left out:* bodies that are a hundred times as long as they are thick, or more.  Round-off may then hide the nearest
-    point until MAX_GJK_STEPS are over: gaps were too large by up to 1e-5 of the size.
+    point until MAX_GJK_STEPS are over: gaps that are too large by up to 5e-5 of the size were found.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.15: gjk")

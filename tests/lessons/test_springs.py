@@ -578,6 +578,7 @@ def test_a_large_grid_has_every_thread_diagonal_and_bend_once(lesson, draw):
         close("number of nodes outside the grid", np.sum((pairs < 0) | (pairs >= rows * cols)), 0.0, 0.0, given)
 
 
+@pytest.mark.counts_calls                                            # compiled code takes no empty tuple
 @exercise("2.10", points=0.25, hint="offsets may have either sign and any length, or be the same twice, or none at all")
 def test_a_grid_has_the_pairs_of_any_offsets(lesson, draw):
     drawn = [(draw.whole(-3, 3), draw.whole(-3, 3)) for _ in range(4)]
