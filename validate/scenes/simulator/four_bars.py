@@ -5,7 +5,6 @@ shortest impulses of all that move the bodies alike, and stay on the motion.  In
 at that moment decide where it goes on.
 """
 
-from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -121,21 +120,16 @@ def read(state, p):
 BRANCHES = "where the cranks lie flat, the gaps of its hinges decide on which of two motions it goes on"
 FLAT = "where the cranks lie flat, it closes gaps across their line by impulses along it, which have no limit"
 HINGES = watched_joints(model, fastest)
-
-
-def swept(product, p, dt):
-    """Make the run of an engine with so many iterations that its sweeps reach all hinges."""
-    return built(product, model, read, HINGES, iterations=max(100, 10 * len(model(p).joints)))(p, dt)
-
-
+SWEEPS = 1210                # of the engines: ten for each of the 121 hinges of forty linkages [-]
 RUNNERS = (
     ours(JOINTS, limit=limits, predicted=BY_HINGES, slow_cases=("40",), most_in_quick=100),
     ours(COMPOSED_JOINTS, limit=limits, predicted=BY_FIVE, in_quick=False),
     ours(IN_ANGLES, limit=limits, predicted=MOTION.predict(IN_ANGLES.table)),
-    engine(PYMUNK, "", partial(swept, PYMUNK), "PivotJoints, error_bias 0, 10 iterations for each hinge, at least 100",
+    engine(PYMUNK, "", built(PYMUNK, model, read, HINGES, iterations=SWEEPS),
+           f"PivotJoints, error_bias 0, {SWEEPS:,} iterations: ten for each hinge of forty linkages",
            order=1, limit=no_limit, predicted=BRANCHES, laws=watched.sweeps_over_joints(FLAT), most_in_quick=40),
-    engine(PYBULLET, "", partial(swept, PYBULLET),
-           "JOINT_POINT2POINT, maximal coordinates, erp 1, 10 iterations for each hinge, at least 100",
+    engine(PYBULLET, "", built(PYBULLET, model, read, HINGES, iterations=SWEEPS),
+           f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS:,} iterations",
            order=1, limit=no_limit, predicted=BRANCHES, laws=watched.sweeps_over_joints(), most_in_quick=40,
            most_steps=400),
     engine(MUJOCO, "", built(MUJOCO, model, read, HINGES), "hinges as coordinates, `connect` for loops; Runge–Kutta 4",
