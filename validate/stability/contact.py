@@ -741,11 +741,15 @@ def highest_hertz_in_space(lesson, check):
     tower = lambda n, wide: rest_in_space(lesson, n, wide, 0.1)[2]
     few = (3, 4, 5, 6, 8, 10, 12)
     many = ("½ m", 0.5), ("1 m: cubes", 1.0), ("4 m", 4.0)
+
+    def edges(name, kind, tower_of):
+        """Return a series of those towers of `few` boxes that have an edge at all."""
+        found = {n: swaying_from(tower_of(n)) for n in few}
+        return series(name, *zip(*((n, edge) for n, edge in found.items() if np.isfinite(edge))), kind)
     return Picture("From which hertz on a tower sways more and more, by theory", "boxes in the tower",
                    "hertz times a substep", [
-        *(series(f"in space, width {name}", few, [swaying_from(tower(n, wide)) for n in few], DOTS)
-          for name, wide in many),
-        series("in the plane, width 1 m", few, [swaying_from(tower_of_boxes(n)) for n in few], LINE),
+        *(edges(f"in space, width {name}", DOTS, lambda n, wide=wide: tower(n, wide)) for name, wide in many),
+        edges("in the plane, width 1 m", LINE, tower_of_boxes),
         series(f"{HIGHEST}, which a pile accepts", (few[0], few[-1]), (HIGHEST, HIGHEST), LINE)],
         "Above its point a tower never comes to rest.  In space the points lie lower than in the plane.  Towers of "
         f"cubes need less than {HIGHEST}, which a pile accepts: discs, balls and low towers come to rest there.")
