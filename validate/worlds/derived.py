@@ -306,8 +306,8 @@ def cuts_moments(model, most):
 def beyond_single(model):
     """Return why an engine of single precision refuses a mass or a moment of inertia that is too small or too large.
 
-    Measured in free fall: below 1e-38 a body stands still or its place is no number.  Above 1.8e19, whose square is too
-    large, Rapier's bodies do not fall.  "" where there is none.
+    Measured in free fall: at 1e-40 a body stands still or its place is no number.  At 1e20, whose square is too large,
+    Rapier's bodies do not fall.  At 3e-39 and 1e19 they do.  "" where there is none.
     """
     low, high = SINGLE
     found = [x for body in model.bodies for x in (body.m, *np.atleast_1d(body.inertia)) if x < low or high < x < np.inf]

@@ -213,7 +213,7 @@ RUNNERS = (
            laws=watched.pymunk_rules(10, STILL_CREEPS)),
     engine(PYBULLET, "", partial(make, rival=partial(bullet_pile, iterations=50), wider=PYRAMID),
            f"maximal coordinates; solverResidualThreshold 0, 50 iterations, warmStartingFactor {WARM}, because with "
-           f"{WARMER} twelve spheres roll on; steps of 1/240 s",
+           f"{WARMER} twelve spheres do not come to rest; steps of 1/240 s",
            order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space,
            laws=watched.bullet_rules(50, creeps=True)),
     engine(PYBULLET, "default", partial(make, rival=partial(bullet_pile, iterations=50, residual=1e-7), wider=PYRAMID),

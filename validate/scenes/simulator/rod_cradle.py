@@ -126,15 +126,16 @@ def limit(p, dt):
     step in which a ball crosses half of a gap merges two impacts; then there is no bound.
 
     Touching balls conserve the sums; a late impact of a ball inside the next one does not change them.  What is left is
-    half a step of the swing, and the cubes in the sines.  Energy keeps Σ θ² at angle², so Σ |θ|³ is at most angle³: the
-    cubes change the sum of the rates by angle³/6 · w² T at most, and that of the angles by T times that.
+    half a step of the swing, and the cubes in the sines.  Energy keeps Σ θ² below lifted · angle², so Σ |θ|³ is at most
+    c = (lifted · angle²)^1.5.  The cubes change the sum of the rates by c/6 · w² T at most, and that of the angles by T
+    times as much.
     """
     w2, size = p.g / p.L, np.linalg.norm(truth(p, T))
     fastest = 2.0 * np.sqrt(w2) * np.sin(0.5 * p.angle)
     rounded = 1e-11 + T / dt * ROUND_OFF
     if p.gap == 0.0:
         late = dt * np.array([fastest, w2 * np.sin(p.angle), 2.0 * w2 * fastest * p.angle])
-        cubes = p.angle**3 / 6.0 * w2 * T * np.array([T, 1.0, 0.0])
+        cubes = p.lifted**1.5 * p.angle**3 / 6.0 * w2 * T * np.array([T, 1.0, 0.0])
         return (np.linalg.norm(late) + np.linalg.norm(cubes)) / size + rounded
     if 2.0 * fastest * p.L * dt > p.gap:
         return np.inf

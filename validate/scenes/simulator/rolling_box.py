@@ -177,7 +177,9 @@ def bullet_ahead(p, dt):
 
 
 def bullet_limit(p, dt):
-    """The same as a limit.  There is none for longer steps: those that fit were measured."""
+    """pybullet's error is predicted for steps in which nothing moves by more than 3 cm.  This way was measured.  Longer
+    steps have no limit.
+    """
     found = bullet_ahead(p, dt)
     return np.inf if found is None else np.linalg.norm(found.error) / np.linalg.norm(truth(p, T)) + found.band
 

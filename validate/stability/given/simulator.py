@@ -1512,15 +1512,20 @@ def deep_balls_part(lesson, rng):
     return ((np.linalg.norm(end.x[1] - end.x[0]), end.v), (0.2 - slop - 0.8**3 * (deep - slop), np.zeros((2, d))))
 
 
-@random_law("Hinges that hold the same point twice hold it as one does.",
-            "hinges that depend on each other: largest error of places and velocities [m, rad, m/s, rad/s]", EXACT)
+@random_law("Two hinges at the same point hold it, and keep both momenta.",
+            "hinges that depend on each other: largest error of the place and the momenta [m, kg m/s, kg m²/s]", EXACT)
 def doubled_hinge(lesson, rng):
-    """Two bodies and two hinges at one place: the equations depend on each other, and the loop finds them closed."""
-    place = tuple(rng.normal(size=2))
-    bodies = [model.Body(tuple(rng.normal(size=2)), float(m), inertia=float(I), omega=float(omega))
-              for m, I, omega in zip(rng.uniform(0.5, 2.0, 2), rng.uniform(0.2, 0.5, 2), rng.normal(size=2))]
-    one, two = (ends_of(lesson, bodies, (0.3, -1.0), 0.01, 5, [model.Hinge(0, 1, place)] * n) for n in (1, 2))
-    return tuple(two), tuple(one)
+    """Two bodies and two hinges at one place, whose equations depend on each other: it stays one place, and both
+    momenta stay.
+    """
+    place, x = rng.normal(size=2), rng.normal(size=(2, 2))
+    bodies = [model.Body(tuple(centre), float(m), inertia=float(I), omega=float(omega)) for centre, m, I, omega in
+              zip(x, rng.uniform(0.5, 2.0, 2), rng.uniform(0.2, 0.5, 2), 0.3 * rng.normal(size=2))]
+    loop = lesson.compose(model.make_model(bodies, (0.0, 0.0), [model.Hinge(0, 1, tuple(place))] * 2))
+    after = lesson.run_parts(loop, 0.0, loop.state, 0.01, 5)
+    end = lesson.state_of(loop, after)
+    ends = [end.x[k] + rotations(end.q)[k][:2, :2] @ (place - x[k]) for k in (0, 1)]
+    return ((ends[0], *momenta_of(*after[:4], loop.p)), (ends[1], *momenta_of(*loop.state[:4], loop.p)))
 
 
 @random_law("A hinge on the world and a rod to another body stay as they are while both bodies turn.",
