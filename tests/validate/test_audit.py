@@ -117,6 +117,8 @@ FAULTS = {
     "a part of a ratio": lambda d: race(d).update(order=7.0),
     "what calls cost in a race": lambda d: race(d).update(calls=7.0),
     "what a call costs": lambda d: d["scenes"][0]["times"]["calls"][0].update(seconds=1.0),
+    "what comes before a race": lambda d: d["scenes"][0]["times"].update(
+        preparations=[{"label": "no method", "seconds": 1.0, "with": [2.0], "without": []}]),
     "a ratio that is left out": lambda d: race(d).update(ratio=None),
     "a loss that is called undecided": lambda d: race(d).update(ratio=None, outcome="undecided"),
     "a compilation of another method": lambda d: d["scenes"][0]["times"].update(

@@ -1,12 +1,15 @@
 """Races: the time to an error is read between runs, every outcome is named, and a ratio is the product of its parts."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from validate.engines.products import PYMUNK
 from validate.measure import calls, races, timing
+from validate.measure.accuracy import Outcome as Run
+from validate.measure.accuracy import swept
 from validate.measure.compilation import compilation
 from validate.measure.races import BEST, HEADLINE, LEVELS, Outcome
 from validate.measure.selection import Plan, select
@@ -295,3 +298,22 @@ def test_methods_are_compared_at_one_speed():
     fast = (RK4[0], [*RK4[1], *line("RK4", "plain", 4, 1e-4)[1]])
     assert choice.speed_of(scene("a", "integrators", both, fast)) == "plain"
     assert set(choice.costs(scene("a", "integrators", both, fast), 0.01)) == {"Euler", "RK4"}
+
+
+def coarse_sweep(errors, quick=False, at_once=1):
+    """Return the numbers of steps of a sweep whose runs have the errors {steps: error}."""
+    selection = select("throw", Plan(quick=quick, speeds=("plain",), live=()))
+    p, truth = selection.first[1], np.ones(1)
+    runner = SimpleNamespace(is_engine=at_once > 1, who=SimpleNamespace(substeps=at_once, most_steps=None),
+                             most_in_quick=None, finer_in_full=())
+    selection = selection._replace(steps=(20, 40))
+    return [n for n, _ in swept(selection, runner, p, truth, lambda n: Run(truth + errors(n)))]
+
+
+def test_a_sweep_begins_with_a_run_that_misses_the_error_of_the_race():
+    """An error of 0.08/n is above 1 % at five steps; that of 1/n already at twenty; an exact method ends with two."""
+    assert coarse_sweep(lambda n: 0.08 / n) == [5, 10, 20, 40]
+    assert coarse_sweep(lambda n: 1.0 / n) == [20, 40]
+    assert coarse_sweep(lambda n: 0.0) == [2, 5, 10, 20, 40]
+    assert coarse_sweep(lambda n: 0.0, at_once=4) == [4, 8, 20, 40]
+    assert coarse_sweep(lambda n: 0.0, quick=True) == [20, 40]

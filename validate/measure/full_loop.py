@@ -19,6 +19,7 @@ from .accuracy import relative, run_to_end
 from .compilation import compilation
 from .exams import exam_of
 from .our_parts import our_parts, row
+from .preparation import preparations
 from .selection import select, with_overrides
 from .staged import PARTS, lessons_without
 from .switches import engine_parts
@@ -359,4 +360,5 @@ def times(name, plan, result):
             "our_parts": parts(selection, p, result) if full else {"rows": [], "note": "left to --full"},
             "exam": None if plan.most_steps else jsonable(exam_of(selection, p)),
             "engine_parts": engine_parts(selection, p) if full else [],
+            "preparations": preparations(selection, p, timed["races"]) if full else [],
             "compilation": compilation(selection, p, timed["races"]) if full else None}

@@ -79,6 +79,11 @@ class Selection(NamedTuple):
         found = [(runner, runner.unfinished(p)) for runner in self.ours if runner.unfinished]
         return [(runner, why) for runner, why in found if why]
 
+    def races(self, p):
+        """Return whether this is the case of a motion that a full validation times."""
+        in_full = not (self.plan.quick or self.plan.most_steps)
+        return in_full and self.scene.moves and self.scene.refined and p == self.first[1]
+
     def engines_for(self, p):
         """Return the engines that support this case; an optional one only where it runs."""
         return tuple(r for r in self.scene.engine_runners if can_do(r, p) and not left_out(r.who, self.plan))

@@ -1,6 +1,7 @@
 """The four questions of the front page, answered from the results."""
 
 from collections import Counter
+from statistics import median
 
 from ..check import BY_LAWS, Verdict
 from ..measure.races import Outcome
@@ -71,7 +72,7 @@ def faster(results, cores=None):
             "factors": races.median_factors(every), "rows": races.rows(every),
             "undecided": by_reason(by["undecided"]),
             "beyond": [race for race in headline if race["ratio"] and not LEAST <= race["ratio"] <= MOST],
-            "calls": calls(results), "warning": words.busy_warning(results, cores)}
+            "calls": calls(results), "before": before_the_clock(results), "warning": words.busy_warning(results, cores)}
 
 
 def by_reason(undecided):
@@ -89,6 +90,15 @@ def calls(results):
         for one in result["times"].get("calls") or ():
             found.setdefault(one["product"], one)
     return list(found.values())
+
+
+def before_the_clock(results):
+    """Return {"engine", "ours"}: medians of what comes before the timed loops of the headline's races; None if unknown.
+    """
+    found = {"engine": [], "ours": []}
+    for one in (one for result in results for one in result["times"].get("preparations") or ()):
+        found["ours" if one["without"] else "engine"].append(one["seconds"])
+    return {side: median(values) if values else None for side, values in found.items()}
 
 
 def departures(results):

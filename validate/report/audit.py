@@ -205,6 +205,7 @@ def of_times(result, counts):
         for problem in of_race(race, times, case):
             yield f"the race with {race['product']} to {race['error']}: {problem}"
     yield from of_calls(times)
+    yield from of_preparations(times)
     yield from of_compilation(times)
     yield from of_costs(times)
 
@@ -278,6 +279,14 @@ def of_calls(times):
         alone = median(one["alone"]) if one["alone"] else 0.0
         if not one["called"] or differs(one["seconds"], max(0.0, median(one["called"]) - alone)):
             yield f"the cost of a call of {one['product']} does not follow from its repeats"
+
+
+def of_preparations(times):
+    """Yield what is wrong with the times that come before the clock starts."""
+    for one in times.get("preparations") or ():
+        without = median(one["without"]) if one["without"] else 0.0
+        if not one["with"] or differs(one["seconds"], max(0.0, median(one["with"]) - without)):
+            yield f"what comes before the loops of {one['label']} does not follow from its repeats"
 
 
 def of_compilation(times):

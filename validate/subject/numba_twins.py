@@ -96,7 +96,7 @@ class CachedDispatch:
         return self.twin.from_python()
 
     def __call__(self, *arguments):
-        kinds = _kinds(arguments)
+        kinds = kinds_of(arguments)
         if kinds not in self.known:
             self.known[kinds] = self.machine_code(arguments)
         return self.known[kinds](*arguments)
@@ -112,7 +112,7 @@ class CachedDispatch:
             return self.compiled_for(arguments)
         except TypingError:
             usual = _in_rows(arguments)
-            if _kinds(usual) == _kinds(arguments):
+            if kinds_of(usual) == kinds_of(arguments):
                 raise
             code = self.compiled_for(usual)
             return lambda *others: code(*_in_rows(others))
@@ -162,7 +162,7 @@ def _in_rows(argument):
     return argument
 
 
-def _kinds(arguments):
+def kinds_of(arguments):
     """Return what decides which machine code a call needs, for each of its arguments.  It is asked for in each call."""
     return tuple([type(a) if type(a) in NUMBERS else a if type(a) in ITS_OWN_KIND else _kind(a) for a in arguments])
 
@@ -172,7 +172,7 @@ def _kind(argument):
     kind = type(argument)
     if kind is np.ndarray:
         return argument.dtype, argument.ndim, argument.flags.num
-    return (kind, _kinds(argument)) if isinstance(argument, tuple) else getattr(argument, "kind_name", kind)
+    return (kind, kinds_of(argument)) if isinstance(argument, tuple) else getattr(argument, "kind_name", kind)
 
 
 @cache
