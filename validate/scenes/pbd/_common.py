@@ -22,9 +22,9 @@ def on_hinges(x, m, g):
 
 
 def in_space(start):
-    """Return p → (state, p) of start(p) → (x, v, network) in the plane: the same motion with three coordinates."""
+    """Return p → (state, p) of start(p) → (x, v, network, …) in the plane: the same motion with three coordinates."""
     def wide_start(p):
-        x, v, network = start(p)
+        x, v, network, *others = start(p)
         wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
-        return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
+        return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0)), *others), p
     return wide_start

@@ -1,5 +1,6 @@
 """A bob is released with its string horizontal: projection keeps the length of the string, but loses energy."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -44,20 +45,33 @@ def place(theta, p):
 
 
 def start(p):
+    """Return (x, v) of both ends of the string, the network, and (angle, rate) of the same bob."""
     check_positives(p, "L", "m", "g")
     if not 0.0 < p.degrees < 180.0:
         raise BadInput("the initial angle [°]", p.degrees, "give a number between 0 and 180")
-    x = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
-    return x, np.zeros((2, 2)), make_constraint_network(x, p.m, [0], [(0, 1)], 0.0, 1.0, (0.0, -p.g), 1)
+    theta = np.radians([p.degrees])
+    x = np.stack((np.zeros(2), place(theta[0], p)))
+    network = make_constraint_network(x, p.m, [0], [(0, 1)], 0.0, 1.0, (0.0, -p.g), 1)
+    return x, np.zeros((2, 2)), network, theta, np.zeros(1)
+
+
+def swings(t, theta, omega, p):
+    """Return θ̈ = −g/L sin θ, θ from straight down."""
+    return -p.g / p.L * np.sin(theta)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    x, v, network = state
-    return *lessons.integrators.advance(step, acceleration, 0.0, x, v, dt, steps, network), network
+    """Move the ends of the string; of a method that moves the angle, they are None."""
+    x, v, network, theta, omega = state
+    advance = lessons.integrators.advance
+    if step is lessons.integrators.rk4_step:
+        return None, v, network, *advance(step, acceleration, 0.0, theta, omega, dt, steps, p)
+    return *advance(step, lessons.pbd.network_gravity, 0.0, x, v, dt, steps, network), network, theta, omega
 
 
 def observe(state, p):
-    return state[0][1, :2]
+    x, _, _, theta, _ = state
+    return place(theta[0], p) if x is None else x[1, :2]
 
 
 def truth(p, t):
@@ -73,8 +87,8 @@ def limits(p, dt):
 
     With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
     order 2.  pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a step leaves.
-    The coordinate of pybullet's hinge and of MuJoCo is the angle, which cannot leave a joint open: a table of
-    coefficients, applied to it, predicts the error.
+    The coordinate of our Runge–Kutta 4, of pybullet's hinge and of MuJoCo is the angle, which cannot leave a joint
+    open: a table of coefficients, applied to it, predicts the error.
     """
     return by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
 
@@ -83,13 +97,9 @@ def rope(p):
     return Rope(np.stack((np.zeros(2), place(np.radians(p.degrees), p))), p.L, p.g)
 
 
-def swinging(p):
-    """Return θ̈(t, θ, ω), θ from straight down."""
-    return lambda t, theta, omega: -p.g / p.L * np.sin(theta)
-
-
 BOB = RopeMotion(T, rope, lambda x: x[1], truth, floor_of(limits))
-ANGLE = Motion(T, swinging, lambda p: (np.radians(p.degrees), 0.0), place, truth, floor_of(limits))
+ANGLE = Motion(T, lambda p: partial(swings, p=p), lambda p: (np.radians(p.degrees), 0.0), place, truth,
+               floor_of(limits))
 
 
 def model(p):
@@ -114,6 +124,7 @@ RUNNERS = (
     ours(RATTLE, limit=limits, predicted=BOB.predict(rattle, 2)),
     ours(ROPE, limit=limits, predicted=BOB.predict(rattle_once, 2)),
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
+    ours(RK4, limit=limits, predicted=ANGLE.predict(RK4.table)),       # of the angle, as MuJoCo
     engine(PYMUNK, "", built(PYMUNK, model, read, iterations=1),
            "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
@@ -146,7 +157,7 @@ SCENE = Scene(
     title="Pendulum", lesson="pbd",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.pbd.network_gravity, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: swings, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14, model=model, read=read,
     published_states=(
         (0.0, (1.0, 0.0), 1e-15),
