@@ -1,12 +1,13 @@
 """Given with lesson 10.  Loops with joints, one whose positions go with mean velocities, and one that sweeps only as
-long as it helps; a chain that needs no joints, because its coordinates are angles; the history of a run with contact.
+long as it helps; a chain and a cradle that need no joints, because their coordinates are angles; the history of a run
+with contact.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import whole_number
+from ..checks import Diverged, check_end, check_shape, checked_run, whole_number
 from ..simulator import *  # noqa: F403    one import has a lesson and its given functions
 from ..simulator import (
     advance_contact,
@@ -65,6 +66,8 @@ from .rods import close_with_rods, hold_with_rods, link_impulses  # noqa: F401
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most
+HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
+MOST_IMPACTS = 1000          # of the balls of a cradle in one step [-]
 
 
 def settled_contact_step_2d(load, bounds, narrow, t, state, dt, p):
@@ -194,3 +197,93 @@ def rods_acceleration(t, q, omega, p):
         A[i, i] = p.m * p.l * p.l * (n - i - 0.75) + p.I
     solve_band(A, right, n, 0.0)
     return right
+
+
+class Cradle(NamedTuple):
+    """Equal balls in the plane on rods without mass, side by side; each rod and its ball turn together about a pivot.
+    """
+    pitch: float             # distance of neighbouring pivots, which lie at one height [m]
+    L: float                 # from a pivot to the centre of its ball [m]
+    R: float                 # radius of the balls [m]
+    inertia: float           # of a ball about its pivot, over its mass [m²]
+    g: float                 # gravity, along −y [m/s²]
+
+
+def swing_acceleration(t, theta, omega, p):
+    """Given.  Return the angular accelerations (n,) [rad/s²] of a Cradle p with the angles θ (n,), from straight down.
+
+    I θ̈ = −g L sin θ,  I about the pivot and over the mass
+    """
+    return -p.g * p.L / p.inertia * np.sin(theta)
+
+
+def gap_after(theta, k, p):
+    """Return (gap [m] between balls k and k + 1 of a Cradle, its derivatives [m] by the angles of both).
+
+    It stays negative where a long step has moved one ball through the other, to its far side.
+    """
+    c, s = np.cos(theta), np.sin(theta)
+    x, y = p.pitch + p.L * (s[k + 1] - s[k]), p.L * (c[k] - c[k + 1])
+    length = np.copysign(np.hypot(x, y), x)
+    return length - 2.0 * p.R, -p.L * (x * c[k] + y * s[k]) / length, p.L * (x * c[k + 1] + y * s[k + 1]) / length
+
+
+def first_impact(step, t, theta, omega, dt, p):
+    """Return (time [s] until then, k) of the first impact within dt, of balls k and k + 1; (dt, −1) without one.
+
+    Bisection finds it.  Two balls that touch and part again within dt are not noticed.
+    """
+    late, found = dt, -1
+    for k in range(theta.size - 1):
+        early, end = 0.0, late
+        if not closes(*step(swing_acceleration, t, theta, omega, end, p), k, p):
+            continue
+        for _ in range(HALVINGS):
+            middle = 0.5 * (early + end)
+            if closes(*step(swing_acceleration, t, theta, omega, middle, p), k, p):
+                end = middle
+            else:
+                early = middle
+        late, found = end, k
+    return late, found
+
+
+def closes(theta, omega, k, p):
+    """Return whether balls k and k + 1 of a Cradle overlap and still come together."""
+    gap, a, b = gap_after(theta, k, p)
+    return gap < 0.0 and a * omega[k] + b * omega[k + 1] < 0.0
+
+
+def swinging_step(step, t, theta, omega, dt, p):
+    """Given.  Return (θ, ω), each (n,), after dt of a Cradle: a step of lesson 1, cut at each impact of two balls.
+
+    An impact is elastic: its impulse J along the line of centres reverses the rate of the gap.
+        ω⁺ = ω − 2 a (a·ω)/(a·a),  a: derivatives of the gap by both angles
+    *Left out:* balls that touch, in which several impacts are one.  Raises Diverged after MOST_IMPACTS in a step.
+    """
+    for _ in range(MOST_IMPACTS):
+        late, k = first_impact(step, t, theta, omega, dt, p)
+        theta, omega = step(swing_acceleration, t, theta, omega, late, p)
+        if k < 0:
+            return theta, omega
+        _, a, b = gap_after(theta, k, p)
+        twice = 2.0 * (a * omega[k] + b * omega[k + 1]) / (a * a + b * b)
+        omega = omega.copy()
+        omega[k] -= a * twice
+        omega[k + 1] -= b * twice
+        t, dt = t + late, dt - late
+    raise Diverged("impacts in a step", MOST_IMPACTS, "leave gaps between the balls, or take a smaller step")
+
+
+def advance_swinging(step, t, theta, omega, dt, steps, p):
+    """Given.  Return (θ, ω), each (n,), of a Cradle after so many swinging_steps with a step of lesson 1.
+
+    Raises BadInput for a cradle or a state that cannot be.
+    """
+    check_record(p, theta)
+    t, theta, omega, dt, steps = checked_run(t, theta, omega, dt, steps)
+    check_shape("the angles θ", theta, (theta.size,))
+    for n in range(steps):
+        theta, omega = swinging_step(step, t + n * dt, theta, omega, dt, p)
+    check_end(theta, omega, dt)
+    return theta, omega

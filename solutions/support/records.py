@@ -420,7 +420,8 @@ RULES = {tuple(rule.fields): rule for rule in (
           "obstacle": Inner("obstacle")}),
     Rule({"m": MASS, "I_body": MOMENTS, "gravity": vector("gravity [m/s²]", 3), "pivot": vector("pivot [m]", 3),
           "arm_body": vector("arm to the pivot [m]", 3), "sweeps": SWEEPS}, (moments_of_a_body,)),
-    # lessons 9 and 10: ContactSet, PileState, Pile, Bodies, JointedBodies, Joints, CarriedBall, RockingBlock, rods
+    # lessons 9 and 10: ContactSet, PileState, Pile, Bodies, JointedBodies, Joints, CarriedBall, RockingBlock, rods,
+    # a cradle
     Rule({"first": Row("place of the contacts of a body", "", ("firsts",)),
           "a": Row("body of a contact", "rows", ("contacts",)), "b": Row("body of a contact", "rows", ("contacts",)),
           "n": Field("normal of a contact [-]", FINITE, ("contacts", "d")),
@@ -446,6 +447,9 @@ RULES = {tuple(rule.fields): rule for rule in (
           "inertia": number("moment of inertia [kg m²]", POSITIVE), "g": number("gravity g [m/s²]", POSITIVE)}),
     Rule({"m": MASS, "l": number("length of a rod [m]", POSITIVE),
           "I": number("moment of inertia of a rod [kg m²]", NOT_NEGATIVE), "g": number("gravity g [m/s²]")}),
+    Rule({"pitch": number("distance of neighbouring pivots [m]", POSITIVE),
+          "L": number("length of a rod [m]", POSITIVE), "R": number("radius of a ball [m]", POSITIVE),
+          "inertia": number("moment of inertia about a pivot [m²]", POSITIVE), "g": number("gravity g [m/s²]")}),
     # lesson 11: Arm2D, Arm3D
     Rule(limits(lengths=Field("length of a link [m]", POSITIVE, ("d",))), (limits_in_order,)),
     Rule(limits(axes=Field("axis of a joint [-]", FINITE, ("d", 3)),

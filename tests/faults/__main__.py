@@ -16,6 +16,7 @@ from validate.run.store import code_digest, write_whole
 from validate.subject import modules
 
 from . import faults_of
+from .drawn import drawn
 from .honest import honest_run
 from .notice import notice
 
@@ -32,6 +33,8 @@ def main(lessons: Annotated[list[str] | None, typer.Argument(help="Lessons; all 
          sample: Annotated[int | None, typer.Option(min=1, help="Only so many, drawn at random.")] = None,
          seed: Annotated[int, typer.Option(help="Of that draw; the first honest run.")] = 0,
          steps: Annotated[int | None, typer.Option(min=1, help="Most steps of a scene's sweep: a first look.")] = None,
+         random_ones: Annotated[int | None, typer.Option(
+             "--drawn", min=1, help="In place of these, so many random ones in given functions.")] = None,
          honest: Annotated[int | None, typer.Option(min=1, help="In place of faults, so many honest runs.")] = None):
     """Plant each fault and print what of the validation report it turns; exit code 1 if fewer than 95 % are noticed.
 
@@ -40,7 +43,8 @@ def main(lessons: Annotated[list[str] | None, typer.Argument(help="Lessons; all 
     with workers(jobs) as pool:
         if honest:
             raise typer.Exit(honest_runs(range(seed, seed + honest), pool))
-        raise typer.Exit(seeded(chosen(lessons, sample, seed), steps, pool))
+        faults = drawn(random_ones, seed) if random_ones else chosen(lessons, sample, seed)
+        raise typer.Exit(seeded(faults, steps, pool))
 
 
 def chosen(lessons, sample, seed):

@@ -219,6 +219,9 @@ def of_simulator():
         "joint_step_2d": [joint], "composed_joint_step_2d": [joint],
         "joint_contact_step_2d": [(simulator.weight, simulator.box_bounds_2d, simulator.box_contacts_2d, 0.0, state,
                                    0.01, p)],
+        "swing_acceleration": [(0.0, around(3), around(3), scenes.cradle)],
+        "swinging_step": [(integrators.rk4_step, 0.0, np.array([-0.1, 0.0, 0.0]), np.array([0.5, 0.0, 0.0]), dt,
+                           scenes.cradle) for dt in (0.05, 0.3)],
         "rods_acceleration": [(0.0, around(3), around(3), simulator.RodsInAngles(0.5, 0.3, 0.004, 9.81))],
         "rocking_step": [(integrators.rk4_step, 0.0, np.array([x]), np.array([-0.5]), 0.05, scenes.rocker)
                          for x in (0.1, 0.01)]}

@@ -40,6 +40,7 @@ arm, bent, goal = (np.array([1.0, 0.8]), *limits), np.array([0.3, 0.7]), np.arra
 
 flat = simulator.make_bodies_2d(*boxes[:-4], 4, 0.02)
 heap = simulator.make_bodies(*balls[:-4], 4, 0.02)
+cradle = simulator.Cradle(0.12, 1.0, 0.05, 1.001, 9.81)
 rocker = simulator.RockingBlock(1.0, 0.1, 0.5, 0.09, 9.81)
 
 course = sensitivities.Course(weight, np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([[0.0, 0.0], [4.0, 0.0]]),
@@ -119,7 +120,8 @@ STARTED = {
                              simulator.box_contacts_2d, 0.0, flat[0], 0.004, 2, flat[1]),
                             (simulator.contact_step, simulator.weight, simulator.ball_bounds, simulator.round_contacts,
                              0.0, heap[0], 0.004, 2, heap[1])],
-        "advance_rocking": [(integrators.rk4_step, 0.0, np.array([0.1]), np.zeros(1), 0.01, 30, rocker)]},
+        "advance_rocking": [(integrators.rk4_step, 0.0, np.array([0.1]), np.zeros(1), 0.01, 30, rocker)],
+        "advance_swinging": [(integrators.rk4_step, 0.0, np.array([-0.1, 0.0, 0.0]), np.zeros(3), 0.1, 8, cradle)]},
     "kinematics": {
         "make_arm_2d": [arm], "make_arm_3d": [(np.stack((up, up)), np.ones((2, 3)), *limits)],
         "advance_reach": [(kinematics.damped_step, kinematics.reach_2d, bent, goal, 3, kinematics.make_arm_2d(*arm))],

@@ -5,6 +5,7 @@ import pytest
 
 from solutions.checks import BadInput, Diverged
 from solutions.given import joints
+from solutions.given import simulator as given
 from solutions.rotation import exponential
 from validate.reference.rotation import HeavyTop
 from validate.reference.simulator import cradle_motion, rods_error, rods_motion, rods_slope
@@ -194,6 +195,28 @@ def test_one_ball_of_a_cradle_sends_one_away():
     omega = cradle_motion(1, 0.3, 3, 0.12, 1.0, 0.05, G, 1.0 + 0.4 * 0.05**2, 0.62)[1]
     assert np.allclose(end.omega[:3], omega, atol=0.01)
     assert np.all(np.abs(end.omega[:2]) < 0.04) and end.omega[2] > 0.85
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_cradle_in_angles_moves_as_an_independent_integrator_says(seed):
+    """Also with steps in which several balls are hit, and one would pass through the next."""
+    rng = np.random.default_rng(seed)
+    n, lifted, L, R, T = 4, 1 + seed % 2, rng.uniform(0.5, 1.5), 0.05, 0.8
+    pitch, inertia = 2.0 * R + rng.uniform(0.01, 0.04), L * L + 0.4 * R * R
+    true = cradle_motion(lifted, 0.4, n, pitch, L, R, G, inertia, T)
+    begin, p = np.where(np.arange(n) < lifted, -0.4, 0.0), simulator.Cradle(pitch, L, R, inertia, G)
+    ends = {steps: np.concatenate(simulator.advance_swinging(simulator.rk4_step, 0.0, begin, np.zeros(n), T / steps,
+                                                             steps, p)) for steps in (3, 200)}
+    assert len(true[2]) == lifted * (n - lifted)                       # impacts
+    assert np.allclose(ends[200], np.concatenate(true[:2]), atol=1e-8, rtol=0.0)
+    assert np.allclose(ends[3], np.concatenate(true[:2]), atol=0.05, rtol=0.0)
+
+
+def test_balls_that_hit_each_other_without_end_are_refused(monkeypatch):
+    monkeypatch.setattr(given, "MOST_IMPACTS", 2)
+    p = simulator.Cradle(0.12, 1.0, 0.05, 1.001, G)
+    with pytest.raises(Diverged, match="impacts in a step = 2"):
+        simulator.advance_swinging(simulator.rk4_step, 0.0, np.array([-0.3, 0.0, 0.0, 0.0]), np.zeros(4), 0.7, 1, p)
 
 
 def test_impacts_of_hinged_balls_keep_energy_with_e_1_and_lose_all_of_the_approach_with_e_0():

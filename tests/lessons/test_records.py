@@ -68,6 +68,7 @@ EXAMPLES = (
     (touching, touching),
     (simulator.RockingBlock(1.0, 0.1, 0.5, 0.09, 9.81), np.zeros(1)),
     (simulator.RodsInAngles(1.0, 1.0, 0.1, 9.81), np.zeros(2)),
+    (simulator.Cradle(0.12, 1.0, 0.05, 1.001, 9.81), np.zeros(2)),
     (throw.course, throw.x), (throw, throw.x),
     (kinematics.make_arm_2d([1.0, 0.8], *settings), np.zeros(2)),
     (kinematics.make_arm_3d([up, up], np.ones((2, 3)), *settings), np.zeros(2)),

@@ -291,13 +291,13 @@ RESULTS = {
         "m/s; rad/s": "new_velocities_2d new_velocities corner_impact",
         "m; -; m/s; rad/s": "joint_step_2d composed_joint_step_2d free_step_2d free_step carried_step "
                             "exact_rolling_step advance_free",
-        "rad/s²": "rods_acceleration",
+        "rad/s²": "rods_acceleration swing_acceleration",
         "N; N m": "weight",
         "m/s": "support_velocity",
         "m": "stopping_depth",
         "": "may_be_extrapolated",
         "s": "slip_time",
-        "-; rad/s": "rocking_step advance_rocking",
+        "-; rad/s": "rocking_step advance_rocking swinging_step advance_swinging",
         "J": "mechanical_energy gain_without_source",
         "kg m/s; kg m²/s": "momenta"},
     "kinematics": {
