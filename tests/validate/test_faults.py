@@ -1,10 +1,14 @@
 """The seeded faults are single faults, the command that plants them tells noticed from missed, and errors are findings.
 """
 
+import io
+import tokenize
+
 import numpy as np
 import pytest
 
 from tests.faults import Fault, __main__, faults_of, file_of, honest, notice, planted
+from tests.faults.drawn import drawn
 from validate.measure.accuracy import errors
 from validate.measure.selection import Plan
 from validate.measure.timing import times
@@ -35,6 +39,22 @@ def test_a_fault_is_one_replacement_in_a_function_that_the_report_executes(name)
 def test_a_fault_that_occurs_twice_or_never_is_refused(old):
     with pytest.raises(ValueError, match="occurs"):
         planted(Fault("springs", "soft_constraint_force", old, "x", ""))
+
+
+def test_random_faults_are_single_exchanges_in_given_functions_that_the_report_executes():
+    faults = drawn(12, seed=1)
+    assert faults == drawn(12, seed=1) != drawn(12, seed=2)
+    assert len({(f.lesson, f.function) for f in faults}) == 12 and not {f.lesson for f in faults} & set(LESSONS)
+    for fault in faults:
+        compile(planted(fault), fault.name, "exec")
+        assert coverage.places()[coverage.defined((fault.lesson, fault.function))]
+        same = [a == b for a, b in zip(words_of(fault.old), words_of(fault.new), strict=True)]
+        assert same.count(False) == 1, fault.wrong
+
+
+def words_of(text):
+    return [token.string for token in tokenize.generate_tokens(io.StringIO(text.strip()).readline)
+            if token.string.strip()]
 
 
 HARMLESS = Fault("springs", "air_force", "wind - k_v * v", "-(k_v * v) + wind", "nothing")
