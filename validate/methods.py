@@ -105,6 +105,7 @@ ROCKING = Method("rocking_step", "cut at the impact", 4, "simulator", "#009E73",
 JOINTS = Method("joint_step_2d", "joints", 2, "simulator", "#0072B2", "o")
 COMPOSED_JOINTS = Method("composed_joint_step_2d", "joints, composed", 4, "simulator", "#6A51A3", "^")
 IN_ANGLES = Method("rk4_step", "angles, Runge–Kutta 4", 4, "integrators", "#CC79A7", "v", schemes.RK4)
+IN_ANGLE = IN_ANGLES._replace(label="angle, Runge–Kutta 4")
 SWINGING = Method("swinging_step", "angles, cut at the impacts", 4, "simulator", "#CC79A7", "v")
 JOINTS_IN_SPACE = Method("joint_step", "joints in space", 2, "simulator", "#009E73", "s")
 JOINTED_LOOP = Method("joint_contact_step_2d", "the loop with joints", 1, "simulator", "#D55E00", "D")

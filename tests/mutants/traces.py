@@ -129,7 +129,7 @@ def both_say(one, other):
         return one
     if one is None or other is None or isinstance(one, str) or isinstance(other, str) or one[0] != other[0]:
         return None
-    if abs(one[1] - other[1]) <= mistakes.SAME * max(1.0, abs(one[1])):
+    if abs(one[1] - other[1]) <= max(mistakes.ROUND_OFF, mistakes.SAME * abs(one[1])):     # no more than `same` allows
         return one
     return mistakes.HUGE if min(abs(one[1]), abs(other[1])) > mistakes.LARGE else None
 

@@ -9,7 +9,7 @@ from solutions.checks import BadInput
 from solutions.given.pbd import make_constraint_network
 from validate.check import states
 from validate.engines.bullet import HINGES
-from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
+from validate.methods import COMPOSED_ROPE, IN_ANGLE, PBD, PROJECTION, RATTLE, RK4, ROPE, SYMPLECTIC_EULER, XPBD
 from validate.reference.pbd import (
     Rope,
     RopeMotion,
@@ -124,7 +124,7 @@ RUNNERS = (
     ours(RATTLE, limit=limits, predicted=BOB.predict(rattle, 2)),
     ours(ROPE, limit=limits, predicted=BOB.predict(rattle_once, 2)),
     ours(COMPOSED_ROPE, limit=limits, predicted=BOB.predict(composed_rope, 4)),
-    ours(RK4, limit=limits, predicted=ANGLE.predict(RK4.table)),       # of the angle, as MuJoCo
+    ours(IN_ANGLE, limit=limits, predicted=ANGLE.predict(RK4.table)),
     engine(PYMUNK, "", built(PYMUNK, model, read, iterations=1),
            "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link",
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
