@@ -37,6 +37,7 @@ from ..support.convex_3d import (  # noqa: F401
 from ..support.records import check_record
 from ..support.scenes import PileState
 from ..support.small_systems import solve_band
+from .bodies import HALVINGS
 from .compose import (  # noqa: F401
     Loop,
     Part,
@@ -66,7 +67,6 @@ from .rods import close_with_rods, hold_with_rods, link_impulses  # noqa: F401
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most
-HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
 MOST_IMPACTS = 1000          # of the balls of a cradle in one step [-]
 
 
@@ -217,7 +217,7 @@ def swing_acceleration(t, theta, omega, p):
     return -p.g * p.L / p.inertia * np.sin(theta)
 
 
-def gap_after(theta, k, p):
+def cradle_gap(theta, k, p):
     """Return (gap [m] between balls k and k + 1 of a Cradle, its derivatives [m] by the angles of both).
 
     It stays negative where a long step has moved one ball through the other, to its far side.
@@ -250,7 +250,7 @@ def first_impact(step, t, theta, omega, dt, p):
 
 def closes(theta, omega, k, p):
     """Return whether balls k and k + 1 of a Cradle overlap and still come together."""
-    gap, a, b = gap_after(theta, k, p)
+    gap, a, b = cradle_gap(theta, k, p)
     return gap < 0.0 and a * omega[k] + b * omega[k + 1] < 0.0
 
 
@@ -266,7 +266,7 @@ def swinging_step(step, t, theta, omega, dt, p):
         theta, omega = step(swing_acceleration, t, theta, omega, late, p)
         if k < 0:
             return theta, omega
-        _, a, b = gap_after(theta, k, p)
+        _, a, b = cradle_gap(theta, k, p)
         twice = 2.0 * (a * omega[k] + b * omega[k + 1]) / (a * a + b * b)
         omega = omega.copy()
         omega[k] -= a * twice

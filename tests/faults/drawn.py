@@ -1,7 +1,7 @@
 """Random faults: in a given function, one token becomes another.
 
-Chance chooses them, so they show which given functions the report does not look at.  Some of them change no result: a
-search ends later, or two sizes are equal.  So read each one that is missed.
+Chance chooses the token, so these faults show which given functions the report does not look at.  Some of them change
+no result: a search ends later, or two sizes are equal.  So read each one that is missed.
 """
 
 import ast

@@ -105,7 +105,7 @@ fault("swinging_step", "omega[k + 1] -= b * twice", "omega[k + 1] += b * twice",
       of="given.simulator")
 fault("swing_acceleration", "p.g * p.L / p.inertia", "p.g / p.L", "the balls have no moment of inertia of their own",
       of="given.simulator")
-fault("gap_after", "length - 2.0 * p.R", "length - 1.8 * p.R", "balls meet a tenth too close", of="given.simulator")
+fault("cradle_gap", "length - 2.0 * p.R", "length - 1.8 * p.R", "balls meet a tenth too close", of="given.simulator")
 fault("contact_trajectory", "states[-1], dt, 1, p", "state, dt, 1, p", "every step of a history begins at the start",
       of="given.simulator")
 fault("normal_and_friction", "N[k] += n[k, i] * state.J[k, i] / dt", "N[k] += n[k, i] * n[k, i] * state.J[k, 1] / dt",
