@@ -67,6 +67,7 @@ from .rods import close_with_rods, hold_with_rods, link_impulses  # noqa: F401
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most
+ROUND_OFF = 1e-15            # of a gap, over the lengths that it is computed from [-]
 MOST_IMPACTS = 1000          # of the balls of a cradle in one step [-]
 
 
@@ -231,21 +232,34 @@ def cradle_gap(theta, k, p):
 def first_impact(step, t, theta, omega, dt, p):
     """Return (time [s] until then, k) of the first impact within dt, of balls k and k + 1; (dt, −1) without one.
 
-    Bisection finds it.  Two balls that touch and part again within dt are not noticed.
+    Two balls that touch and part again within dt are not noticed.
     """
     late, found = dt, -1
+    end = step(swing_acceleration, t, theta, omega, dt, p)
     for k in range(theta.size - 1):
-        early, end = 0.0, late
-        if not closes(*step(swing_acceleration, t, theta, omega, end, p), k, p):
-            continue
-        for _ in range(HALVINGS):
-            middle = 0.5 * (early + end)
-            if closes(*step(swing_acceleration, t, theta, omega, middle, p), k, p):
-                end = middle
-            else:
-                early = middle
-        late, found = end, k
+        if closes(*end, k, p):
+            late, found = time_of_impact(step, t, theta, omega, late, k, p), k
+            end = step(swing_acceleration, t, theta, omega, late, p)
     return late, found
+
+
+def time_of_impact(step, t, theta, omega, dt, k, p):
+    """Return the time [s] within dt at which the gap of balls k and k + 1 closes, which is closed after dt.
+
+    Newton's method, from the end.  Where its next time lies outside of the interval in which the gap closes, it takes
+    the middle of this interval.  It ends where the gap is zero but for round-off.
+    """
+    early, end, late = 0.0, dt, dt
+    for _ in range(HALVINGS):
+        q, rates = step(swing_acceleration, t, theta, omega, late, p)
+        gap, a, b = cradle_gap(q, k, p)
+        if abs(gap) <= ROUND_OFF * (p.pitch + p.L):
+            break
+        early, end = (early, late) if gap < 0.0 else (late, end)
+        late = late - gap / (a * rates[k] + b * rates[k + 1])
+        if not early < late < end:
+            late = 0.5 * (early + end)
+    return late
 
 
 def closes(theta, omega, k, p):

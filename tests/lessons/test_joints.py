@@ -1,7 +1,10 @@
 """Joints, which are given: they stay closed, keep what they must, and follow pendulums, chains and tops."""
 
+from functools import partial
+
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from solutions.checks import BadInput, Diverged
 from solutions.given import joints
@@ -210,6 +213,27 @@ def test_a_cradle_in_angles_moves_as_an_independent_integrator_says(seed):
     assert len(true[2]) == lifted * (n - lifted)                       # impacts
     assert np.allclose(ends[200], np.concatenate(true[:2]), atol=1e-8, rtol=0.0)
     assert np.allclose(ends[3], np.concatenate(true[:2]), atol=0.05, rtol=0.0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_first_impact_of_a_cradle_is_the_earliest_zero_of_all_gaps(seed):
+    """Random balls, some of which come together slowly; steps of any length."""
+    rng, found = np.random.default_rng(seed), 0
+    p = simulator.Cradle(0.15, 1.0, 0.05, 1.001, G)
+    for _ in range(60):
+        theta, omega, dt = rng.uniform(-0.02, 0.02, 4), rng.normal(size=4), 10.0 ** rng.uniform(-4.0, -0.5)
+        after = partial(simulator.rk4_step, given.swing_acceleration, 0.0, theta, omega, p=p)
+        times = {k: zero_of_the_gap(after, k, dt, p) for k in range(3) if given.closes(*after(dt), k, p)}
+        late, k = given.first_impact(simulator.rk4_step, 0.0, theta, omega, dt, p)
+        assert k == min(times, key=times.get, default=-1)
+        assert late == dt if k < 0 else abs(late - times[k]) * abs(omega).max() < 1e-14
+        found += k >= 0
+    assert found > 10
+
+
+def zero_of_the_gap(after, k, dt, p):
+    """Time within dt at which the gap of balls k and k + 1 is zero; after(t) → (θ, ω)."""
+    return brentq(lambda t: given.cradle_gap(after(t)[0], k, p)[0], 0.0, dt, xtol=1e-16)
 
 
 def test_balls_that_hit_each_other_without_end_are_refused(monkeypatch):

@@ -4,7 +4,7 @@ No formula gives this motion, and no published value is known.  The truth is wha
 nothing: the loop of lesson 10 and pymunk, each with steps so short that their motions differ by less than a stated
 bound.  `python -m validate.measure.agreement` computes it and keeps it with its error bar.  The loop sweeps until an
 impact is finished.  The pile of lesson 9 visits each contact twice per step.  That does not finish the last impact,
-which runs from the floor back through all six dominoes: with steps of 1/1000 s the pile is still 1.3 % away.
+which runs from the floor back through all six dominoes: with steps of 1/1000 s the pile is still 0.9 % away.
 """
 
 from functools import cache, partial
@@ -29,7 +29,8 @@ from validate.scenes._common import built, check_positives
 from validate.scenes.drawing import outlines
 
 T = 1.0                      # [s]
-STEPS = (10, 20, 50, 100, 200, 500, 1000)
+STEPS = (5, 10, 20, 50, 100, 200, 500)
+FINER = (1000,)              # of what finishes its impacts
 ROWS = 4                     # each begins at another moment: see limit
 WINDOW = 0.04                # of these moments [s]; the first impact is later
 KEPT = 250                   # pictures per second of the film of the truth
@@ -39,8 +40,10 @@ UNCERTAINTY = 1.2e-4         # the error bar of the first case, rounded up; limi
 SWEEPS = 1                   # of the loop, before it looks whether a sweep still changes something
 ITERATIONS = 50              # of pybullet [-]
 WATCHED = 50                 # steps of the run that the laws of contact judge [-]
-CARRIED = 0.3                # hertz of a soft contact times a step [-]: nearly the stiffest that a pile stands
-ZETA, MARGIN = 10.0, 0.01    # damping ratio [-] and margin [m] of the pile
+CARRIED = 0.2                # hertz of a soft contact times a step [-]; a pile takes 0.3 at most
+ZETA = 5.0                   # damping ratio of the pile [-]
+MARGIN = 0.01                # of the loop [m]
+AHEAD = 0.05                 # margin of the pile [m]: half of it is the way of the top of a domino in 1/100 s
 
 
 class Params(NamedTuple):
@@ -88,28 +91,43 @@ def start(p):
 
 
 def rows_at(p, begins):
-    """Return ([PileState of the row that begins at that time], Pile)."""
+    """Return (PileState, Pile) of a row for each of these moments, one beside the other."""
     check_positives(p, "width", "height", "omega", "g")
     check_positive("gap between dominoes [m]", p.pitch - p.width)
     check_friction(p.mu)
     if p.n < 1:
         raise BadInput("n", p.n, "give one domino or more")
-    half, floor, rows = np.full((p.n, 2), 0.5) * (p.width, p.height), np.array([(0.0, 1.0, 0.0)]), []
-    for t in begins:
-        x, angle, v, omega = begin(p, t)
-        state, pile = make_pile_2d(x, angle, MASS, inertia(p), half, floor, (0.0, -p.g), p.mu, 1, 1.0, ZETA, MARGIN)
-        rows.append(state._replace(v=np.vstack((v, np.zeros(2))), omega=np.append(omega, 0.0)))
-    return rows, pile
+    x, angle, v, omega = beside_each_other(p, begins)
+    half, floor = np.full(x.shape, 0.5) * (p.width, p.height), np.array([(0.0, 1.0, 0.0)])
+    state, pile = make_pile_2d(x, angle, MASS, inertia(p), half, floor, (0.0, -p.g), p.mu, 1, 1.0, ZETA, AHEAD)
+    return state._replace(v=np.vstack((v, np.zeros(2))), omega=np.append(omega, 0.0)), pile
+
+
+def beside_each_other(p, begins):
+    """Return what begin(p, t) returns, for all rows together; each is moved so that they do not meet."""
+    x, *others = zip(*(begin(p, t) for t in begins))
+    return np.concatenate(x + rows_apart(p, len(begins))), *map(np.concatenate, others)
+
+
+def rows_apart(p, rows):
+    """Return by how much (rows, 1, 2) [m] the rows are moved, so that they do not meet."""
+    return np.outer(np.arange(rows), (p.pitch * (p.n + 5), 0.0))[:, None]
+
+
+def places_of(x, angle, p):
+    """Return places and angles (rows, n, 3) of all dominoes, each row moved back to where it is alone."""
+    places = np.column_stack((x, angle)).reshape(-1, p.n, 3)
+    places[..., :2] -= rows_apart(p, len(places))
+    return places
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     rows, pile = state
     shape = lessons.contact.box_bounds_2d, lessons.contact.box_contacts_2d
     if step is lessons.contact.advance_pile_2d:
-        return [step(*shape, row, dt, steps, pile._replace(hertz=CARRIED / dt)) for row in rows], pile
-    bodies = Bodies(*(getattr(pile, name) for name in Bodies._fields[:6]), SWEEPS, pile.margin)
-    return [lessons.simulator.advance_contact(step, acceleration, *shape, 0.0, row, dt, steps, bodies)
-            for row in rows], pile
+        return step(*shape, rows, dt, steps, pile._replace(hertz=CARRIED / dt)), pile
+    bodies = Bodies(*(getattr(pile, name) for name in Bodies._fields[:6]), SWEEPS, MARGIN)
+    return lessons.simulator.advance_contact(step, acceleration, *shape, 0.0, rows, dt, steps, bodies), pile
 
 
 def corners(x, angle, p):
@@ -120,8 +138,7 @@ def corners(x, angle, p):
 
 
 def observe(state, p):
-    rows, _ = state
-    return np.concatenate([corners(row.x[:p.n], row.q[:p.n], p) for row in rows])
+    return all_corners(places_of(state[0].x[:-1], state[0].q[:-1], p), p)
 
 
 class Motion(NamedTuple):
@@ -134,19 +151,19 @@ class Motion(NamedTuple):
 def by_pymunk(p, begins, dt, steps, every):
     """Return places (steps/every + 1, rows, n, 3) of rows that begin at these moments, by pymunk."""
     world = PYMUNK.world.build(model(p, begins), dt, iterations=200, slop=1e-6, overlap=0.0)
-    found = [places_of(world.state(), p)]
+    places = lambda state: places_of(state.x[1:], state.q[1:], p)
+    found = [places(world.state())]
     for n in range(1, steps + 1):
         world.step()
         if n % every == 0:
-            found.append(places_of(world.state(), p))
+            found.append(places(world.state()))
     return np.array(found)
 
 
 def by_loop(lessons, step, law, p, begins, dt, steps, every):
     """Return the same by the loop of lesson 10."""
-    state, found = rows_at(p, begins), []
-    places = lambda state: [np.column_stack((row.x[:p.n], row.q[:p.n])) for row in state[0]]
-    found.append(places(state))
+    state, places = rows_at(p, begins), lambda state: places_of(state[0].x[:-1], state[0].q[:-1], p)
+    found = [places(state)]
     for _ in range(steps // every):
         state = run(lessons, step, law, state, p, dt, every)
         found.append(places(state))
@@ -213,10 +230,17 @@ def all_corners(places, p):
     return corners(flat[:, :2], flat[:, 2], p)
 
 
+@cache
+def fastest(p):
+    """Return the largest speed of the truth [m/s]: the root mean square over all corners of a row."""
+    film = np.array([all_corners(places, p) for places in reference(p).film])
+    return KEPT * np.max(np.linalg.norm(np.diff(film, axis=0), axis=1)) / np.sqrt(4.0 * p.n)
+
+
 def limit(p, dt):
-    """Each impact of two dominoes is detected up to one step late.  Until then a corner moves up to v dt too far, with
-    v = ω (height + width) of the first domino at most.  It meets everything later by the same time.  After n
-    impacts each corner is off by n v dt: first order.  The phase of an impact in its step is random.  So errors of
+    """Each impact of two dominoes is detected up to one step late, and everything after it happens later by the same
+    time.  After n impacts a row is late by n dt at most: first order.  A row that is late is off by that time times its
+    speed, for which the largest of the truth is taken.  The phase of an impact in its step is random.  So errors of
     single runs scatter by a factor of three about a line.  Therefore several rows begin at different moments, and
     the error is that of all of them.  From 0.95 s on, the last impact pushes the whole row back.  So the errors at
     1 s decrease unevenly, and the slope through four of them means little.
@@ -224,12 +248,12 @@ def limit(p, dt):
     The error bar of the truth is added; where it is larger than 0.1 %, nothing is judged.  No theory says how far
     pybullet may be off.  The laws of contact judge what its run of 50 steps reports.
 
-    This limit leaves out the impacts that two sweeps do not finish.  At 1/1000 s it is still larger than their effect;
-    with shorter steps the pile would depart.
+    This limit leaves out the impacts that two sweeps do not finish.  At 1/500 s it is still larger than their effect.
+    With 1/1000 s it is not, so the pile has no finer steps.
     """
     size = np.linalg.norm(truth(p, T)) / np.sqrt(4.0 * p.n * ROWS)
     bar = reference(p).bar
-    return p.n * p.omega * (p.height + p.width) * dt / size + bar if bar <= AGREED else np.inf
+    return p.n * fastest(p) * dt / size + bar if bar <= AGREED else np.inf
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -238,27 +262,14 @@ def model(p, begins=None):
     """Make a row for each of these moments, one beside the other, on a floor.  Each has √μ: a pair has the product."""
     begins, mu, bodies = moments() if begins is None else begins, float(np.sqrt(p.mu)), []
     floor = Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=mu)
-    for t, shift in zip(begins, rows_apart(p, len(begins))):
-        for x, angle, v, omega in zip(*begin(p, t)):
-            bodies.append(Body(tuple(x + shift[0]), MASS, Box((0.5 * p.width, 0.5 * p.height)), mu, q=angle,
-                               v=tuple(v), omega=omega, inertia=inertia(p)))
+    for x, angle, v, omega in zip(*beside_each_other(p, begins)):
+        bodies.append(Body(tuple(x), MASS, Box((0.5 * p.width, 0.5 * p.height)), mu, q=angle, v=tuple(v), omega=omega,
+                           inertia=inertia(p)))
     return make_model([floor, *bodies], (0.0, -p.g))
 
 
-def rows_apart(p, rows):
-    """Return by how much (rows, 1, 2) [m] the rows are moved, so that they do not meet."""
-    return np.outer(np.arange(rows), (p.pitch * (p.n + 5), 0.0))[:, None]
-
-
-def places_of(state, p):
-    """Return places and angles (rows, n, 3) of the dominoes of an engine."""
-    places = np.column_stack((state.x, state.q))[1:].reshape(-1, p.n, 3)
-    places[..., :2] -= rows_apart(p, len(places))
-    return places
-
-
 def read(state, p):
-    return all_corners(places_of(state, p), p)
+    return all_corners(places_of(state.x[1:], state.q[1:], p), p)
 
 
 def physics_in_space(p):
@@ -278,11 +289,13 @@ LONG_LIVED = "its contact points persist over several steps, and no theory says 
 RUNNERS = (
     ours(PILE, order=SCATTERED, limit=limit, predicted=BY_CHANCE),
     ours(SETTLED_LOOP, order=SCATTERED, limit=limit, predicted=BY_CHANCE, most_in_quick=100,
-         finer_in_full=(2000, 5000)),                      # the error bar has runs with twice and four times as many
+         finer_in_full=(*FINER, 2000, 5000)),              # the error bar has runs with twice and four times as many
     engine(PYMUNK, "", in_pymunk(iterations=50, slop=1e-6), "50 iterations, collision_slop 1e-6",
+           order=SCATTERED, limit=limit, predicted=BY_CHANCE, is_truth=is_alone, finer_in_full=FINER),
+    engine(PYMUNK, "fewer iterations", in_pymunk(iterations=3, slop=1e-6), "3 iterations, collision_slop 1e-6",
            order=SCATTERED, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
     engine(PYMUNK, "default", in_pymunk(iterations=10, slop=0.1), "10 iterations, collision_slop 0.1",
-           order=SCATTERED, limit=limit, predicted=BY_CHANCE, is_truth=is_alone),
+           order=SCATTERED, limit=limit, predicted=BY_CHANCE, is_truth=is_alone, finer_in_full=FINER),
     engine(PYBULLET, "", in_pybullet(),
            "boxes 0.4 m deep, maximal coordinates; solverResidualThreshold 0, contactSlop 1e-6, 50 iterations",
            order=LEVELS_OFF, limit=no_limit, predicted=LONG_LIVED,

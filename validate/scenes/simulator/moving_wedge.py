@@ -1,7 +1,8 @@
 """A block slides down a wedge that slides away under it.  There is no friction, so momentum along the floor stays zero.
 
 The forces at three contacts are constant.  A loop that finds them exactly has exact velocities, and its positions lag
-by half a step.  With the mean of the velocities before and after each step the positions are exact, too.
+by half a step.  With the mean of the velocities before and after each step the positions are exact, too.  Two
+coordinates need no contacts at all: the place of the wedge, and the way of the block along its slope.
 """
 
 from functools import partial
@@ -14,10 +15,11 @@ from solutions.support.model import Body, make_model
 from solutions.support.shapes import Box, HalfSpace
 from validate.check import states
 from validate.engines.bullet import CONTACT_ERP
-from validate.methods import LOOP_2D, LOOP_WITH_MEANS
+from validate.methods import IN_COORDINATES, LOOP_2D, LOOP_WITH_MEANS
+from validate.reference.friction import NOTHING_LEFT
 from validate.reference.simulator import wedge_pushed_out
 from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
-from validate.scenes._common import built, check_positives
+from validate.scenes._common import built, check_positives, round_off
 from validate.scenes.drawing import outlines
 from validate.worlds.bullet import WIDE
 
@@ -61,22 +63,45 @@ def places(p):
 
 
 def start(p):
-    """Return (PileState, Bodies).  The wedge cannot rotate: an infinite moment of inertia replaces its wide foot."""
+    """Return (PileState, Bodies), and the two coordinates and their rates.
+
+    The wedge cannot rotate: an infinite moment of inertia replaces its wide foot.
+    """
     check_positives(p, "degrees", "m", "M", "half", "g")
     moments, half = np.array([np.inf, 2.0 / 3.0 * p.m * p.half**2]), np.array([(LONG, THICK), (p.half, p.half)])
-    return make_bodies_2d(places(p), np.full(2, -slope(p)), np.array([p.M, p.m]), moments, half,
-                          np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), 0.0, SWEEPS, MARGIN)
+    bodies = make_bodies_2d(places(p), np.full(2, -slope(p)), np.array([p.M, p.m]), moments, half,
+                            np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), 0.0, SWEEPS, MARGIN)
+    return *bodies, np.zeros(2), np.zeros(2)
+
+
+def slides(t, q, rates, p):
+    """Return the accelerations [m/s²] of X, the way of the wedge, and of s, that of the block along the slope.
+
+    (M + m) Ẍ + m cos θ s̈ = 0,      cos θ Ẍ + s̈ = g sin θ
+    *Source:* Lagrange's equations of  ½ M Ẋ² + ½ m (Ẋ² + 2 Ẋ ṡ cos θ + ṡ²) + m g s sin θ.
+    """
+    theta = np.radians(p.degrees)
+    share = p.m * np.cos(theta) / (p.M + p.m)
+    along = p.g * np.sin(theta) / (1.0 - share * np.cos(theta))
+    return np.array([-share * along, along])
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    simulator, (now, bodies_here) = lessons.simulator, state
+    """Move the bodies; of a method that moves the two coordinates, they are None."""
+    simulator, (now, bodies_here, q, rates) = lessons.simulator, state
+    if step is lessons.integrators.verlet_step:
+        return None, bodies_here, *lessons.integrators.advance(step, acceleration, 0.0, q, rates, dt, steps, p)
     shape = simulator.box_bounds_2d, simulator.box_contacts_2d
-    return simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, bodies_here), bodies_here
+    moved = simulator.advance_contact(step, simulator.weight, *shape, 0.0, now, dt, steps, bodies_here)
+    return moved, bodies_here, q, rates
 
 
 def observe(state, p):
     """Return x of the wedge, x and y of the block [m], and the same of their velocities [m/s]."""
-    now = state[0]
+    now, _, q, rates = state
+    if now is None:
+        x, along = places(p), np.array([np.cos(slope(p)), -np.sin(slope(p))])
+        return np.array([q[0], *(x[1] + (q[0], 0.0) + q[1] * along), rates[0], *((rates[0], 0.0) + rates[1] * along)])
     return np.array([now.x[0, 0], now.x[1, 0], now.x[1, 1], now.v[0, 0], now.v[1, 0], now.v[1, 1]])
 
 
@@ -210,6 +235,7 @@ PYMUNK_ERROR = partial(lag_error, sign=-1.0, limit=pymunk_limit)
 RUNNERS = (
     ours(LOOP_2D, limit=loop_limit, predicted=partial(lag_error, sign=1.0, limit=loop_limit)),
     ours(LOOP_WITH_MEANS, order=EXACT, limit=mean_limit, predicted=partial(lag_error, sign=0.0, limit=mean_limit)),
+    ours(IN_COORDINATES, order=EXACT, limit=round_off(T), predicted=NOTHING_LEFT),
     engine(PYMUNK, "", world(PYMUNK),
            "a box with an infinite moment; 100 iterations, collision_slop 1e-5, overlaps of 1e-6 m",
            order=1, limit=pymunk_limit, predicted=PYMUNK_ERROR),
@@ -255,7 +281,7 @@ SCENE = Scene(
     title="A wedge that slides away", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
     runners=RUNNERS,
-    acceleration=lambda lessons: lessons.simulator.weight, start=start, run=run, observe=observe,
+    acceleration=lambda lessons: slides, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15, model=model, read=read,
     slow_cases=("45°, light wedge", "10°, heavy wedge"),
     sanity_checks=sanity_checks,
