@@ -67,7 +67,7 @@ def centres(theta, p):
 
 
 def start(p):
-    """Return (PileState, JointedBodies) of the balls; each rotates with its rod."""
+    """Return (PileState, JointedBodies, angles, rates) of the balls; each rotates with its rod."""
     check_positives(p, "angle", "L", "R", "g")
     check_not_negative("gap", p.gap)
     if not 1 <= p.lifted <= BALLS or p.angle >= 0.5 * np.pi:
@@ -75,7 +75,8 @@ def start(p):
     x = centres(angles(p), p)
     state, rows = make_bodies_2d(x, angles(p), 1.0, moment(p), np.full((BALLS, 2), p.R), LOW, (0.0, -p.g), 0.0,
                                  SWEEPS if p.gap > 0.0 else TOGETHER, TOUCHING)
-    return state, make_joints(state, rows, np.arange(BALLS), np.full(BALLS, BALLS), pivots(p), 1.0)
+    joints = make_joints(state, rows, np.arange(BALLS), np.full(BALLS, BALLS), pivots(p), 1.0)
+    return state, joints, angles(p), np.zeros(BALLS)
 
 
 def cradle(p):
@@ -83,13 +84,13 @@ def cradle(p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """Move the PileState; a method that moves the angles makes a pair of it, angles and rates."""
-    simulator, (now, rows) = lessons.simulator, state
+    """Move the balls; of a method that moves their angles, they are None."""
+    simulator, (now, rows, theta, omega) = lessons.simulator, state
     if step is simulator.swinging_step:
-        theta, omega = now if type(now) is tuple else (now.q[:BALLS], now.omega[:BALLS])
-        return simulator.advance_swinging(lessons.integrators.rk4_step, 0.0, theta, omega, dt, steps, cradle(p)), rows
+        one_step = lessons.integrators.rk4_step
+        return None, rows, *simulator.advance_swinging(one_step, 0.0, theta, omega, dt, steps, cradle(p))
     shape = simulator.disc_bounds, simulator.round_contacts
-    return simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, rows), rows
+    return simulator.advance_contact(step, acceleration, *shape, 0.0, now, dt, steps, rows), rows, theta, omega
 
 
 def seen(theta, omega, p):
@@ -104,8 +105,8 @@ def seen(theta, omega, p):
 
 
 def observe(state, p):
-    now, _ = state
-    return seen(*now, p) if type(now) is tuple else seen(now.q[:BALLS], now.omega[:BALLS], p)
+    now, _, theta, omega = state
+    return seen(theta, omega, p) if now is None else seen(now.q[:BALLS], now.omega[:BALLS], p)
 
 
 def truth(p, t):

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from solutions.given import passing
+from solutions.given.bodies import TooFast
 from solutions.support import model, shapes
 from solutions.support.events import extrema, value_at, zeros
 from solutions.support.quaternions import quaternion_from_matrix
@@ -1547,6 +1548,75 @@ def hinge_and_rod(lesson, rng):
             (pivot, np.linalg.norm(x[1] + places[1] - x[0] - places[0])))
 
 
+@random_law("Two balls deep in each other part against the springs that hold them, as implicit Euler has it.",
+            "springs beside deep overlap: largest error of places and velocities [m, m/s]", 5e-5)
+def deep_balls_on_springs(lesson, rng):
+    """Each hangs on a compliant rod along their line.  Such a rod gives a ball the inertia m + dt²/α: for the impulses
+    of a contact, and for what moves it out of the other ball.  Then the springs push both together.
+    """
+    d, dt, steps, deep = rng.choice((2, 3)), 0.02, 3, rng.uniform(0.01, 0.04)
+    n = rng.normal(size=d)
+    n /= np.linalg.norm(n)
+    m, soft, places = rng.uniform(0.5, 2.0, 2), 10.0 ** rng.uniform(-3.5, -2.5, 2), np.outer((0.0, 0.2 - deep), n)
+    bodies = [model.Body(tuple(x), float(w), shapes.Ball(0.1)) for x, w in zip(places, m)]
+    rods = [model.Distance(k, model.WORLD, (0.0,) * d, tuple(places[k] + (2 * k - 1) * n), float(soft[k]))
+            for k in (0, 1)]
+    loop = lesson.compose(model.make_model(bodies, (0.0,) * d, rods))
+    end = lesson.state_of(loop, lesson.run_parts(loop, 0.0, loop.state, dt, steps))
+    heavy, way, v, beyond = m + dt * dt / soft, np.zeros(2), 0.0, deep - loop.p.slop
+    for _ in range(steps):
+        way += 0.2 * beyond * np.array([-1.0, 1.0]) / heavy / np.sum(1.0 / heavy)
+        v, beyond = (m.sum() * v - dt * np.sum(way / soft)) / heavy.sum(), 0.8 * beyond
+        way += dt * v
+    return (end.x, end.v), (places + np.outer(way, n), np.outer((v, v), n))
+
+
+@random_law("A light ball moves a row that it runs into as one, also while heavy balls hit each other elsewhere.",
+            "a light row beside heavy balls: largest error of a velocity [m/s]", 1e-3)
+def light_row_beside_heavy_balls(lesson, rng):
+    """Each impact is swept until its own impulses settle: those of the heavy balls are a million times as large."""
+    m, speed, d = 1e-3 * rng.uniform(0.5, 2.0, 5), rng.uniform(0.5, 1.0), rng.choice((2, 3))
+    along, far, order = np.eye(d)[0], 100.0 * np.eye(d)[1], rng.permutation(7)
+    bodies = [model.Body(tuple(0.2 * k * along), float(w), shapes.Ball(0.1), v=tuple(speed * (k == 0) * along))
+              for k, w in enumerate(m)]
+    bodies += [model.Body(tuple(far + 0.2 * k * along), 1e3, shapes.Ball(0.1), v=tuple((1.0 - k) * along))
+               for k in (0, 1)]
+    end = ends_of(lesson, [bodies[k] for k in order], (0.0,) * d, 0.001, 1)
+    return end.v[np.argsort(order)[:5]], np.outer(np.ones(5), m[0] * speed / m.sum() * along)
+
+
+@random_law("A rod that swings through a block within a step is refused, and one that ends before it is not.",
+            "rods that swing past a block: wrong verdicts [-]", 0.0)
+def swings_past_a_block(lesson, rng):
+    """A rod of 2 m turns by up to half a turn; a small block that nothing moves lies on the circle, within or beyond.
+
+    In space a step with ω dt turns a body by 2 arctan(½ ω dt).
+    """
+    d, dt, within = rng.choice((2, 3)), 0.1, rng.random() < 0.5
+    spin = rng.uniform(2.0, 3.0)
+    turn = spin if d == 2 else 2.0 * np.arctan(0.5 * spin)
+    place = rng.uniform(0.4, turn - 0.4) if within else turn + rng.uniform(0.16, 0.18)
+    x = np.zeros((2, d))
+    x[1, :2] = 0.7 * np.cos(place), 0.7 * np.sin(place)
+    half, turns = np.full((2, d), 0.05), (1.0, np.inf)
+    half[0, 0] = 1.0
+    if d == 2:
+        state, p = lesson.make_bodies_2d(x, np.array([0.0, place]), (1.0, np.inf), turns, half, [], np.zeros(d), 0.0, 5,
+                                         0.01)
+        state, kind = state._replace(omega=np.array([spin / dt, 0.0])), "_2d"
+    else:
+        q = np.array([UPRIGHT, (np.cos(0.5 * place), 0.0, 0.0, np.sin(0.5 * place))])
+        state, p = lesson.make_bodies(x, q, (1.0, np.inf), np.outer(turns, np.ones(3)), half, [], np.zeros(d), 0.0, 5,
+                                      0.01)
+        state, kind = state._replace(omega=np.array([(0.0, 0.0, spin / dt), (0.0, 0.0, 0.0)])), ""
+    shape = [getattr(lesson, name + kind) for name in ("contact_step", "box_bounds", "box_contacts")]
+    try:
+        lesson.advance_contact(shape[0], lesson.weight, *shape[1:], 0.0, state, dt, 1, p)
+    except TooFast:
+        return 1.0, float(within)
+    return 0.0, float(within)
+
+
 def unit(rng):
     """Return a random direction (3,)."""
     n = rng.normal(size=3)
@@ -1571,7 +1641,8 @@ def parts_of_a_model(lesson, check):
     other) with closed forms, in the plane and in space.
     """
     check.laws(lesson, (only_moves, own_torque, gap_closes, slow_impact_in_free_fall, slides_without_turning,
-                        deep_balls_part, doubled_hinge, hinge_and_rod), seed=41, times=10)
+                        deep_balls_part, doubled_hinge, hinge_and_rod, deep_balls_on_springs,
+                        light_row_beside_heavy_balls, swings_past_a_block), seed=41, times=10)
     errors = sum(squeezed(lesson, d) for d in (2, 3))
     check("A ball between a wall and a piston ends in an error.", "errors of a ball without room [of 2]",
           law=2.0, found=float(errors), within=0.0, saw=f"{errors} of 2 runs ended in Diverged.")
