@@ -38,10 +38,14 @@ class WrongShape(BadInput):
 
 
 class Diverged(Sentence, ArithmeticError):
-    """A computation that gave no finite or no converged result: says what happened, at which value, and the remedy."""
+    """A computation that gave no finite or no converged result: says what happened, at which value, and the remedy.
+
+    Of a number that was computed eight digits are printed.
+    """
 
     def __init__(self, what, value, remedy):
-        super().__init__(f"{what} = {value}: {remedy}")
+        shown = f"{value:.8g}" if isinstance(value, float) else value
+        super().__init__(f"{what} = {shown}: {remedy}")
 
 
 def check_shape(thing, values, shape):
