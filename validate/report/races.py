@@ -116,14 +116,16 @@ def sentences(result):
     found = of(result)
     for headline in at(found):
         mine = [race for race in found if race["product"] == headline["product"] and race["level"] != HEADLINE]
-        others = [f"{factor(race['ratio'])} at {level_text(race)}" for race in mine if race["ratio"]]
-        more = f" The ratio is {', '.join(others)}." if others else ""
+        others = [f"{factor(race['ratio'])} {to_error(race, headline)}" for race in mine if race["ratio"]]
+        more = f" The engine's time over ours to other errors: {'; '.join(others)}." if others else ""
         yield sentence(headline) + more
 
 
-def level_text(race):
-    """Return the error of a race: 10 %, or that of the engine's best run."""
-    return f"its best, {percent(race['error'])}" if race["level"] is BEST else percent(race["level"])
+def to_error(race, headline):
+    """Return to which error a race is, and the engine's settings where they are not those of the headline."""
+    error = f"{percent(race['error'])}, the engine's best" if race["level"] is BEST else percent(race["level"])
+    same = race["variant"] == headline["variant"]
+    return f"to {error}" if same else f"to {error} (by {engine_name(race['product'], race['variant'])})"
 
 
 # ---------------------------------------------------------------------------------------------- all races

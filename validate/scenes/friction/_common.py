@@ -32,12 +32,12 @@ def read_distance(state, p):
     return state.x[0, :1]
 
 
-def slab_on_line(before="", after=""):
+def slab_on_line(before="", after="", iterations=SWEEPS):
     """Return pymunk's settings; the words before and after the slab say what a scene does with it."""
-    return f"{before}a slab of 2 m on a line{after}; {SWEEPS} iterations, collision_slop 1e-5"
+    return f"{before}a slab of 2 m on a line{after}; {iterations} iterations, collision_slop 1e-5"
 
 
-def slab_on_box(before="", after=""):
+def slab_on_box(before="", after="", iterations=SWEEPS):
     """Return pybullet's settings likewise."""
     return (f"{before}a slab of 2 m on a box{after}; maximal coordinates, solverResidualThreshold 0, "
-            f"{SWEEPS} iterations")
+            f"{iterations} iterations")

@@ -16,7 +16,7 @@ from validate.methods import EVENT, SLIDING
 from validate.reference.friction import CLOSE, NOTHING_LEFT, SoftBlock
 from validate.reference.schemes import summed
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
-from validate.scenes._common import built, round_off
+from validate.scenes._common import FEW, after_few_iterations, built, round_off
 from validate.scenes.friction._common import (
     block_on,
     in_pybullet,
@@ -156,6 +156,10 @@ RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
     # nothing changes between two events, and a midpoint step is then exact
     ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
+    engine(PYMUNK, "fewer iterations", in_pymunk(model, read_distance, iterations=10),
+           slab_on_line(TILTED, iterations=10), order=1, limit=after_few_iterations(limits), predicted=FEW),
+    engine(PYBULLET, "fewer iterations", in_pybullet(model, read_distance, iterations=15),
+           slab_on_box(TILTED, iterations=15), order=1, limit=after_few_iterations(limits), predicted=FEW),
     engine(PYMUNK, "", in_pymunk(model, read_distance), slab_on_line(TILTED),
            order=1, limit=limits, predicted=old_velocity),
     engine(PYBULLET, "", in_pybullet(model, read_distance), slab_on_box(TILTED),

@@ -19,7 +19,7 @@ from validate.reference.friction import (
     slips,
 )
 from validate.scene import PYBULLET, PYMUNK, Scene, engine, ours
-from validate.scenes._common import check_positives
+from validate.scenes._common import FEW, after_few_iterations, check_positives
 from validate.scenes.friction._common import block_on, in_pybullet, in_pymunk, read_distance, slab_on_box, slab_on_line
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
@@ -47,6 +47,10 @@ RUNNERS = (
     ours(SLIDING, limit=slip_limits, predicted=slip_error),
     ours(EVENT, limit=slip_limits,
          predicted="it cuts its steps where slips begin and end, so its error is not a smooth function of dt"),
+    engine(PYMUNK, "fewer iterations", in_pymunk(model, read_distance, iterations=10),
+           slab_on_line(after=PUSHED, iterations=10), order=1, limit=after_few_iterations(slip_limits), predicted=FEW),
+    engine(PYBULLET, "fewer iterations", in_pybullet(model, read_distance, iterations=30),
+           slab_on_box(after=PUSHED, iterations=30), order=1, limit=after_few_iterations(carried_limit), predicted=FEW),
     engine(PYMUNK, "", in_pymunk(model, read_distance), slab_on_line(after=PUSHED),
            order=1, limit=slip_limits, predicted=old_velocity_slip_error),
     engine(PYBULLET, "", in_pybullet(model, read_distance), slab_on_box(after=PUSHED),

@@ -13,7 +13,7 @@ from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import NOTHING_LEFT
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
-from validate.scenes._common import ONE_LINK, coordinates, measured, round_off
+from validate.scenes._common import FEW, ONE_LINK, after_few_iterations, coordinates, measured, round_off
 from validate.scenes.friction._common import in_pybullet, in_pymunk, slab_on_box, slab_on_line
 
 T = 1.25                     # [s]: it stops after 1.02 s
@@ -133,6 +133,11 @@ RUNNERS = (
            "reduced coordinates, enableConeFriction 0; otherwise as in pybullet",
            order=1, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
     engine(PYBULLET, "", in_pybullet(model, read), slab_on_box(), order=1, limit=limits, predicted=new_velocity),
+    engine(PYMUNK, "fewer iterations", in_pymunk(in_the_plane_of_the_throw, read_ahead, iterations=10),
+           slab_on_line("the vertical plane of the throw, ", iterations=10),
+           order=1, limit=after_few_iterations(limits), predicted=FEW),
+    engine(PYBULLET, "fewer iterations", in_pybullet(model, read, iterations=7), slab_on_box(iterations=7),
+           order=1, limit=after_few_iterations(limits), predicted=FEW),
 )
 
 

@@ -111,15 +111,15 @@ def model(p):
 
 
 read = balls.read_rolling(lambda p: p.R)
-world = partial(built, model=model, read=read)
+world = partial(built, model=model, read=read, iterations=2)
 RUNNERS = (
     ours(ROLLING, limit=late_limit, predicted=partial(error, share=1.0)),
     ours(AVERAGE_ROLLING, order="2 on average", limit=mean_limit, predicted=partial(error, share=0.5)),
     ours(EXACT_ROLLING, order=EXACT, limit=cut_limit, predicted=cut_error),
-    engine(PYMUNK, "", world(PYMUNK, overlap=OVERLAP), "100 iterations; the circle starts 1e-6 m inside the floor",
+    engine(PYMUNK, "", world(PYMUNK, overlap=OVERLAP), "2 iterations; the circle starts 1e-6 m inside the floor",
            order=1, limit=partial(late_limit, overlap=OVERLAP), predicted=partial(error, share=0.0, overlap=OVERLAP)),
     engine(PYBULLET, "", world(PYBULLET, overlap=0.0, slop=0.0),
-           "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
+           "maximal coordinates on a GEOM_PLANE; 2 iterations, no residual threshold, no slop, no damping",
            order=1, limit=late_limit, predicted=partial(error, share=1.0, overlap=OVERLAP)),
 )
 
