@@ -274,7 +274,7 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
 # ---------------------------------------------------------------------------------------------- sweeps
 
 @exercise("9.4", points=0.5,
-          hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; the solution does not change")
+          hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; a lawful λ stays as it is")
 def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
     for n, omega in enumerate((1.0, *draw(0.5, 0.9, 2), *draw(1.1, 1.9, 6))):
         A, b = positive_definite(draw, 4), draw(-3.0, 3.0, 4)
@@ -729,7 +729,8 @@ def test_a_sweep_leaves_lawful_impulses_alone(lesson, draw):
 
 
 @exercise("9.10", points=0.25,
-          hint="first J_n, then the limit μ J_n from it, then J_t with the velocity that the new J_n leaves")
+          hint="first J_n, then the limit μ J_n from it (0 where J_n = 0, since ∞ · 0 is NaN), then J_t with the "
+               "velocity that the new J_n leaves")
 def test_friction_is_limited_by_the_new_normal_impulse(lesson, draw):
     A, J = positive_definite(draw, 4), np.array([draw(0.5, 1.0), 0.0, 0.0, 0.0])
     for what, u_n, u_t, mu in (("slides", -draw(1.0, 2.0), draw(5.0, 9.0), 0.2),
@@ -1451,7 +1452,7 @@ HARD, LOOSE = np.zeros(5), np.array([1.0, 1.0, 0.0, 1.0, 0.0])           # which
 
 @exercise("9.16", points=0.125,
           hint="u from the newest velocities; J_n and J_t from this u; the change acts on both bodies "
-               "at once; a body with an inverse mass of 0 may still turn, and J of bodies at rest may still be wrong")
+               "at once; a body with an inverse mass of 0 may still turn; visit contacts of bodies at rest, too")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
     check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, HARD), (draw(0.1, 0.9), False, HARD),
                                          (0.0, True, HARD), (draw(0.1, 0.9), "axle", HARD),
@@ -1597,7 +1598,9 @@ def test_the_proximal_map_leaves_lawful_impulses_alone_for_every_factor(lesson, 
                   given=f"r = {some} kg")
 
 
-@exercise("9.17", points=0.25, hint="μ = ∞ is no limit where J_n > 0, and J_t is 0 where J_n = 0; ∞ · 0 is NaN")
+@exercise("9.17", points=0.25,
+          hint="J_t is limited by μ times the new J_n, after its step with r; "
+               "μ = ∞ is no limit where J_n > 0, and J_t is 0 where J_n = 0: ∞ · 0 is NaN")
 def test_a_proximal_sweep_with_much_friction_holds_what_pushes_and_nothing_else(lesson, draw):
     for (mu, fast), (what, u_n) in itertools.product(((np.inf, 1e3), (np.inf, 1e12), (draw(2e3, 3e3), 1e3)),
                                                      (("pushes", -draw(0.01, 0.02)), ("separates", draw(0.01, 0.02)))):

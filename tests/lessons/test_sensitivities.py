@@ -576,7 +576,7 @@ def slow_events(draw, shares):
 
 
 @exercise("12.6", points=0.5,
-          hint="if |rate| ≤ GRAZING (|g_x| · |v| + |g_v| · |a|), raise BadInput: a comparison of sizes, at any scale")
+          hint="compare |rate| with GRAZING times the sum of the sizes of its terms: Σ |g_x,i v_i| + Σ |g_v,i a_i|")
 def test_an_event_that_only_grazes_is_refused(lesson, draw):
     dtau_of, thing = lesson.event_time_sensitivity, "rate of the event"
     for d in (2, 3):
@@ -963,7 +963,9 @@ def check_halvings(lesson, draw):
                    thing="miss of the last throw")
 
 
-@exercise("12.10", points=0.75, hint="step = solve(J, r), s ← s − step, until √(r · r) ≤ tolerance; keep every |r|")
+@exercise("12.10", points=0.75,
+          hint="step = solve(J, r), s ← s − step, a step that misses by more halved, "
+               "until √(r · r) ≤ tolerance; keep every |r|")
 def test_newtons_method_hits_what_it_aims_at(lesson, draw):
     T, g, x, y = draw(0.8, 1.2), 9.81, draw(2.0, 4.0), draw(0.5, 1.5)
     p = np.array([T, g, x, y])
@@ -984,7 +986,9 @@ def test_newtons_method_hits_what_it_aims_at(lesson, draw):
     check_sizes(lesson, draw)
 
 
-@exercise("12.10", points=0.25, hint="misses has one entry for the first throw, and one per iteration")
+@exercise("12.10", points=0.25,
+          hint="misses has one entry for the first throw, and one per iteration; "
+               "a miss that equals the tolerance is small enough, also where both are 0")
 def test_the_misses_are_those_of_newtons_method(lesson, draw):
     """For s² = a Newton's method is s ← ½ (s + a/s), which misses by less each time if it begins above the root."""
     a, start = draw(2.0, 5.0), draw(3.0, 5.0)
