@@ -1143,7 +1143,7 @@ def test_the_chosen_friction_balances_the_pull_up_to_its_limit_and_is_kinetic_be
     choice("the letter of Coulomb's friction", lesson.dry_friction_is(), right)
 
 
-@exercise("3.19", points=1, hint="the velocity after it is v_t times a factor from 0 to 1, or each component has its own; "
+@exercise("3.19", points=1, hint="the new velocity is v_t times a factor from 0 to 1, or each component has its own; "
                "without a load, j_n = 0, there is no friction")
 def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, draw):
     mu, dt = draw(0.3, 0.6), 0.02
