@@ -26,7 +26,7 @@ from validate.worlds.bullet import WIDE
 T = 0.4                      # [s]
 STEPS = (8, 16, 40, 80, 160, 400, 800)
 SWEEPS = 25                  # [-]; each leaves less than a third of the error
-IN_PYMUNK, IN_PYBULLET = 7, 15           # fewer iterations, with which no error changes by a ten thousandth [-]
+IN_PYMUNK, IN_PYBULLET = 20, 15          # fewer iterations, with which no error changes by a ten thousandth [-]
 MARGIN = 0.01                # [m]
 OVERLAP = 1e-6               # of the engines' bodies at the start [m]
 LONG, THICK = 0.5, 0.3       # half sizes of the box that is the wedge [m]
