@@ -168,6 +168,15 @@ def test_with_its_own_drag_an_engine_slows_a_body_exactly(product):
     assert state.v[0] == pytest.approx(np.exp(-k / m * T) * np.array((3.0, 1.0)), rel=1e-12)
 
 
+def test_a_leapfrog_start_of_links_in_pybullet_is_refused():
+    if not PYBULLET.installed():
+        pytest.skip(f"pybullet is not installed: {PYBULLET.remedy}")
+    rod = make_model([Body((0.5, 0.0), 1.0, inertia=0.1)], (0.0, -9.81), [Hinge(0, WORLD, (0.0, 0.0))])
+    with pytest.raises(BadInput, match="ahead"):
+        PYBULLET.world.build(rod, 0.01, maximal=False, ahead=0.5)
+    PYBULLET.world.build(rod, 0.01, ahead=0.5).close()
+
+
 def test_the_drag_of_a_pymunk_space_is_refused_for_bodies_of_two_masses():
     bodies = [Body((0.0, 0.0), 1.0), Body((1.0, 0.0), 2.0)]
     with pytest.raises(BadInput, match="own_drag"):

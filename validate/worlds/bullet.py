@@ -122,6 +122,8 @@ def build(model, dt, **settings):
     settings, model = Settings(**settings), with_plain_springs(model)
     if not settings.maximal and opens(model):
         raise BadInput("a model in reduced coordinates", OPENS, "build it in maximal ones")
+    if not settings.maximal and settings.ahead and any(isinstance(joint, LINKS) for joint in model.joints):
+        raise BadInput("ahead, of links in reduced coordinates,", settings.ahead, "give 0: their velocities cannot lag")
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:
         model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
