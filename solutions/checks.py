@@ -40,7 +40,7 @@ class WrongShape(BadInput):
 class Diverged(Sentence, ArithmeticError):
     """A computation that gave no finite or no converged result: says what happened, at which value, and the remedy.
 
-    Of a number that was computed eight digits are printed.
+    A float is printed with eight digits.
     """
 
     def __init__(self, what, value, remedy):

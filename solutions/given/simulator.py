@@ -246,8 +246,9 @@ def first_impact(step, t, theta, omega, dt, p):
 def time_of_impact(step, t, theta, omega, dt, k, p):
     """Return the time [s] within dt at which the gap of balls k and k + 1 closes, which is closed after dt.
 
-    Newton's method, from the end.  Where its next time lies outside of the interval in which the gap closes, it takes
-    the middle of this interval.  It ends where the gap is zero but for round-off.
+    Newton's method begins at dt.  An interval that contains the impact shrinks with each time that it tries.  If the
+    next time lies outside of that interval, the middle of it is tried instead.  It ends when only round-off is left of
+    the gap.
     """
     early, end, late = 0.0, dt, dt
     for _ in range(HALVINGS):

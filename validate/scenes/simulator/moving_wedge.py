@@ -88,7 +88,7 @@ def slides(t, q, rates, p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """Move the bodies; of a method that moves the two coordinates, they are None."""
+    """Move the bodies.  A method that moves the two coordinates returns None in place of them."""
     simulator, (now, bodies_here, q, rates) = lessons.simulator, state
     if step is lessons.integrators.verlet_step:
         return None, bodies_here, *lessons.integrators.advance(step, acceleration, 0.0, q, rates, dt, steps, p)

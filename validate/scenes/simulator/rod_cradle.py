@@ -26,8 +26,8 @@ T = 0.7                      # [s]: all impacts are over after 0.6
 STEPS = (5, 10, 20, 50, 100, 200, 500)
 BALLS = 5
 SWEEPS = 4                   # of the loop, one contact and hinges: each leaves I/mL² = 1e-3 of an error [-]
-ITERATIONS = 100             # of pybullet in maximal coordinates [-]: with 50 it errs up to a third more
-IN_PYMUNK = 3, 15            # iterations where balls have gaps, and where they touch [-]: more change no error
+ITERATIONS = 100             # of pybullet in maximal coordinates [-]: with 50 its errors differ by more than 1 %
+IN_PYMUNK = 3, 15            # iterations with gaps, and without [-]: 100 change no error by a ten thousandth of it
 TOGETHER = 60                # of four contacts at once: each leaves cos²(π/5) = 0.65 [-]
 TOUCHING = 1e-9              # margin of the loop [m]: it detects only contacts that touch
 BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on the phases of the impacts
@@ -85,7 +85,7 @@ def cradle(p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
-    """Move the balls; of a method that moves their angles, they are None."""
+    """Move the balls.  A method that moves their angles returns None in place of them."""
     simulator, (now, rows, theta, omega) = lessons.simulator, state
     if step is simulator.swinging_step:
         one_step = lessons.integrators.rk4_step
