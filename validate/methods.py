@@ -95,7 +95,6 @@ ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072
 # simulator
 LOOP_2D = Method("contact_step_2d", "the whole loop", 1, "simulator", "#D55E00", "D")
 LOOP_WITH_MEANS = Method("mean_contact_step_2d", "the loop, mean velocities", 2, "simulator", "#009E73", "s")
-IN_COORDINATES = VERLET._replace(label="two coordinates, Verlet")
 SETTLED_LOOP = Method("settled_contact_step_2d", "the loop, sweeps until settled", 1, "simulator", "#009E73", "s")
 LOOP = Method("contact_step", "the whole loop", 1, "simulator", "#D55E00", "D")
 IN_COORDINATES = Method("verlet_step", "two coordinates", 2, "integrators", "#CC79A7", "v")
