@@ -290,7 +290,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("boxes in the plane", "three contacts", "sweeps with memory"),
-    gives_up={IN_COORDINATES: "everything but this motion: it is told that the block slides on the wedge"},
     ablations={"friction": "without it momentum along the floor stays, and the motion has a closed form",
                "rotation of the wedge": "a wide foot would carry its moments; ours has an inverse inertia of zero"},
 )
