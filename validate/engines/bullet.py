@@ -12,7 +12,6 @@ from .switches import Switch, made, worlds_made
 
 _idle: list = []             # connected clients that are free for another run
 ITERATIONS = 50              # of the contact solver, by default
-IMPACT_ITERATIONS = 50
 CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]
 WARMER = 0.85                # the same in Bullet itself, which pybullet overrides [-]
 WARM = 0.1                   # share of the last impulses with which the contact solver begins, by default [-]
@@ -156,7 +155,7 @@ class Rigid(Bullet):
 
 
 IMPACT_SETTINGS = ("maximal coordinates; contactERP 0, contactSlop 0, contactProcessingThreshold 0, "
-                   f"restitutionVelocityThreshold 0, {IMPACT_ITERATIONS} iterations")
+                   "restitutionVelocityThreshold 0")
 
 
 def hidden_damping(acceleration, start):

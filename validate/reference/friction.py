@@ -12,6 +12,7 @@ from ..scene import EXACT, Prediction, by_order
 T = 4.0                      # [s]: two slips
 HALF = 1.0                   # half the length of the engines' slab [m]
 SWEPT = 1e-9                 # what the engines' sweeps leave, relative
+FEW_SWEPT = 1.0              # the same of 10 sweeps, over the length of a step [1/s]: see leapfrog_slip_limit
 NOTHING_LEFT = "it is exact: only round-off is left, and the limit bounds it"
 
 
@@ -108,13 +109,20 @@ def carried_limit(p, dt):
     return slip_limits(p, dt)[1] if carried_along(p, dt) else np.inf
 
 
+def acceleration_at_first(p):
+    """Return the acceleration [m/s²] at the start, where the force is strongest, less friction."""
+    return max(p.force / p.m - p.mu * p.g, 0.0)
+
+
 @cache
-def pushed_in_steps(p, steps, new):
+def pushed_in_steps(p, steps, new, lag=0.0):
     """Return x at T and the largest speed of a block if the force at the beginning of each step acts for all of it.
 
     It moves with one velocity per step.  Friction removes at most μg dt of the velocity, and at most all of it.
+    lag: of the first velocity, in steps; ½ makes leapfrog
     """
-    dt, x, v, fastest = T / steps, 0.0, 0.0, 0.0
+    dt, x, fastest = T / steps, 0.0, 0.0
+    v = -lag * dt * acceleration_at_first(p)
     for n in range(steps):
         old, v = v, v + dt * p.force / p.m * np.cos(p.omega * n * dt)
         v -= np.sign(v) * min(abs(v), p.mu * p.g * dt)
@@ -148,6 +156,22 @@ old_velocity_slip_error = partial(slip_error, new=False, left=SWEPT)
 def carried_slip_error(p, dt):
     """pybullet's error is not predicted where it loses the slab."""
     return slip_error(p, dt, left=SWEPT) if carried_along(p, dt) else None
+
+
+def leapfrog_slip_limit(p, dt):
+    """With a leapfrog start the force of a step is that of its middle, as in a midpoint step.  A slip that begins or
+    ends between two steps adds the same order: its first and its last force change by Aω dt at most.  What ten sweeps
+    leave was measured: half of this limit's share, on runs of 160 to 1,600 steps.
+    """
+    return slip_limits(p, dt)[2] + FEW_SWEPT * dt if carried_along(p, dt) else np.inf
+
+
+def leapfrog_slip_error(p, dt):
+    """The same rule with a first velocity that is half a step old, and the measured share that ten sweeps leave."""
+    if not carried_along(p, dt):
+        return None
+    found = slip_error(p, dt, left=FEW_SWEPT * dt)
+    return found._replace(error=np.array([pushed_in_steps(p, round(T / dt), True, 0.5)[0]]) - slip_position(p, T))
 
 
 # ---------------------------------------------------------------------------------------------- MuJoCo's contact

@@ -334,10 +334,11 @@ def nudged(rope, nudge):
     return np.concatenate((rope.x[:1], rope.x[0] + np.cumsum(turned, axis=0)))
 
 
-def rope_after(step, rope, h, steps):
-    """Return x (N + 1, 2) after this number of steps (x, v, h, l, a) → (x, v) from rest."""
-    x, v, a = rope.x, np.zeros_like(rope.x), np.zeros_like(rope.x)
+def rope_after(step, ahead, rope, h, steps):
+    """Return x (N + 1, 2) after this number of steps (x, v, h, l, a) → (x, v) from rest; ahead: see `predict`."""
+    x, a = rope.x, np.zeros_like(rope.x)
     a[1:, 1] = -rope.g
+    v = ahead * h * a
     for _ in range(steps):
         x, v = step(x, v, h, rope.l, a)
     return x
@@ -365,9 +366,12 @@ class RopeMotion(NamedTuple):
             return ErrorLaw(nudged_run, np.array(self.truth(p, self.T), dtype=float), order, self.T, finest)
         return law
 
-    def predict(self, step, order):
-        """Return the field `predicted` of a Runner that takes these steps."""
-        law = rope_law(self, step, order)
+    def predict(self, step, order, ahead=0.0):
+        """Return the field `predicted` of a Runner that takes these steps.
+
+        ahead: of the first velocity, in steps, with gravity alone
+        """
+        law = rope_law(self, step, order, ahead)
 
         def predicted_error(p, dt):
             """The error, with its sign, of the same step with a dense matrix: at the same step where that is coarse,
@@ -376,26 +380,24 @@ class RopeMotion(NamedTuple):
             return law(p).prediction(dt, self.floor(p, dt))
         return predicted_error
 
-    def predict_unfinished(self, step, order):
-        """Return the same for sweeps that stop before all links are right.
-
-        Their error is known to a factor of two only.
-        """
-        law = rope_law(self, step, order)
+    def predict_unfinished(self, step, order, ahead=0.0, share=UNFINISHED):
+        """Return the same for sweeps that stop before all links are right: its error is known to this share only."""
+        law = rope_law(self, step, order, ahead)
 
         def predicted_error(p, dt):
             """pymunk moves the points first and then corrects each link within one step.
 
-            In a rope of several links its sweeps do not converge: the band is wider by half of the error.
+            In a rope of several links its sweeps do not converge: the band is wider by half of the error, and with a
+            leapfrog start, whose own error is smaller, by all of it.
             """
-            return widened(law(p), dt, self.floor(p, dt), UNFINISHED)
+            return widened(law(p), dt, self.floor(p, dt), share)
         return predicted_error
 
 
 @cache
-def rope_law(motion, step, order):
+def rope_law(motion, step, order, ahead):
     """Return p → ErrorLaw of a rope that takes these steps: methods and engines with the same step share its runs."""
-    return motion.error_law(partial(rope_after, step), order, FINEST[order])
+    return motion.error_law(partial(rope_after, step, ahead), order, FINEST[order])
 
 
 def widened(law, dt, floor, share):

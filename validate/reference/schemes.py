@@ -309,10 +309,9 @@ def shared_prediction(motion, scheme, law, follows, ahead, finest, powers):
     return motion.predict_model(motion.model(scheme, law, ahead), follows, finest, powers)
 
 
-def summed(velocity, T, dt, new):
+def summed(velocity, T, dt, at):
     """Return the displacement [m] of a run with the exact velocity(t) (n,) → (n, …), held for each step.
 
-    It is the sum of the new velocities, or of the old ones: the rectangle rule.
+    at: where in a step, from 0 for the old velocity to 1 for the new one (the rectangle rule); ½ is the midpoint rule
     """
-    n = np.arange(round(T / dt))
-    return dt * np.sum(velocity(dt * (n + 1.0 if new else n)), axis=0)
+    return dt * np.sum(velocity(dt * (np.arange(round(T / dt)) + at)), axis=0)

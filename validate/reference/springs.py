@@ -239,8 +239,10 @@ def implicit_net(net, h, steps):
     return x
 
 
-def pymunk_net_model(net, h, steps, iterations=10):
+def pymunk_net_model(net, h, steps, iterations=1, ahead=0.0):
     """Return x (n, d) after `steps` steps of Chipmunk's treatment of a net, in its order.
+
+    ahead: of the first velocity, in steps; ½ makes leapfrog
 
     Points move with their old velocities; the springs pull at the new positions; then e^(−k_v h/m) reduces all
     velocities, and gravity acts.  Then each damper in sequence moves the rate of its spring towards its target, by
@@ -249,7 +251,8 @@ def pymunk_net_model(net, h, steps, iterations=10):
     *Source:* Chipmunk 7, cpSpaceStep.c and cpDampedSpring.c.
     """
     held = np.array([net.free()[i] or net.free()[j] for i, j in net.pairs])
-    B, free, x, v = net.spring_matrix()[held], net.free()[:, None], net.x, net.v
+    B, free, x = net.spring_matrix()[held], net.free()[:, None], net.x
+    v = net.v + ahead * h * free * forces(x, net.v, net, net.spring_matrix()) / net.m
     per_mass = (B**2 @ net.free()) / net.m
     lost, kept = -np.expm1(-net.k_d * h * per_mass), np.exp(-net.k_v * h / net.m)
     for _ in range(steps):

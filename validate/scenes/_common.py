@@ -50,14 +50,16 @@ def constantly(value):
 ONE_LINK = constantly([(0, 1)])          # of a picture of two points
 
 
-def built(product, model, read, watch=None, **settings):
+def built(product, model, read, watch=None, accelerations=None, **settings):
     """Return make(p, dt) of an engine's runner: the world of model(p) in that engine; read(State, p) observes it.
 
     watch(the engine's own world, p, dt) → what reports its steps, of validate/engines/watched.py
+    accelerations(p) → (a, α) of all bodies at the start, for a leapfrog start; `ahead` takes those of the loads
     """
     def make(p, dt):
+        begins = {"ahead": 0.5, "accelerations": accelerations(p)} if accelerations else {}
         with worlds_made() as made:
-            world = product.world.build(model(p), dt, **settings)
+            world = product.world.build(model(p), dt, **settings, **begins)
         run = EngineRun(world.step, lambda: read(world.state(), p), world.close)
         if watch is None:
             return run

@@ -28,13 +28,13 @@ from ..engines import quiet_import
 from . import Push, World, unsupported
 from .derived import (
     SPINS_ON,
-    acceleration_at_start,
     as_numbered,
     beyond,
     beyond_single,
     checked_step,
     grip,
     in_plane,
+    moved_start,
     spins_on,
     weld_place,
     with_plain_springs,
@@ -143,8 +143,7 @@ def push(model, bodies, loads):
 def add_bodies(world, model, age):
     """Return the engine's bodies; age [s]: how old the first velocities are."""
     b2, start, e, made = module(), start_of(model), restitutions(model), []
-    a, alpha = acceleration_at_start(model)
-    v, omega = start.v - age * a, start.omega - age * alpha
+    v, omega = moved_start(model, -age)[2:]
     for k, one in enumerate(model.bodies):
         carries = np.any(start.v[k]) or start.omega[k]
         make = (world.create_dynamic_body if can_move(one) else

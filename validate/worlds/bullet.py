@@ -21,7 +21,6 @@ from solutions.support.model import (
     friction_of,
     joined_pairs,
     loads_at,
-    start_of,
     touching_pairs,
 )
 from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon, Polyhedron
@@ -32,7 +31,6 @@ from . import Push, World, unsupported
 from .derived import (
     OPENS,
     Embedding,
-    acceleration_at_start,
     beyond,
     bounces,
     carries,
@@ -41,6 +39,7 @@ from .derived import (
     fastest,
     forces_of,
     grip,
+    moved_start,
     net_of,
     only_holds,
     opens,
@@ -71,6 +70,7 @@ class Settings(NamedTuple):
     maximal: bool = True     # coordinates of bodies that move
     iterations: int | None = None    # of the solver; None: 10 per joint, at least 100
     ahead: float = 0.0       # share of a step by which the first velocities lag; ½ makes leapfrog
+    accelerations: tuple | None = None   # (a, α) then, with what contacts and joints do; None: those of the loads
     damped: bool = False     # keep the engine's default damping
     own_drag: bool = False   # bodies damp, v e^(−k dt/m) before the forces, in place of a force −k v
     overlap: float = OVERLAP  # of touching bodies at the start, where nothing bounces [m]
@@ -122,13 +122,15 @@ def build(model, dt, **settings):
     settings, model = Settings(**settings), with_plain_springs(model)
     if not settings.maximal and opens(model):
         raise BadInput("a model in reduced coordinates", OPENS, "build it in maximal ones")
-    if not settings.maximal and settings.ahead and any(isinstance(joint, LINKS) for joint in model.joints):
-        raise BadInput("ahead, of links in reduced coordinates,", settings.ahead, "give 0: their velocities cannot lag")
+    if (settings.ahead and not (settings.maximal or settings.accelerations)
+            and any(isinstance(joint, LINKS) for joint in model.joints)):
+        raise BadInput("ahead, of links in reduced coordinates,", settings.ahead, "give `accelerations`, too")
     drag = sum(load.k for load in model.loads if isinstance(load, Drag)) if settings.own_drag else 0.0
     if settings.own_drag:
         model = model._replace(loads=tuple(load for load in model.loads if not isinstance(load, Drag)))
     world = Bullet(dt)
-    parts = Parts(world.pb, model, start_of(model), Embedding(model.d), settings, [(-1, -1)] * len(model.bodies),
+    start = moved_start(model, -settings.ahead * dt, settings.accelerations)
+    parts = Parts(world.pb, model, start, Embedding(model.d), settings, [(-1, -1)] * len(model.bodies),
                   bounces(model) if settings.impacts is None else settings.impacts)
     configure(parts, dt)
     x = pressed_in(model, settings.overlap) if touches(model) and not parts.impacts else parts.start.x
@@ -140,7 +142,7 @@ def build(model, dt, **settings):
         parts.pb.stepSimulation()
     if drag:
         let_damp(parts, drag)
-    release(parts, x, settings.ahead * dt, linked)
+    release(parts, x, linked)
     world.gravity = tuple(parts.space.point(model.gravity).tolist())
     parts.pb.setGravity(*world.gravity)
     join(parts)
@@ -256,17 +258,15 @@ def let_damp(parts, drag):
             parts.pb.changeDynamics(one, link, linearDamping=-np.expm1(-drag / body.m))
 
 
-def release(parts, x, age, linked):
-    """Put the bodies at their places with their velocities; age [s]: how old these are."""
-    a, alpha = acceleration_at_start(parts.model)
+def release(parts, x, linked):
+    """Put the bodies at their places with their velocities."""
     start, space = parts.start, parts.space
     for k, body in enumerate(parts.model.bodies):
         if not can_move(body) or k in linked:
             continue
         one = parts.handles[k][0]
         parts.pb.resetBasePositionAndOrientation(one, *pose(parts, k, x[k]))
-        parts.pb.resetBaseVelocity(one, space.point(start.v[k] - age * a[k]).tolist(),
-                                   space.turning(start.omega[k] - age * alpha[k]).tolist())
+        parts.pb.resetBaseVelocity(one, space.point(start.v[k]).tolist(), space.turning(start.omega[k]).tolist())
 
 
 # ---------------------------------------------------------------------------------------------- joints

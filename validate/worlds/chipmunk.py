@@ -22,13 +22,13 @@ from solutions.support.shapes import Ball, Box, Capsule, HalfSpace, Polygon
 from ..engines.chipmunk import pymunk_space
 from . import Push, World, unsupported
 from .derived import (
-    acceleration_at_start,
     beyond,
     bounces,
     checked_step,
     forces_of,
     grip,
     in_plane,
+    moved_start,
     pressed_in,
     touches,
     weld_place,
@@ -48,15 +48,17 @@ def refuses(model):
             or beyond(model, LONG))
 
 
-def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop=SLOP, own_drag=False):
+def build(model, dt, iterations=None, ahead=0.0, accelerations=None, bias=0.0, overlap=OVERLAP, slop=SLOP,
+          own_drag=False):
     """Make a World.
 
     ahead: share of a step by which the first velocities run ahead; ½ makes leapfrog
+    accelerations: (a (n, 2), α (n,)) of the bodies then, with what contacts and joints do; without it those of loads
     own_drag: the space damps, v e^(−k dt/m) at the end of a step, in place of a force −k v of the old velocity
     """
     dt = checked_step(model, dt, refuses)
-    settings = {"iterations": iterations, "ahead": ahead, "bias": bias, "overlap": overlap, "slop": slop,
-                "own_drag": own_drag}
+    settings = {"iterations": iterations, "ahead": ahead, "accelerations": accelerations, "bias": bias,
+                "overlap": overlap, "slop": slop, "own_drag": own_drag}
     if model.d == 3:
         flat, lift = in_plane(model)
         world = build(flat, dt, **settings)
@@ -68,7 +70,7 @@ def build(model, dt, iterations=None, ahead=0.0, bias=0.0, overlap=OVERLAP, slop
     space.collision_slop = slop
     if iterations or touches(model) or model.joints:
         space.iterations = iterations or max(100, 10 * len(model.joints))
-    bodies = add_bodies(space, model, ahead * dt, overlap)
+    bodies = add_bodies(space, model, moved_start(model, ahead * dt, accelerations), overlap)
     add_joints(space, model, bodies, bias)
     add_springs(space, model, bodies)
     rows = lambda name: np.array([getattr(body, name) for body in bodies], float)
@@ -92,19 +94,17 @@ def let_damp(space, model):
     return model._replace(loads=kept)
 
 
-def add_bodies(space, model, ahead, overlap):
-    """Return the engine's bodies; ahead [s]: the age of the first velocities."""
+def add_bodies(space, model, start, overlap):
+    """Return the engine's bodies, with the velocities of this State."""
     import pymunk
-    start = start_of(model)
     x = pressed_in(model, overlap) if touches(model) and not bounces(model) else start.x
-    a, alpha = acceleration_at_start(model)
-    v, omega, bodies = start.v + ahead * a, start.omega + ahead * alpha, []
+    bodies = []
     for k, one in enumerate(model.bodies):
         carries = np.any(start.v[k]) or np.any(start.omega[k])
         body = (pymunk.Body(one.m, one.inertia) if can_move(one) else
                 pymunk.Body(body_type=pymunk.Body.KINEMATIC if carries else pymunk.Body.STATIC))
         body.position, body.angle = tuple(x[k].tolist()), float(start.q[k])
-        body.velocity, body.angular_velocity = tuple(v[k].tolist()), float(omega[k])
+        body.velocity, body.angular_velocity = tuple(start.v[k].tolist()), float(start.omega[k])
         space.add(body)
         if one.shape is not None:
             shape = shape_of(body, one.shape)

@@ -215,8 +215,21 @@ def fastest(model):
     return max([np.linalg.norm(start.v[k]) for k, body in enumerate(model.bodies) if can_move(body)], default=0.0)
 
 
+def moved_start(model, seconds, accelerations=None):
+    """Return the State at the start with the velocities of so many seconds later or, where negative, before.
+
+    Half a step makes leapfrog of symplectic Euler.
+    accelerations: (a (n, d), α) with what contacts and joints do; without it those of the loads
+    """
+    start = start_of(model)
+    if not seconds:
+        return start
+    a, alpha = accelerations or acceleration_at_start(model)
+    return start._replace(v=start.v + seconds * np.asarray(a), omega=start.omega + seconds * np.asarray(alpha))
+
+
 def acceleration_at_start(model):
-    """Return (a (n, d), α) at the start, without contacts and joints: for a leapfrog start."""
+    """Return (a (n, d), α) at the start, without contacts and joints."""
     start = start_of(model)
     F, tau = loads_at(model, 0.0, start)
     a, alpha = np.zeros_like(F), np.zeros_like(tau)

@@ -32,10 +32,10 @@ from ..reference.orientation import quaternion
 from . import Push, World, unsupported
 from .derived import (
     Embedding,
-    acceleration_at_start,
     beyond_single,
     checked_step,
     grip,
+    moved_start,
     thinnest,
     with_plain_springs,
 )
@@ -107,8 +107,7 @@ def configure(parts, dt, substeps):
 def add_bodies(parts, age):
     """Add the bodies; age [s]: how old the first velocities are."""
     rapier, space, start = parts.rapier, parts.space, parts.start
-    a, alpha = acceleration_at_start(parts.model)
-    v, omega = start.v - age * a, start.omega - age * alpha
+    v, omega = moved_start(parts.model, -age)[2:]
     for k, body in enumerate(parts.model.bodies):
         carries = np.any(start.v[k]) or np.any(start.omega[k])
         make = (rapier.RigidBody.dynamic if can_move(body) else

@@ -13,7 +13,7 @@ from solutions.checks import check_not_negative, check_positive
 from solutions.support.model import Body, make_model
 from solutions.support.shapes import Ball
 from validate.check import states
-from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS
+from validate.engines.bullet import IMPACT_SETTINGS
 from validate.engines.switches import worlds_made
 from validate.methods import ONE_BY_ONE, REFLECTION
 from validate.scene import EXACT, PYBULLET, PYMUNK, Scene, engine, ours
@@ -24,6 +24,7 @@ T = 1.0
 LIGHT = 1.0                  # mass of the block next to the wall [kg]
 FINEST = 2                   # digits after the first that an engine can count in reasonable time
 R, ROOM = 1.0, 0.5           # radius of the engines' blocks, and the free distance between neighbours [m]
+ITERATIONS = 50              # of the engines [-]
 OVER = 8.0                   # time at which the heavy block is back at its start [s]
 
 
@@ -140,7 +141,7 @@ def counted(product, velocities):
     """Return make(p, dt) of an engine's runner; velocities(its own world) → () → (v, V): a State takes much longer."""
     def make(p, dt):
         with worlds_made() as made:
-            world = product.world.build(model(p), engine_step(p), iterations=IMPACT_ITERATIONS)
+            world = product.world.build(model(p), engine_step(p), iterations=ITERATIONS)
         return one_reading(lambda: count(world.step, velocities(*made), p), world.close)
     return make
 
@@ -162,7 +163,8 @@ RUNNERS = (
     ours(ONE_BY_ONE, **OURS),
     ours(REFLECTION, **OURS),
     engine(PYMUNK, "", counted(PYMUNK, in_pymunk), "circles on a line, 50 iterations, collision_slop 1e-5", **ENGINES),
-    engine(PYBULLET, "", counted(PYBULLET, in_pybullet), f"spheres on a line; {IMPACT_SETTINGS}", **ENGINES),
+    engine(PYBULLET, "", counted(PYBULLET, in_pybullet),
+           f"spheres on a line; {IMPACT_SETTINGS}, {ITERATIONS} iterations", **ENGINES),
 )
 
 

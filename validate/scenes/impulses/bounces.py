@@ -11,7 +11,6 @@ from solutions.impulses import BouncingBall, check_restitution
 from solutions.support.model import Body
 from solutions.support.shapes import Ball
 from validate.check import Whose, states
-from validate.engines.bullet import IMPACT_ITERATIONS
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
 from validate.reference.impulses import APART, COPIES, LATE, all_dropped, delays, pushed, rounded_steps, soft_bounce
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, by_order, ours
@@ -188,15 +187,15 @@ def read(state, p):
 
 
 FAR = {"far": APART * COPIES}
-world = partial(built, model=model, read=read)
+world = partial(built, model=model, read=read, iterations=1)
 RUNNERS = (
     ours(PENALTY, limit=soft_limit, predicted=pushed_back, supports=keeps_bouncing, most_in_quick=2500,
          departure=Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
                              soft, Whose.LAW)),
     *impact_runners(
         (PROJECTING, BACKTRACKING), limits, late_impacts,
-        (world(PYMUNK, iterations=10), "circles on a thick segment; collision_slop 1e-5"),
-        (world(PYBULLET, iterations=IMPACT_ITERATIONS), "spheres on a GEOM_PLANE"),
+        (world(PYMUNK), "circles on a thick segment; 1 iteration, collision_slop 1e-5"),
+        (world(PYBULLET), "spheres on a GEOM_PLANE; 1 iteration"),
         pymunk_errs=FAR, bullet_errs=FAR, most_steps=2500),
 )
 

@@ -11,7 +11,6 @@ import numpy as np
 from solutions.given.impulses import Discs
 from solutions.support.model import Body, make_model
 from solutions.support.shapes import Ball
-from validate.engines.bullet import IMPACT_ITERATIONS
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
 from validate.reference.impulses import APART, COPIES, delays, passed_on, rounded_steps
 from validate.scene import EXACT, PYBULLET, PYMUNK, Prediction, Scene, by_order
@@ -21,6 +20,7 @@ from validate.scenes.impulses._common import copies_of, impact_runners
 T = 0.4                      # [s]: all impacts are over after 0.16
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
 BALLS = 5
+TOGETHER = 50                # iterations for balls that touch: they take one impact all at once
 WINDOW = 0.05                # spread of the first ball's start over the copies [s]
 
 
@@ -132,12 +132,17 @@ def read(state, p):
     return seen(x[:, :, 0], v[:, :, 0], p)
 
 
-world = partial(built, model=model, read=read)
+def world(product, **settings):
+    """Return make(p, dt) of an engine's runner."""
+    return lambda p, dt: built(product, model, read, iterations=3 if p.gap > 0.0 else TOGETHER, **settings)(p, dt)
+
+
+ITERATIONS = f"3 iterations, {TOGETHER} where they touch"
 RUNNERS = impact_runners(
     (PROJECTING_DISCS, BACKTRACKING_DISCS), limits, late_impacts,
-    (world(PYMUNK, iterations=50), "rows of circles; 50 iterations, collision_slop 1e-5"),
+    (world(PYMUNK), f"rows of circles; {ITERATIONS}, collision_slop 1e-5"),
     # nothing turns, so no moment has to count; bodies that were moved apart make its search five times as slow
-    (world(PYBULLET, iterations=IMPACT_ITERATIONS, weighed=False), "rows of spheres"),
+    (world(PYBULLET, weighed=False), f"rows of spheres; {ITERATIONS}"),
     most_steps=500)
 
 

@@ -61,8 +61,8 @@ def truth(p, t):
 def limits(p, dt, damping=0.0):
     """Only the decaying term has an error.  Its length is |v₀ − v∞|/k, its rate is k, and x(T) is ten times shorter.
 
-    pymunk and pybullet take drag at the beginning of a step, or multiply v by e^(−k dt): order 1 with rate k.  MuJoCo
-    runs Runge–Kutta 4.  A first velocity of another half step would not help, because drag depends on it.
+    pymunk and pybullet take drag at the beginning of a step, or multiply v by e^(−k dt): order 1 with rate k, with a
+    leapfrog start, too, because drag depends on the velocity.  MuJoCo runs Runge–Kutta 4.
     """
     scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
     return {k: scale * limit for k, limit in by_order(p.k + damping, T, dt).items()}
@@ -100,6 +100,7 @@ RUNNERS = (
            order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: old))),
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
+    POINT.leaping_in_pybullet(MOTION, limits),
     engine(PYBULLET, "own damping", POINT.built(PYBULLET, own_drag=True),
            "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second",
            order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new))),

@@ -128,9 +128,9 @@ world = partial(built, model=model, read=read)
 RUNNERS = (
     *(ours(m, limit=limits, predicted=MOTION.predict(m.table), compiled_in_quick=m in ONE_OF_EACH_ORDER,
            most_in_quick=IN_QUICK.get(m)) for m in INTEGRATORS),
-    engine(PYMUNK, "", world(PYMUNK), "DampedSpring; no other setting matters without contact",
+    engine(PYMUNK, "", world(PYMUNK, iterations=1), "DampedSpring; 1 iteration: it is one",
            order=1, limit=limits, predicted=MOTION.predict(spring_and_damper)),
-    engine(PYMUNK, "leapfrog start", world(PYMUNK, ahead=0.5),
+    engine(PYMUNK, "leapfrog start", world(PYMUNK, iterations=1, ahead=0.5),
            "first velocity + ½ a dt: second order without a damper",
            order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
     engine(PYBULLET, "default", world(PYBULLET, **BY_DEFAULT), "createMultiBody with its defaults",

@@ -100,6 +100,7 @@ RUNNERS = (
     POINT.in_pymunk(MOTION, limits),
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
+    POINT.leaping_in_pybullet(MOTION, limits),
     POINT.in_mujoco(MOTION, limits),
 )
 

@@ -124,6 +124,12 @@ def rolling_model(ball, v=0.0, rim=0.0):
     return make_model([body, Body((0.0, 0.0), shape=HalfSpace((0.0, 1.0)), mu=1.0, e=1.0)], ball.gravity[::2])
 
 
+def slips_at_first(p):
+    """Return the accelerations (2, 2), (2,) of such a ball and of the floor while the ball slides forwards."""
+    brake = p.mu * p.g
+    return ((-brake, 0.0), (0.0, 0.0)), (-brake / (p.shape * p.R), 0.0)
+
+
 def read_rolling(radius):
     """Return read(State, p) of that Model: the same three quantities."""
     return lambda state, p: np.array([state.x[0, 0], state.v[0, 0], -radius(p) * state.omega[0]])

@@ -91,14 +91,14 @@ def model(p):
 
 
 read = read_rolling(lambda p: p.radius)
-world = partial(built, PYBULLET, model, read, overlap=0.0, slop=0.0)
+world = partial(built, PYBULLET, model, read, iterations=60, overlap=0.0, slop=0.0)
 MAXIMAL = engine(PYBULLET, "", world(ground=False), "the same with useMaximalCoordinates=1",
                  order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
     ours(AVERAGE_ROLLING, limit=limits, predicted=mean_velocity),
     engine(PYBULLET, "reduced coordinates", world(maximal=False),
-           "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, "
+           "createMultiBody on a GEOM_PLANE, slanted gravity; 60 iterations, no residual threshold, no slop, "
            "no damping",
            order=1, limit=limits, predicted=new_velocity),
     MAXIMAL,

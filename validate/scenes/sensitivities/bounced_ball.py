@@ -17,7 +17,7 @@ from solutions.impulses import BouncingBall, check_restitution
 from solutions.support.model import Body
 from solutions.support.shapes import Ball
 from validate.check import Whose, states
-from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS
+from validate.engines.bullet import IMPACT_SETTINGS
 from validate.methods import BACKTRACKING, PROJECTING, SALTATION
 from validate.reference.impulses import APART as ASIDE
 from validate.reference.impulses import BULLET_RULE, CHIPMUNK_RULE, LATE, PROJECTING_RULE
@@ -221,15 +221,15 @@ def late(kept, rule, **about):
             "predicted": partial(late_differences, rule=rule, kept=kept, **about)}
 
 
-world = partial(built, model=model, read=read)
+world = partial(built, model=model, read=read, iterations=1)
 RUNNERS = (
     ours(SALTATION, order=EXACT, limit=exact_limit, predicted="exact: only round-off is left, and the limit bounds it"),
     ours(BACKTRACKING, order=EXACT, limit=difference_limit, predicted=closed_difference, supports=not_elastic),
     ours(PROJECTING, departure=departure(SET_DOWN, 0.0), **late(0.0, PROJECTING_RULE)),
-    engine(PYMUNK, "", world(PYMUNK, iterations=10), "five circles on a thick segment; collision_slop 1e-5",
+    engine(PYMUNK, "", world(PYMUNK), "five circles on a thick segment; 1 iteration, collision_slop 1e-5",
            departure=departure(LEFT_BELOW, 1.0), most_steps=2500, **late(1.0, CHIPMUNK_RULE, far=4.0 * ASIDE)),
-    engine(PYBULLET, "", world(PYBULLET, iterations=IMPACT_ITERATIONS),
-           f"five spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
+    engine(PYBULLET, "", world(PYBULLET),
+           f"five spheres on a GEOM_PLANE; 1 iteration, {IMPACT_SETTINGS}",
            departure=departure(LEFT_BELOW, 1.0), most_steps=2500, **late(1.0, BULLET_RULE)),
 )
 

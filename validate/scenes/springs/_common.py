@@ -1,12 +1,14 @@
 """Nets of springs: initial states, drawings, and the runners that move them."""
 
+from functools import partial
+
 import numpy as np
 
 from solutions.springs import make_spring_network
 from solutions.support.model import Body, Drag, Spring, make_model
 from validate.methods import EXPLICIT, IMPLICIT_MESH, RK4
 from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
-from validate.scene import MUJOCO, PYMUNK, engine, ours
+from validate.scene import LATE_LEAPFROG, MUJOCO, PYMUNK, engine, ours
 from validate.scenes._common import built, check_positives, measured
 from validate.scenes.integrators._common import integrator_runners
 
@@ -81,26 +83,30 @@ def net_fields(net, positive, contact="contact of the net with itself", **other)
     }
 
 
-def net_runners(net, motion, limits, finer_in_full=(), **mesh_in_quick):
+def net_runners(net, motion, limits, **mesh_in_quick):
     """Return the runners of a scene of the ReferenceNetwork net(p): our methods, pymunk and MuJoCo.
 
     motion           the Motion of net(p)
     limits           (p, dt) → {order: largest relative error}
-    finer_in_full    of pymunk
     mesh_in_quick    fields of the Runner of the implicit mesh, whose step takes seconds to compile
     The implicit methods of lesson 1 run in a full run only, because they build a dense matrix at every correction.
     """
+    in_pymunk = partial(net_world, net, PYMUNK, own_drag=True, iterations=1)
     return (
         *integrator_runners(motion, limits, compiled=EXPLICIT),
         ours(IMPLICIT_MESH, limit=limits, predicted=motion.predict_model(net_model(net, implicit_net)),
              **mesh_in_quick),
-        engine(PYMUNK, "", net_world(net, PYMUNK, own_drag=True), "DampedSpring between point masses",
-               finer_in_full=finer_in_full, order=1, limit=limits,
-               predicted=motion.predict_model(net_model(net, pymunk_net_model))),
+        engine(PYMUNK, "", in_pymunk(), f"DampedSpring between point masses; {ONE_SWEEP}",
+               order=1, limit=limits, predicted=motion.predict_model(net_model(net, pymunk_net_model))),
+        engine(PYMUNK, "leapfrog start", in_pymunk(ahead=0.5), f"the same, first velocities + ½ a dt; {DAMPED}",
+               order=LATE_LEAPFROG, limit=lambda p, dt: limits(p, dt)[1],
+               predicted=motion.predict_model(net_model(net, partial(pymunk_net_model, ahead=0.5)))),
         engine(MUJOCO, "", net_world(net, MUJOCO),
                "point masses on slide joints, tendons as springs; Runge–Kutta 4",
                order=4, limit=limits, predicted=motion.predict(RK4.table), most_steps=5000),
     )
 
 
+ONE_SWEEP = "1 iteration: with more, its dampers err as much"
+DAMPED = "second order without dampers"
 SQUARE = ("n", "spacing", "m", "k")      # parameters of a SquareNet that must be positive

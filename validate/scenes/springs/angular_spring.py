@@ -148,6 +148,7 @@ def pymunk_make(p, dt):
     """
     import pymunk
     space = pymunk_space((0.0, -p.g))
+    space.iterations = 1
     body = pymunk.Body(p.m, p.m * p.length**2 / 12.0)
     body.position, body.angle = (0.5 * p.length * np.sin(p.theta0), -0.5 * p.length * np.cos(p.theta0)), p.theta0
     hinge = pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), (0.0, 0.5 * p.length))
@@ -167,7 +168,7 @@ def mujoco_make(p, dt):
 
 RUNNERS = (
     *integrator_runners(MOTION, limits),
-    engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias = 0",
+    engine(PYMUNK, "", pymunk_make, "DampedRotarySpring and PivotJoint, error_bias 0, 1 iteration",
            order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_rod))),
     engine(MUJOCO, "", mujoco_make, "hinge with stiffness; Runge–Kutta 4",
            order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),

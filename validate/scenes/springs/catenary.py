@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from validate.check import states
 from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
 from validate.reference.springs import ReferenceNetwork, motion, net_limits, net_steps, rest_positions
-from validate.scene import PYBULLET, Scene, engine
-from validate.scenes.springs._common import net_fields, net_runners, net_world
+from validate.scene import LATE_LEAPFROG, PYBULLET, Scene, engine
+from validate.scenes.springs._common import DAMPED, net_fields, net_runners, net_world
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -88,11 +88,14 @@ MOTION = net_steps(net, T, truth, UNCERTAINTY)
 
 
 RUNNERS = (
-    *net_runners(net, MOTION, limits, finer_in_full=(20_000, 50_000), in_quick=False),
+    *net_runners(net, MOTION, limits, in_quick=False),
     # forces come from the state before a step, then the new velocity moves the points
     engine(PYBULLET, "", net_world(net, PYBULLET),
            "useMaximalCoordinates=1, no damping; spring forces applied each step",
            order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
+    engine(PYBULLET, "leapfrog start", net_world(net, PYBULLET, ahead=0.5),
+           f"the same, first velocities − ½ a dt; {DAMPED}", order=LATE_LEAPFROG, limit=lambda p, dt: limits(p, dt)[1],
+           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
 )
 
 

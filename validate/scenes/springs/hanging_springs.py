@@ -1,5 +1,6 @@
 """Ten masses on ten springs, hung one below the other and released with the springs unstretched."""
 
+from functools import partial
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -8,10 +9,10 @@ from validate.check import states
 from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, RK4
 from validate.reference.schemes import Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
-from validate.scene import MUJOCO, PYMUNK, Scene, engine, ours
+from validate.scene import LATE_LEAPFROG, MUJOCO, PYMUNK, Scene, engine, ours
 from validate.scenes._common import built, floor_of, measured
 from validate.scenes.integrators._common import integrator_runners
-from validate.scenes.springs._common import in_space, model_of, net_fields
+from validate.scenes.springs._common import DAMPED, ONE_SWEEP, in_space, model_of, net_fields
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -105,9 +106,9 @@ def from_modes(q, p):
     return static_extension(p) + modes(p)[2] @ q
 
 
-def pymunk_model(p, h, steps, nudge):
+def pymunk_model(p, h, steps, nudge, ahead=0.0):
     chain = net(p)
-    return observe((pymunk_net_model(chain._replace(x=nudged(chain.x, nudge)), h, steps),), p)
+    return observe((pymunk_net_model(chain._replace(x=nudged(chain.x, nudge)), h, steps, ahead=ahead),), p)
 
 
 MOTION = Motion(T, law, released, from_modes, truth, floor_of(limits, 10.0 * UNCERTAINTY), advance_modes)
@@ -115,12 +116,16 @@ MOTION = Motion(T, law, released, from_modes, truth, floor_of(limits, 10.0 * UNC
 
 # sideways nothing moves; a State begins with the places, as the states of our methods do
 MODEL: dict[str, Any] = {"model": model_of(lambda p: net(p).padded(2)), "read": observe}
+in_pymunk = partial(built, PYMUNK, **MODEL, own_drag=True, iterations=1)
 RUNNERS = (
     *integrator_runners(MOTION, limits, compiled=EXPLICIT),
     # in one coordinate springs are linear: one Newton step of the implicit mesh is all of implicit Euler
     ours(IMPLICIT_MESH, limit=limits, predicted=MOTION.predict(IMPLICIT_EULER.table), in_quick=False),
-    engine(PYMUNK, "", built(PYMUNK, **MODEL, own_drag=True), "DampedSpring between point masses",
-           finer_in_full=(50_000,), order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_model))),
+    engine(PYMUNK, "", in_pymunk(), f"DampedSpring between point masses; {ONE_SWEEP}",
+           order=1, limit=limits, predicted=MOTION.predict_model(Model(1, pymunk_model))),
+    engine(PYMUNK, "leapfrog start", in_pymunk(ahead=0.5), f"the same, first velocities + ½ a dt; {DAMPED}",
+           order=LATE_LEAPFROG, limit=lambda p, dt: limits(p, dt)[1],
+           predicted=MOTION.predict_model(Model(1, partial(pymunk_model, ahead=0.5)))),
     engine(MUJOCO, "", built(MUJOCO, **MODEL), "point masses on slide joints, tendons as springs; Runge–Kutta 4",
            order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),
 )

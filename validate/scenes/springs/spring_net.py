@@ -33,7 +33,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
 truth = net_truth(T)
 RUNNERS = net_runners(
     square_net, net_steps(square_net, T, truth, UNCERTAINTY), net_limits(square_net, T, truth, UNCERTAINTY),
-    finer_in_full=(10_000, 20_000), slow_cases=tuple(CASES)[1:], most_in_quick=200)
+    slow_cases=tuple(CASES)[1:], most_in_quick=200)
 
 
 def sanity_checks():

@@ -88,6 +88,7 @@ MOTION = Motion(T, law, thrown, as_pair, truth, floor_of(limits))
 
 RUNNERS = (
     *integrator_runners(MOTION, limits), POINT.in_pymunk(MOTION, limits), POINT.in_pybullet(MOTION, limits),
+    POINT.leaping_in_pybullet(MOTION, limits),
     POINT.in_mujoco(MOTION, limits, "damping of the joints, wind as a part of gravity"),
 )
 
