@@ -237,11 +237,16 @@ def forget_contacts(bullet):
     return len(parts(bullet)) > 1
 
 
+def let_sweep(bullet, iterations):
+    """Sweep so often over contacts and joints, and return how often it was before."""
+    before = bullet.pb.getPhysicsEngineParameters()["numSolverIterations"]
+    bullet.pb.setPhysicsEngineParameter(numSolverIterations=iterations)
+    return before
+
+
 def sweep_once(bullet):
     """Sweep once over contacts and joints."""
-    before = bullet.pb.getPhysicsEngineParameters()["numSolverIterations"]
-    bullet.pb.setPhysicsEngineParameter(numSolverIterations=1)
-    return before > 1 and (len(parts(bullet)) > 1 or bullet.pb.getNumConstraints() > 0)
+    return let_sweep(bullet, 1) > 1 and (len(parts(bullet)) > 1 or bullet.pb.getNumConstraints() > 0)
 
 
 SWITCHES = (

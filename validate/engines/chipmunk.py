@@ -41,10 +41,15 @@ def rub_nothing(space):
     return len(rubbing) > 1
 
 
+def let_sweep(space, iterations):
+    """Sweep so often over contacts and joints, and return how often it was before."""
+    space.iterations, before = iterations, space.iterations
+    return before
+
+
 def sweep_once(space):
     """Sweep once over contacts and joints."""
-    space.iterations, before = 1, space.iterations
-    return before > 1 and bool(space.constraints or len(space.shapes) > 1)
+    return let_sweep(space, 1) > 1 and bool(space.constraints or len(space.shapes) > 1)
 
 
 # no switch for its memory of contacts: with collision_persistence = 0 it drops a contact before it solves it

@@ -78,6 +78,11 @@ def law(p):
     return lambda t, x, v: complex(0.0, -p.g) - p.k * v
 
 
+def weight(p):
+    """Return the acceleration of gravity alone likewise: what an engine takes for its first velocity, if it damps."""
+    return lambda t, x, v: complex(0.0, -p.g)
+
+
 def thrown(p):
     return 0j, complex(p.vx, p.vy)
 
@@ -95,9 +100,9 @@ DAMPED = hidden_damping(acceleration, start)
 RUNNERS = (
     *integrator_runners(MOTION, limits),
     POINT.in_pymunk(MOTION, limits),
-    engine(PYMUNK, "own damping", POINT.built(PYMUNK, own_drag=True),
-           "space.damping = e^(−k): the share left after one second",
-           order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: old))),
+    engine(PYMUNK, "own damping", POINT.built(PYMUNK, own_drag=True, ahead=0.5),
+           "space.damping = e^(−k), the share left after one second; first velocity + ½ g dt",
+           order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: old), weight, ahead=0.5)),
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
     POINT.leaping_in_pybullet(MOTION, limits),
