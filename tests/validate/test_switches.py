@@ -56,7 +56,7 @@ def test_mujocos_contacts_hold_a_block_and_its_memory_of_them_only_saves_time():
 
 @pytest.mark.skipif(not PYBULLET.installed(), reason="pybullet is not installed here")
 def test_pybullet_forgets_a_switch_when_its_world_is_closed():
-    selection = select("slide_then_roll", PLAN)
+    selection = select("rolling_down", PLAN)
     engine = next(r.who for r in selection.engines_for(selection.first[1]) if r.who.product == PYBULLET)
     settings = []
     for _ in range(2):

@@ -87,6 +87,11 @@ def thrown(p):
     return 0j, complex(p.vx, p.vy)
 
 
+def at_first(p):
+    """Return the accelerations (1, 2), (1,) of the pellet when it is shot."""
+    return ((-p.k * p.vx, -p.g - p.k * p.vy),), (0.0,)
+
+
 def own_damping(place):
     """Return the step of an engine with its own damping: the velocity times e^(−k dt), then gravity."""
     def step(p):
@@ -106,9 +111,9 @@ RUNNERS = (
     POINT.in_default_pybullet(MOTION, damped_limits, DAMPED),
     POINT.in_pybullet(MOTION, limits),
     POINT.leaping_in_pybullet(MOTION, limits),
-    engine(PYBULLET, "own damping", POINT.built(PYBULLET, own_drag=True),
-           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second",
-           order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new))),
+    engine(PYBULLET, "own damping", POINT.built(PYBULLET, own_drag=True, accelerations=at_first),
+           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k), the share lost in one second; first velocity − ½ a dt",
+           order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new), ahead=-0.5)),
     POINT.in_mujoco(MOTION, limits, "damping of the joints"),
 )
 

@@ -1,6 +1,6 @@
 """A mass on a spring with a damper, released at one metre: the standard problem for comparing methods."""
 
-from functools import partial
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -34,6 +34,7 @@ CASES = {
 }
 
 
+@cache
 def oscillator(p):
     """Return the lesson's parameters:  ω = √(k/m),  ζ = c / 2√(km)."""
     return Oscillator(float(np.sqrt(p.k / p.m)), float(0.5 * p.c / np.sqrt(p.k * p.m)))

@@ -60,16 +60,17 @@ def swings(t, theta, omega, p):
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
+    """Move the ends of the string; of a method that moves the angle, they are None."""
     x, v, network, theta, omega = state
     advance = lessons.integrators.advance
     if step is lessons.integrators.blanes_moan_step or step is lessons.integrators.rk4_step:
-        theta, omega = advance(step, acceleration, 0.0, theta, omega, dt, steps, p)
-        return np.stack((x[0], place(theta[0], p))), v, network, theta, omega
+        return None, v, network, *advance(step, acceleration, 0.0, theta, omega, dt, steps, p)
     return *advance(step, lessons.pbd.network_gravity, 0.0, x, v, dt, steps, network), network, theta, omega
 
 
 def observe(state, p):
-    return state[0][1]
+    x, _, _, theta, _ = state
+    return place(theta[0], p) if x is None else x[1]
 
 
 def truth(p, t):

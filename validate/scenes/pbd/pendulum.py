@@ -122,8 +122,8 @@ def at_first(p):
 
 
 in_reduced = partial(built, PYBULLET, hinged, read, maximal=False)
-HINGE = engine(PYBULLET, "", in_reduced(), HINGES,
-               order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table))
+LEAPING = engine(PYBULLET, "leapfrog start", in_reduced(accelerations=at_first), f"{HINGES}; first rate − ½ θ̈ dt",
+                 order=2, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table, ahead=-0.5, powers=EVEN[2]))
 RUNNERS = (
     ours(PROJECTION, limit=limits, predicted=BOB.predict(onto_circle, 1), most_in_quick=2000),
     ours(PBD, limit=limits, predicted=BOB.predict(onto_circle, 1)),
@@ -137,10 +137,10 @@ RUNNERS = (
            order=1, limit=limits, predicted=BOB.predict(chipmunk_rope, 1), finer_in_full=(20_000, 50_000)),
     engine(PYMUNK, "leapfrog start", built(PYMUNK, model, read, iterations=1, ahead=0.5),
            "the same, first velocity + ½ g dt", order=2, limit=limits, predicted=BOB.predict(chipmunk_rope, 2, 0.5)),
-    HINGE,
-    in_substeps(HINGE, 100),
-    engine(PYBULLET, "leapfrog start", in_reduced(accelerations=at_first), f"{HINGES}; first rate − ½ θ̈ dt",
-           order=2, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table, ahead=-0.5, powers=EVEN[2])),
+    engine(PYBULLET, "", in_reduced(), HINGES,
+           order=1, limit=limits, predicted=ANGLE.predict(SYMPLECTIC_EULER.table)),
+    LEAPING,
+    in_substeps(LEAPING, 10),
     engine(MUJOCO, "", built(MUJOCO, hinged, read), "hinge; Runge–Kutta 4",
            order=4, limit=limits, predicted=ANGLE.predict(RK4.table), most_steps=5000),
     engine(MUJOCO, "default", built(MUJOCO, hinged, read, integrator="Euler"),

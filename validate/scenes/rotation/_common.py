@@ -1,6 +1,6 @@
 """Free bodies and rolling balls: initial states, drawings, and the runners that rotate them."""
 
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -89,6 +89,7 @@ FREE_BODY: dict[str, Any] = {
 
 # ---------------------------------------------------------------------------------------------- rolling balls
 
+@cache
 def ball_on_floor(p):
     """Return the RollingBall with I = shape m R² on a horizontal floor."""
     return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))

@@ -1,6 +1,6 @@
 """A ball is released on a slope and rolls: two sevenths of gravity's pull along the slope go into rotation."""
 
-from functools import partial
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -31,6 +31,7 @@ class Params(NamedTuple):
 CASES = {"15°": Params(), "hardly rough enough": Params(mu=0.077)}
 
 
+@cache
 def ball(p):
     slope = np.radians(p.slope)
     gravity = p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)])

@@ -5,7 +5,7 @@ the new corner, because the impulse acts there and the old corner is free at onc
 the impact; the whole loop and the engines detect the corner when it touches.
 """
 
-from functools import partial
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -62,11 +62,15 @@ def start(p):
     return np.array([p.share * alpha(p)]), np.zeros(1)
 
 
+@cache
+def rocker(p):
+    return RockingBlock(1.0, p.b, p.h, inertia(p), p.g)
+
+
 def run(lessons, step, acceleration, state, p, dt, steps):
     simulator, (x, v) = lessons.simulator, state
     if step is simulator.rocking_step:
-        block = RockingBlock(1.0, p.b, p.h, inertia(p), p.g)
-        return simulator.advance_rocking(lessons.integrators.rk4_step, 0.0, x, v, dt, steps, block)
+        return simulator.advance_rocking(lessons.integrators.rk4_step, 0.0, x, v, dt, steps, rocker(p))
     now, block = make_bodies_2d(place(p)[None], x, 1.0, inertia(p), np.array([(p.b, p.h)]),
                                 np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), MU, SWEEPS, MARGIN)
     shape = simulator.box_bounds_2d, simulator.box_contacts_2d

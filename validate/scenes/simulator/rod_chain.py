@@ -4,7 +4,7 @@ Our joints solve for all hinges at once, by one band matrix.  pymunk and pybulle
 Angles need no joints at all: the chain obeys Lagrange's equations, and Runge–Kutta's method of lesson 1 solves them.
 """
 
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 from typing import Annotated, Any, NamedTuple
 
@@ -72,7 +72,7 @@ def straight(p):
 
 
 def start(p):
-    """Return (x, q, v, ω, JointedBodies) in the plane, and the same in space.  Body 0 is the wall."""
+    """Return (x, q, v, ω, JointedBodies) in the plane, the same in space, and (angles, rates).  Body 0 is the wall."""
     check_positives(p, "l", "m", "g")
     if p.rods < 1:
         raise BadInput("rods", p.rods, "give 1 or more")
@@ -86,22 +86,26 @@ def start(p):
     turned = np.tile(np.array([np.cos(half_angle), 0.0, 0.0, np.sin(half_angle)]), (p.rods + 1, 1))
     deep, rows = make_bodies(along[:, None] * HEADING, turned, mass, I[:, None] * np.array([THICK, 1.0, 1.0]),
                              np.full((p.rods + 1, 3), 0.5 * p.l), np.zeros((0, 4)), (0.0, 0.0, -p.g), 0.0, 1, 0.01)
-    return *flat[:4], hinged, *deep[:4], make_joints(deep, rows, n, n - 1, ends[:-1, :1] * HEADING, 0.0)
+    return (*flat[:4], hinged, *deep[:4], make_joints(deep, rows, n, n - 1, ends[:-1, :1] * HEADING, 0.0),
+            flat.q[1:], flat.omega[1:])
+
+
+@cache
+def rods_of(p):
+    return RodsInAngles(p.m, p.l, inertia(p), p.g)
 
 
 def run(lessons, step, acceleration, state, p, dt, steps):
+    """Move the rods in the plane, in space, or their angles; the places of those that do not move are then None."""
     simulator, advance = lessons.simulator, lessons.integrators.advance
+    flat, deep, angles = state[:5], state[5:10], state[10:]
     if step is lessons.integrators.rk4_step:
-        rods, begins = RodsInAngles(p.m, p.l, inertia(p), p.g), (state[1][1:], state[3][1:])
-        angle, omega = advance(step, simulator.rods_acceleration, 0.0, *begins, dt, steps, rods)
-        return centres(angle, p), np.append(0.0, angle), state[2], np.append(0.0, omega), *state[4:]
+        now = advance(step, simulator.rods_acceleration, 0.0, *angles, dt, steps, rods_of(p))
+        return None, *flat[1:], None, *deep[1:], *now
     if step is simulator.joint_step:
-        now = simulator.advance_free(step, acceleration, 0.0, *state[5:9], dt, steps, state[9])
-        # for the picture: places and angles in the plane of the motion
-        x, along = now[0], np.array([about_x(q) for q in now[1]])
-        flat = np.stack((x @ HEADING, x[:, 2]), axis=1), np.arctan2(along[:, 2], along @ HEADING)
-        return *flat, *state[2:5], *now, state[9]
-    return *simulator.advance_free(step, acceleration, 0.0, *state[:4], dt, steps, state[4]), *state[4:]
+        now = simulator.advance_free(step, acceleration, 0.0, *deep[:4], dt, steps, deep[4])
+        return None, *flat[1:], *now, deep[4], *angles
+    return *simulator.advance_free(step, acceleration, 0.0, *flat[:4], dt, steps, flat[4]), flat[4], *deep, *angles
 
 
 def about_x(q):
@@ -122,7 +126,15 @@ def lower_ends(x, angle, p):
 
 
 def observe(state, p):
-    return lower_ends(state[0][1:], state[1][1:], p)
+    """Return the lower ends in the plane of the motion."""
+    x, q, deep_x, deep_q, angle = state[0], state[1], state[5], state[6], state[10]
+    if x is not None:
+        return lower_ends(x[1:], q[1:], p)
+    if deep_x is None:
+        return lower_ends(centres(angle, p)[1:], angle, p)
+    along = np.array([about_x(q) for q in deep_q[1:]])
+    flat = np.stack((deep_x[1:] @ HEADING, deep_x[1:, 2]), axis=1)
+    return lower_ends(flat, np.arctan2(along[:, 2], along @ HEADING), p)
 
 
 def of(p):

@@ -3,7 +3,7 @@
 A hinge and a contact act in the same instant.  The loop visits them alternately until both hold.
 """
 
-from functools import partial
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -80,6 +80,7 @@ def start(p):
     return state, joints, angles(p), np.zeros(BALLS)
 
 
+@cache
 def cradle(p):
     return Cradle(pitch(p), p.L, p.R, p.L**2 + moment(p), p.g)
 

@@ -85,11 +85,14 @@ def model(p):
 
 @cache
 def start(p):
-    """Return the State of the Model; None stands for what our loop needs beside its own state."""
+    """Return the State of the Model, and ways and speeds of the box and the balls along the push.
+
+    None stands for what our loop needs beside its own state.
+    """
     check_positives(p, "M", "m", "g", "grip")
     check_friction(p.mu)
     accelerations(p)
-    return start_of(model(p)), None
+    return start_of(model(p)), None, np.zeros(2), np.zeros(2)
 
 
 @cache
@@ -108,13 +111,9 @@ def slides_and_rolls(t, y, u, p):
 
 def run(lessons, step, acceleration, state, p, dt, steps):
     """Run the two coordinates, or the parts of the loop that the Model needs, in their order."""
-    simulator, (now, rows) = lessons.simulator, state
+    simulator, (now, rows, y, u) = lessons.simulator, state
     if step is lessons.integrators.verlet_step:
-        x, v = now.x.copy(), now.v.copy()
-        y, u = (x[PAIR] - PLACES[:2]) @ ALONG, v[PAIR] @ ALONG
-        y, u = lessons.integrators.advance(step, acceleration, 0.0, y, u, dt, steps, p)
-        x[PAIR], v[PAIR] = PLACES[:2] + np.outer(y, ALONG), np.outer(u, ALONG)
-        return now._replace(x=x, v=v), None
+        return None, None, *lessons.integrators.advance(step, acceleration, 0.0, y, u, dt, steps, p)
     if rows is None:
         now, rows = composed(simulator, p)
     now = simulator.advance_parts(
@@ -122,7 +121,7 @@ def run(lessons, step, acceleration, state, p, dt, steps):
         simulator.contact_impulses_in_space, simulator.move_and_turn_in_space, simulator.leave,
         simulator.first_touch, simulator.model_load_in_space, simulator.rounded_bounds, simulator.rounded_contacts, 0.0,
         now, dt, steps, rows)
-    return now, rows
+    return now, rows, y, u
 
 
 def seen(x, v, first):
@@ -131,7 +130,9 @@ def seen(x, v, first):
 
 
 def observe(state, p):
-    now, rows = state
+    now, rows, y, u = state
+    if now is None:
+        return seen(PLACES[:2] + np.outer(y, ALONG), np.outer(u, ALONG), 0)
     return seen(now.x, now.v, BOX if rows is None else 0)
 
 

@@ -4,6 +4,7 @@ If a step takes the table's velocity at the old position of the ball, the ball s
 engine.
 """
 
+from functools import cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -44,6 +45,7 @@ def table(p):
     return np.array([0.0, 0.0, p.spin])
 
 
+@cache
 def ball(p):
     still = np.zeros(3)
     return CarriedBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, MU, np.array([0.0, 0.0, -p.g]), still, still,
