@@ -15,6 +15,7 @@ exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
 # All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
+NEW = 0.02                   # a floor of one's own differs from the known ones by this share of its impulses [-]
 # Usual, tiny and huge velocities, loads and lengths.  Powers of two: what is exact at one size is exact at the others.
 SIZES = (1.0, 2.0**-100, 2.0**100)
 BARELY = 1e-9                # this share beyond a threshold, or within it, is far above the round-off of either side
@@ -1163,8 +1164,9 @@ def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, dra
     cone = np.array([-mu * j_n * k * v / np.linalg.norm(k * v) for k in (1.0, 0.3, -1.0)])      # none of them stops
     pyramid = np.array([-mu * j_n * np.sign(k * v) for k in (1.0, 0.3, -1.0)])
     for name, other in (("friction_impulse", cone), ("pyramid_impulse", pyramid)):
-        if np.abs(got - other).max() < 1e-6 * mu * j_n:
-            raise NotYet("a floor of your own", "another law than those of the lesson", f"that of {name}", "",
+        times = np.sum(got * other) / np.sum(other * other)
+        if np.linalg.norm(got - times * other) < NEW * np.linalg.norm(got):
+            raise NotYet("a floor of your own", "another law than those of the lesson", f"{times:.3g} times {name}", "",
                          "no new floor")
 
 

@@ -117,7 +117,7 @@ def test_inputs_are_written_as_people_write_them():
 def test_a_long_array_is_cut_and_no_text_is_longer_than_a_student_reads():
     many = np.random.default_rng(1).random((40, 3))
     text = tidy(f"corners {many.tolist()} m, m = {many[:, 0]} kg")
-    assert text.count("…") == 2 and text.endswith(", …] kg") and "]] m" in text and len(text) < LONGEST
+    assert text.count("…") == 2 and text.endswith(", …] kg") and "], …] m" in text and len(text) < LONGEST
     assert len(tidy(", ".join(f"{Ball(x, 1.0)}" for x in many))) <= LONGEST
     assert len(tidy("word " * 500)) <= LONGEST
 

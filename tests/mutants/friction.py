@@ -800,6 +800,7 @@ FIRST = "along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))"
 edit("3.19", "is Coulomb's floor", FIRST, "return friction_impulse(v_t, m, j_n, mu)")
 edit("3.19", "is the pyramid of 3.6", FIRST,
      "return pyramid_impulse(v_t, m, j_n, mu, np.array([1.0, 0.0]), np.array([0.0, 1.0]))")
+edit("3.19", "is a little less than Coulomb's floor", FIRST, "return 0.999 * friction_impulse(v_t, m, j_n, mu)")
 edit("3.19", "does nothing", FIRST, "return 0.0 * v_t")
 edit("3.19", "pushes the block along", "return -np.array", "return np.array")
 edit("3.19", "is not limited along the blade: it turns a slow block round",

@@ -240,9 +240,11 @@ def _in_brackets(text, change):
 
 
 def _beginning(array, most):
-    """Return an array's text; of a longer one only the first numbers."""
+    """Return an array's text; of a longer one only the first numbers, and of a matrix whole rows where one fits."""
     found = list(re.finditer(r"[^\s,\[\]]+", array))
     if len(found) <= most:
         return array
-    kept = array[:found[most - 1].end()]
+    end = found[most - 1].end()
+    end += len(re.match(r"\]*", array[end:])[0])
+    kept = array[:array.rfind("]", 0, end) + 1] or array[:end]
     return f"{kept}, …{']' * (kept.count('[') - kept.count(']'))}"

@@ -462,10 +462,12 @@ class _Answer:
     def lines(self):
         earned = sum(o["points"] for o in self.outcomes if o["status"] == "passed")
         possible = sum(o["points"] for o in self.outcomes)
-        yield f"{SIGN[self.state]} Exercise {self.exercise}: {self.state}", f"{earned:g} of {possible:g} points"
-        if self.state == "not attempted":
-            waits = self.open[0]["got"]
-            yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
+        waits = self.open[0]["got"] if self.state == "not attempted" else ""
+        for_another = waits and f"Exercise {self.exercise}:" not in waits
+        says = "waits for another exercise" if for_another else self.state
+        yield f"{SIGN[self.state]} Exercise {self.exercise}: {says}", f"{earned:g} of {possible:g} points"
+        if waits:
+            yield ("it waits for" if for_another else "still open"), waits
         elif self.open:
             if self.below:
                 yield "first", self.below
