@@ -30,7 +30,7 @@ from validate.scenes.friction._common import (
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
 INSIDE = 1e-9                # where MuJoCo's ball begins, so that its first step has a contact [m]
-FEW = 15                     # iterations of the engines with a leapfrog start; fewer lose a slab in long steps
+ITERATIONS = 15              # iterations of the engines with a leapfrog start; fewer lose a slab in long steps
 rounded = round_off(T)
 
 
@@ -102,16 +102,16 @@ def limits(p, dt):
     return {1: late + last + rounded(p, dt), 2: last + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
-def leapfrog_limit(p, dt, sweeps):
+def leapfrog_limit(p, dt):
     """With a leapfrog start only the last, shorter step of a block that stops has an error, and what the engine's
     sweeps leave.
     """
-    return limits(p, dt)[2] + left_by_sweeps(p, dt, sweeps)
+    return limits(p, dt)[2] + left_by_sweeps(p, dt)
 
 
-def left_by_sweeps(p, dt, sweeps):
+def left_by_sweeps(p, dt):
     along, across = tilted(p)
-    return left_by(sweeps, (along - p.mu * across) * dt * T) / abs(truth(p, T)[0])
+    return left_by(ITERATIONS, (along - p.mu * across) * dt * T) / abs(truth(p, T)[0])
 
 
 def new_velocity(p, dt, at=1.0):
@@ -131,9 +131,9 @@ def new_velocity(p, dt, at=1.0):
 old_velocity = partial(new_velocity, at=0.0)
 
 
-def halfway_velocity(p, dt, sweeps):
+def halfway_velocity(p, dt):
     found = new_velocity(p, dt, 0.5)
-    return found and found._replace(band=found.band + left_by_sweeps(p, dt, sweeps))
+    return found and found._replace(band=found.band + left_by_sweeps(p, dt))
 
 
 def at_first(p):
@@ -184,12 +184,12 @@ RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
     # nothing changes between two events, and a midpoint step is then exact
     ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
-    engine(PYMUNK, "leapfrog start", in_pymunk(model, read_distance, accelerations=at_first, iterations=FEW),
-           f"first velocity + ½ a dt; {slab_on_line(TILTED, iterations=FEW)}", order=2,
-           limit=partial(leapfrog_limit, sweeps=FEW), predicted=partial(halfway_velocity, sweeps=FEW)),
-    engine(PYBULLET, "leapfrog start", in_pybullet(model, read_distance, accelerations=at_first, iterations=FEW),
-           f"first velocity − ½ a dt; {slab_on_box(TILTED, iterations=FEW)}", order=2,
-           limit=partial(leapfrog_limit, sweeps=FEW), predicted=partial(halfway_velocity, sweeps=FEW)),
+    engine(PYMUNK, "leapfrog start", in_pymunk(model, read_distance, accelerations=at_first, iterations=ITERATIONS),
+           f"first velocity + ½ a dt; {slab_on_line(TILTED, iterations=ITERATIONS)}", order=2,
+           limit=leapfrog_limit, predicted=halfway_velocity),
+    engine(PYBULLET, "leapfrog start", in_pybullet(model, read_distance, accelerations=at_first, iterations=ITERATIONS),
+           f"first velocity − ½ a dt; {slab_on_box(TILTED, iterations=ITERATIONS)}", order=2,
+           limit=leapfrog_limit, predicted=halfway_velocity),
     engine(PYMUNK, "", in_pymunk(model, read_distance), slab_on_line(TILTED),
            order=1, limit=limits, predicted=old_velocity),
     engine(PYBULLET, "", in_pybullet(model, read_distance), slab_on_box(TILTED),

@@ -18,7 +18,7 @@ from validate.scenes.friction._common import in_pybullet, in_pymunk, left_by, sl
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
-FEW = 10                     # iterations of the engines with a leapfrog start
+ITERATIONS = 10              # iterations of the engines with a leapfrog start
 rounded = round_off(T)
 
 
@@ -82,18 +82,18 @@ def limits(p, dt):
     return {1: late + last + rounded(p, dt), 2: last + rounded(p, dt), EXACT: rounded(p, dt)}
 
 
-def leapfrog_limit(p, dt, sweeps):
+def leapfrog_limit(p, dt):
     """With a leapfrog start only the last, shorter step has an error, and what the engine's sweeps leave."""
-    return limits(p, dt)[2] + left_by_sweeps(p, dt, sweeps)
+    return limits(p, dt)[2] + left_by_sweeps(p, dt)
 
 
 def carried_limit(p, dt):
     """pybullet loses a slab that moves by more than half its length in a step; see the block that sticks and slips."""
-    return leapfrog_limit(p, dt, FEW) if p.v0 * dt < HALF else np.inf
+    return leapfrog_limit(p, dt) if p.v0 * dt < HALF else np.inf
 
 
-def left_by_sweeps(p, dt, sweeps):
-    return left_by(sweeps, (1.0 + p.mu) * p.g * dt * T) / np.linalg.norm(truth(p, T))
+def left_by_sweeps(p, dt):
+    return left_by(ITERATIONS, (1.0 + p.mu) * p.g * dt * T) / np.linalg.norm(truth(p, T))
 
 
 def pyramid_limit(p, dt):
@@ -114,13 +114,13 @@ def new_velocity(p, dt, at=1.0):
 old_velocity = partial(new_velocity, at=0.0)
 
 
-def halfway_velocity(p, dt, sweeps):
+def halfway_velocity(p, dt):
     found = new_velocity(p, dt, 0.5)
-    return found._replace(band=found.band + left_by_sweeps(p, dt, sweeps))
+    return found._replace(band=found.band + left_by_sweeps(p, dt))
 
 
 def carried_velocity(p, dt):
-    return halfway_velocity(p, dt, FEW) if p.v0 * dt < HALF else None
+    return halfway_velocity(p, dt) if p.v0 * dt < HALF else None
 
 
 def at_first(p, ahead):
@@ -168,12 +168,12 @@ RUNNERS = (
     engine(PYBULLET, "", in_pybullet(model, read), slab_on_box(), order=1, limit=limits, predicted=new_velocity),
     engine(PYMUNK, "leapfrog start",
            in_pymunk(in_the_plane_of_the_throw, read_ahead, accelerations=lambda p: at_first(p, (1.0, 0.0)),
-                     iterations=FEW),
-           f"first velocity + ½ a dt; {slab_on_line('the vertical plane of the throw, ', iterations=FEW)}",
-           order=2, limit=partial(leapfrog_limit, sweeps=FEW), predicted=partial(halfway_velocity, sweeps=FEW)),
+                     iterations=ITERATIONS),
+           f"first velocity + ½ a dt; {slab_on_line('the vertical plane of the throw, ', iterations=ITERATIONS)}",
+           order=2, limit=leapfrog_limit, predicted=halfway_velocity),
     engine(PYBULLET, "leapfrog start",
-           in_pybullet(model, read, accelerations=lambda p: at_first(p, thrown(p) / p.v0), iterations=FEW),
-           f"first velocity − ½ a dt; {slab_on_box(iterations=FEW)}",
+           in_pybullet(model, read, accelerations=lambda p: at_first(p, thrown(p) / p.v0), iterations=ITERATIONS),
+           f"first velocity − ½ a dt; {slab_on_box(iterations=ITERATIONS)}",
            order=2, limit=carried_limit, predicted=carried_velocity),
 )
 

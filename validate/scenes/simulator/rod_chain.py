@@ -186,7 +186,9 @@ def swept_limit(p, dt):
 
 
 def leapfrog_limit(p, dt):
-    """With a leapfrog start and fewer sweeps, what the sweeps leave takes the place of the half step."""
+    """With a leapfrog start nothing is half a step late.  What fewer sweeps leave is no more than that was, as measured
+    on runs of 100 to 1,000 steps.
+    """
     return swept_limit(p, dt)
 
 
@@ -236,7 +238,8 @@ LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error
 SWEEPS = "10 iterations for each rod, at least 100"          # an impulse travels one rod per iteration
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
 FEWER = {PYMUNK: 20, PYBULLET: 30}       # iterations with which both come to 1 % in half the time or less
-LEAPFROG: dict[str, Any] = {"order": LATE_LEAPFROG, "limit": leapfrog_limit, "predicted": SWEPT, "supports": is_short}
+LEAPFROG: dict[str, Any] = {"order": LATE_LEAPFROG, "limit": leapfrog_limit, "predicted": SWEPT, "supports": is_short,
+                            "measured": "what fewer sweeps leave, on runs of 100 to 1,000 steps"}
 FINER = (2000, 5000, 10_000, 20_000)
 HINGED = engine(PYBULLET, "reduced coordinates", world(PYBULLET, maximal=False), HINGES,
                 order=1, limit=angles_limit, predicted=ANGLES.predict(SYMPLECTIC_EULER.table), finer_in_full=FINER)
