@@ -14,7 +14,7 @@ from validate.reference.friction import HALF, NOTHING_LEFT
 from validate.reference.schemes import summed
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
 from validate.scenes._common import ONE_LINK, coordinates, measured, round_off
-from validate.scenes.friction._common import in_pybullet, in_pymunk, left_by, slab_on_box, slab_on_line
+from validate.scenes.friction._common import BY_SWEEPS, in_pybullet, in_pymunk, left_by, slab_on_box, slab_on_line
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -83,12 +83,16 @@ def limits(p, dt):
 
 
 def leapfrog_limit(p, dt):
-    """With a leapfrog start only the last, shorter step has an error, and what the engine's sweeps leave."""
+    """With a leapfrog start only the last, shorter step has an error, and what the engine's
+    sweeps leave, as measured.
+    """
     return limits(p, dt)[2] + left_by_sweeps(p, dt)
 
 
 def carried_limit(p, dt):
-    """pybullet loses a slab that moves by more than half its length in a step; see the block that sticks and slips."""
+    """pybullet loses a slab that moves by more than half its length in a step; see the block that sticks and slips.
+    What its sweeps leave was measured.
+    """
     return leapfrog_limit(p, dt) if p.v0 * dt < HALF else np.inf
 
 
@@ -170,11 +174,11 @@ RUNNERS = (
            in_pymunk(in_the_plane_of_the_throw, read_ahead, accelerations=lambda p: at_first(p, (1.0, 0.0)),
                      iterations=ITERATIONS),
            f"first velocity + ½ a dt; {slab_on_line('the vertical plane of the throw, ', iterations=ITERATIONS)}",
-           order=2, limit=leapfrog_limit, predicted=halfway_velocity),
+           order=2, limit=leapfrog_limit, predicted=halfway_velocity, measured=BY_SWEEPS),
     engine(PYBULLET, "leapfrog start",
            in_pybullet(model, read, accelerations=lambda p: at_first(p, thrown(p) / p.v0), iterations=ITERATIONS),
            f"first velocity − ½ a dt; {slab_on_box(iterations=ITERATIONS)}",
-           order=2, limit=carried_limit, predicted=carried_velocity),
+           order=2, limit=carried_limit, predicted=carried_velocity, measured=BY_SWEEPS),
 )
 
 
