@@ -164,6 +164,30 @@ FIRST_ORDER = L_KEPT, BY_COLUMNS, EXPLICIT, IMPLICIT = ("L kept", "L kept, by co
                                                         "gyroscopic, implicit")
 
 
+def hung_up(m, l, I, g, R, omega, h, steps, implicit):
+    """Return R (3, 3) of a body on a pivot in the origin after steps of Bullet, which holds it there by an impulse.
+
+    m [kg] and I (3,) [kg m²] are about the centre, which is at l R[:, 2] [m].  Gravity acts, then the gyroscopic term
+    in body coordinates, at the beginning of the step or by one step of Newton's method at its end (implicit).  The
+    impulse lets the point of the body reach the pivot in this step:  K j = −(its place)/h − velocity,
+    K = 1/m − r* I⁻¹ r*,  r from the centre to it.  Then the body moves and turns by the new velocities.
+    *Source:* Bullet, btRigidBody.cpp and btPoint2PointConstraint.cpp.
+    """
+    x, v, weight = l * R[:, 2], np.zeros(3), np.array([0.0, 0.0, -g])
+    for _ in range(steps):
+        w = R.T @ omega
+        term = np.diag(I) + h * (cross_matrix(w) * I - cross_matrix(I * w)) if implicit else np.diag(I)
+        v, omega = v + h * weight, R @ (w - np.linalg.solve(term, h * np.cross(w, I * w)))
+        r, inverse = -l * R[:, 2], R / I @ R.T
+        across = cross_matrix(r)
+        K = np.eye(3) / m - across @ inverse @ across
+        j = np.linalg.solve(K, -(x + r) / h - v - np.cross(omega, r))
+        v, omega = v + j / m, omega + inverse @ np.cross(r, j)
+        x, rate = x + h * v, np.linalg.norm(omega)
+        R = about(omega / rate, rate * h) @ R
+    return R
+
+
 @cache
 def growth_of_errors(I, omega, T):
     """Return the error constants of first-order steps on a free body.
