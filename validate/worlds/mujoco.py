@@ -81,8 +81,12 @@ def refuses(model):
             or cuts_moments(model, WIDE))
 
 
-def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
-    """Make a World.  integrator: as in MuJoCo's XML; time_constant: of contacts [s]."""
+def build(model, dt, integrator=None, time_constant=TIME_CONSTANT, ahead=0.0):
+    """Make a World.
+
+    integrator: as in MuJoCo's XML    time_constant: of contacts [s]
+    ahead: share of a step by which the first velocities lag, by the engine's own accelerations; ½ makes leapfrog
+    """
     dt = checked_step(model, dt, refuses)
     mujoco, whole, model = module(), model, with_plain_springs(model)
     integrator = integrator or ("Euler" if touches(model) else "RK4")
@@ -91,6 +95,9 @@ def build(model, dt, integrator=None, time_constant=TIME_CONSTANT):
     world = made(mujoco.MjModel.from_xml_string(xml_of(parts, dt, integrator, time_constant)))
     data = mujoco.MjData(world)
     first_velocities(parts, world, data)
+    if ahead:
+        mujoco.mj_forward(world, data)
+        data.qvel -= ahead * dt * data.qacc
     order = [0 if only_holds(model, k) else mujoco.mj_name2id(world, mujoco.mjtObj.mjOBJ_BODY, f"b{k}")
              for k in range(len(model.bodies))]
 

@@ -196,7 +196,7 @@ RUNNERS = (
         (PROJECTING, BACKTRACKING), limits, late_impacts,
         (world(PYMUNK), "circles on a thick segment; 1 iteration, collision_slop 1e-5"),
         (world(PYBULLET), "spheres on a GEOM_PLANE; 1 iteration"),
-        pymunk_errs=FAR, bullet_errs=FAR, most_steps=2500),
+        pymunk_errs=FAR, bullet_errs=FAR),
 )
 
 

@@ -140,8 +140,7 @@ RUNNERS = impact_runners(
     (PROJECTING_DISCS, BACKTRACKING_DISCS), limits, late_impacts,
     (world(PYMUNK, 3), f"rows of circles; 3 iterations, {TOGETHER} where they touch; collision_slop 1e-5"),
     # nothing turns, so no moment has to count; bodies that were moved apart make its search five times as slow
-    (world(PYBULLET, 1, weighed=False), f"rows of spheres; 1 iteration, {TOGETHER} where they touch"),
-    most_steps=500)
+    (world(PYBULLET, 1, weighed=False), f"rows of spheres; 1 iteration, {TOGETHER} where they touch"))
 
 
 def points(observed, p):

@@ -139,7 +139,7 @@ RUNNERS = impact_runners(
     (PROJECTING_DISCS, BACKTRACKING_DISCS), limits, late_impact,
     (world(PYMUNK), "pairs of circles; 1 iteration"),
     (world(PYBULLET), "pairs of spheres; 1 iteration"),
-    pymunk_errs=FAR, bullet_errs=FAR, most_steps=500)
+    pymunk_errs=FAR, bullet_errs=FAR)
 
 
 def sanity_checks():

@@ -149,7 +149,7 @@ RUNNERS = impact_runners(
     (PROJECTING_SPIN, BACKTRACKING_SPIN), limits, late_impact,
     (world(PYMUNK), "circles on a thick segment; 1 iteration"),
     (world(PYBULLET), "spheres on a GEOM_PLANE; 1 iteration"),
-    pymunk_errs=FAR, bullet_errs=FAR, supports=is_sphere, most_steps=2000)
+    pymunk_errs=FAR, bullet_errs=FAR, supports=is_sphere)
 
 
 def sanity_checks():

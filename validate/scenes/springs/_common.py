@@ -7,6 +7,7 @@ import numpy as np
 from solutions.springs import make_spring_network
 from solutions.support.model import Body, Drag, Spring, make_model
 from validate.methods import EXPLICIT, IMPLICIT_MESH, RK4
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE
 from validate.reference.springs import implicit_net, net_model, pymunk_net_model, state_of
 from validate.scene import LATE_LEAPFROG, MUJOCO, PYMUNK, engine, ours
 from validate.scenes._common import built, check_positives, measured
@@ -104,6 +105,10 @@ def net_runners(net, motion, limits, **mesh_in_quick):
         engine(MUJOCO, "", net_world(net, MUJOCO),
                "point masses on slide joints, tendons as springs; Runge–Kutta 4",
                order=4, limit=limits, predicted=motion.predict(RK4.table), most_steps=5000),
+        engine(MUJOCO, "leapfrog start", net_world(net, MUJOCO, integrator="Euler", ahead=0.5),
+               f"the same with Euler, first velocities − ½ a dt; {DAMPED}", order=LATE_LEAPFROG,
+               limit=lambda p, dt: limits(p, dt)[1], most_steps=5000,
+               predicted=motion.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from validate.check import states
 from validate.methods import EXPLICIT, IMPLICIT_EULER, IMPLICIT_MESH, RK4
-from validate.reference.schemes import Model, Motion, advance_modes, nudged
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Model, Motion, advance_modes, nudged
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
 from validate.scene import LATE_LEAPFROG, MUJOCO, PYMUNK, Scene, engine, ours
 from validate.scenes._common import built, floor_of, measured
@@ -128,6 +128,10 @@ RUNNERS = (
            predicted=MOTION.predict_model(Model(1, partial(pymunk_model, ahead=0.5)))),
     engine(MUJOCO, "", built(MUJOCO, **MODEL), "point masses on slide joints, tendons as springs; Runge–Kutta 4",
            order=4, limit=limits, predicted=MOTION.predict(RK4.table), most_steps=5000),
+    engine(MUJOCO, "leapfrog start", built(MUJOCO, **MODEL, integrator="Euler", ahead=0.5),
+           f"the same with Euler, first velocities − ½ a dt; {DAMPED}", order=LATE_LEAPFROG,
+           limit=lambda p, dt: limits(p, dt)[1], most_steps=5000,
+           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
 )
 
 
