@@ -132,7 +132,7 @@ def test_the_front_page_answers_four_questions_and_says_what_each_verdict_means(
     found = answers(data["scenes"], data["stability"])
     ours = [c for s in data["scenes"] for case in s["cases"].values() for c in case["ours"]]
     assert found["right"]["runs"] == len(ours)
-    assert f"{len(ours)} of {len(ours)} comparisons come out as theory says" in front.text
+    assert f"{len(ours)} of {len(ours)} comparisons that theory judges come out as it says" in front.text
     curves = {(s["scene"], c["label"]): any(row["predicted"] for row in c["rows"]) for s in data["scenes"]
               for case in s["cases"].values() for c in case["ours"] + case["engines"]}
     assert f"For {sum(curves.values())} of {len(curves)} curves, theory predicts the error itself" in front.text
@@ -172,7 +172,7 @@ def test_a_method_that_does_not_arrive_is_counted_on_the_front_page_and_not_amon
     front = front_of(changed(made, verdict="does not arrive", rows=[], message="it never ends"))
     _, data = made
     ours = sum(len(case["ours"]) for scene in data["scenes"] for case in scene["cases"].values())
-    assert f"{ours - 1} of {ours - 1} comparisons come out as theory says" in front
+    assert f"{ours - 1} of {ours - 1} comparisons that theory judges come out as it says" in front
     assert re.search(r"1 does not arrive: <a href=\"throw.html\">Throw</a>", front)
 
 

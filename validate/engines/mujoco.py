@@ -13,6 +13,8 @@ from ..scene import EngineRun
 from . import quiet_import
 from .switches import Switch, made
 
+TOLERANCE = 1e-8             # of its solver, by default [-]
+STIFF = 0.9999, 0.9999, 0.001, 0.5, 2.0      # `solimpfriction`: as hard as it can be
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
 SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
@@ -30,12 +32,15 @@ def text(values):
     return " ".join(repr(float(value)) for value in np.ravel(values))
 
 
-def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
-    """Return (model, data) of bodies in XML; `more` are further parts of the model."""
+def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more="", tolerance=0.0):
+    """Return (model, data) of bodies in XML.
+
+    more: further parts of the model    tolerance: of the solver of constraints, 0 for all of its iterations
+    """
     mujoco = module()
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="{text(dt)}" gravity="{text(gravity)}" integrator="{integrator}" cone="elliptic" '
-        'tolerance="0" iterations="100"><flag autoreset="disable"/></option>'
+        f'tolerance="{text(tolerance)}" iterations="100"><flag autoreset="disable"/></option>'
         f"{more}<worldbody>{bodies}</worldbody></mujoco>")
     return model, mujoco.MjData(model)
 
@@ -75,6 +80,27 @@ def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
     model, data = world(dt, "".join(f"<body>{sliding(m, d, **joint)}</body>" for m in masses), gravity)
     data.qpos[:], data.qvel[:] = np.ravel(x), np.ravel(v)
     return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()))
+
+
+def rubbed(m, friction, gravity, v, dt, read, force=None):
+    """Make the EngineRun of a body that slides along x with the friction [N] of a joint: `frictionloss`; read(x).
+
+    gravity: along x [m/s²]    v: half a step before the start [m/s]    force(t) along x [N] at the time of each step
+    """
+    joint = f'<joint type="slide" axis="1 0 0" frictionloss="{text(friction)}" solimpfriction="{text(STIFF)}"/>'
+    model, data = world(dt, f"<body>{joint}{inertial(m, np.ones(3))}</body>", (gravity, 0.0, 0.0), "Euler",
+                        tolerance=TOLERANCE)
+    data.qvel[0] = v
+    run, pull, clock = running(model, data, lambda: read(data.qpos[0])), data.qfrc_applied, [0]
+    if force is None:
+        return run
+    advance = run.step
+
+    def step():
+        pull[0] = force(clock[0] * dt)
+        clock[0] += 1
+        advance()
+    return run._replace(step=step)
 
 
 # ---------------------------------------------------------------------------------------------- switches

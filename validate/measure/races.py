@@ -63,6 +63,7 @@ class Race(NamedTuple):
     order: float | None      # our time with the engine's order over our quickest [-]
     loop: float | None       # the engine's time over ours with its order [-]
     calls: float | None      # the engine's time over its time without the calls from Python [-]
+    plain: float | None      # the engine's time over ours in plain Python; None where no such run is that accurate [-]
 
 
 class Field(NamedTuple):
@@ -151,7 +152,16 @@ def race(field, level):
     same, order = in_the_same_order(field, engine, ours, error)
     return Race(field.product, variant, substeps, level, error, engine, ours, same, order, outcome, why,
                 *(ratios(engine, ours) if decided else (None,) * 3),
-                *(factors(field, engine, substeps, ours, same) if decided else (None,) * 3))
+                *(factors(field, engine, substeps, ours, same) if decided else (None,) * 3),
+                in_plain_python(field, engine, error))
+
+
+def in_plain_python(field, engine, error):
+    """Return the engine's time over that of our quickest method in plain Python, or None."""
+    if engine is None or error is None:
+        return None
+    slow = quickest(field.ours, [row for row in field.rows if row["speed"] == "plain"], error)
+    return slow and engine.seconds / slow.seconds
 
 
 def to_the_best(rows):

@@ -6,7 +6,7 @@ Parameters and truth stay with the scenes.
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ..engines.products import PYBULLET
+from ..engines.products import PYBULLET, PYMUNK
 from ..scene import Scene
 from ..scenes.friction import incline, stick_slip
 from ..scenes.impulses import bounces, cradle, oblique_discs, spinning_bounce
@@ -25,6 +25,8 @@ from ..scenes.simulator import (
 )
 from ..scenes.springs import hanging_springs, spring_net, two_stars
 
+ONE_SWEEP = {PYMUNK: {"iterations": 1}}              # over the dampers of a net
+FEW_SWEEPS = {PYMUNK: {"iterations": 2}, PYBULLET: {"iterations": 3}}        # over the corners of a block
 NO_FORMULA = "no formula gives this motion, and no theory says how far a run is from the truth"
 
 
@@ -47,8 +49,8 @@ DESCRIBED = {                # name of the scene: Described
     "linear_drag": of(linear_drag.SCENE),
     "oscillator": of(oscillator.SCENE),
     "kepler": of(kepler.SCENE),
-    "hanging_springs": of(hanging_springs.SCENE),
-    "spring_net": of(spring_net.SCENE),
+    "hanging_springs": of(hanging_springs.SCENE, ONE_SWEEP),
+    "spring_net": of(spring_net.SCENE, ONE_SWEEP),
     "two_stars": of(two_stars.SCENE),
     "incline": of(incline.SCENE),
     "stick_slip": of(stick_slip.SCENE),
@@ -64,7 +66,7 @@ DESCRIBED = {                # name of the scene: Described
     "moving_wedge": of(moving_wedge.SCENE, {PYBULLET: {"slop": 0.0, "breaking": moving_wedge.KEPT}}),
     "dominoes": of(dominoes.SCENE, shown=NO_FORMULA),
     "machine": of(machine.SCENE, shown=NO_FORMULA),
-    "rocking_block": of(rocking_block.SCENE),
+    "rocking_block": of(rocking_block.SCENE, FEW_SWEEPS),
     "rod_chain": of(rod_chain.SCENE),
     "rod_cradle": of(rod_cradle.SCENE),
     "turntable": of(turntable.SCENE),

@@ -14,6 +14,9 @@ in_pymunk = partial(built, PYMUNK, iterations=SWEEPS)
 in_pybullet = partial(built, PYBULLET, iterations=SWEEPS, overlap=SLOP, slop=SLOP)
 
 
+JOINT = "a slide joint with frictionloss, impedance 0.9999, in place of a contact; Euler, first velocity − ½ a dt"
+
+
 def left_by(sweeps, impulse):
     """Return what the sweeps of an engine leave of an impulse on a flat slab.  How much one leaves was measured."""
     return impulse * LEFT**sweeps

@@ -10,6 +10,7 @@ from solutions.given.friction import make_block
 from solutions.support.model import Body, make_model
 from solutions.support.shapes import Ball
 from validate.check import Whose, states
+from validate.engines import mujoco
 from validate.engines.friction import LOW, floor, slab
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.methods import EVENT, SLIDING
@@ -19,6 +20,7 @@ from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Predictio
 from validate.scenes._common import built, round_off
 from validate.scenes.friction._common import (
     BY_SWEEPS,
+    JOINT,
     block_on,
     in_pybullet,
     in_pymunk,
@@ -175,10 +177,29 @@ def model(p):
     return slab(tilted(p), p.mu, (p.v0, 0.0))
 
 
+def slides(p):
+    """Return whether the block slides all the time: where a joint holds it, it creeps."""
+    along, across = tilted(p)
+    return p.v0 == 0.0 and along + p.mu * across > 0.0
+
+
 def on_a_point(p):
     """Make MuJoCo's block, a ball that cannot turn: its law is known for one contact, and a slab has four."""
     ball = Body((0.0, LOW - INSIDE), 1.0, Ball(LOW), p.mu, v=(p.v0, 0.0), inertia=np.inf)
     return make_model([ball, floor(tilted(p))], tilted(p))
+
+
+
+def jointed(p, dt):
+    """Make MuJoCo's block without a contact: the joint along which it slides has the friction."""
+    along, across = tilted(p)
+    first = p.v0 - 0.5 * dt * at_first(p)[0][0][0]
+    return mujoco.rubbed(1.0, -p.mu * across, along, first, dt, lambda x: np.array([x]))
+
+
+def joint_limit(p, dt):
+    return limits(p, dt)[2] + rounded(p, dt)
+
 
 TILTED = "gravity tilted, "
 RUNNERS = (
@@ -200,6 +221,8 @@ RUNNERS = (
            departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
                                "slope that can hold it, a block creeps, more slowly with an impratio above the default",
                                held, Whose.DEFAULT)),
+    engine(MUJOCO, "friction of a joint", jointed, JOINT, order=2, limit=joint_limit,
+           predicted=partial(new_velocity, at=0.5), supports=slides),
 )
 
 

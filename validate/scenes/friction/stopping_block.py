@@ -8,13 +8,22 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.given.friction import make_block
 from validate.check import Whose, states
+from validate.engines import mujoco
 from validate.engines.friction import slab
 from validate.methods import EVENT, PYRAMID, SLIDING
 from validate.reference.friction import HALF, NOTHING_LEFT
 from validate.reference.schemes import summed
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
 from validate.scenes._common import ONE_LINK, coordinates, measured, round_off
-from validate.scenes.friction._common import BY_SWEEPS, in_pybullet, in_pymunk, left_by, slab_on_box, slab_on_line
+from validate.scenes.friction._common import (
+    BY_SWEEPS,
+    JOINT,
+    in_pybullet,
+    in_pymunk,
+    left_by,
+    slab_on_box,
+    slab_on_line,
+)
 
 T = 1.25                     # [s]: it stops after 1.02 s
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -159,6 +168,20 @@ def read_ahead(state, p):
     """Return the same of the block in the plane of the throw."""
     return state.x[0, 0] * thrown(p)[:2] / p.v0
 
+
+def jointed(p, dt):
+    """Make MuJoCo's block without a contact: the joint along the throw has the friction."""
+    brake, ahead = p.mu * p.g, thrown(p)[:2] / p.v0
+    return mujoco.rubbed(1.0, brake, 0.0, p.v0 + 0.5 * dt * brake, dt, lambda x: x * ahead)
+
+
+def joint_limit(p, dt):
+    """With a leapfrog start only the last, shorter step has an error.  The friction of MuJoCo's joint is −b v where
+    that is less than μg, b = 2/τ: it ends with a way v/b in place of v²/2μg, which is ½ μg/b² more.
+    """
+    return limits(p, dt)[2] + 0.5 * p.mu * p.g * (0.5 * mujoco.TIME_CONSTANT) ** 2 / np.linalg.norm(truth(p, T))
+
+
 RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
     ours(PYRAMID, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
@@ -179,6 +202,8 @@ RUNNERS = (
            in_pybullet(model, read, accelerations=lambda p: at_first(p, thrown(p) / p.v0), iterations=ITERATIONS),
            f"first velocity − ½ a dt; {slab_on_box(iterations=ITERATIONS)}",
            order=2, limit=carried_limit, predicted=carried_velocity, measured=BY_SWEEPS),
+    engine(MUJOCO, "friction of a joint", jointed, JOINT, order="2 in long steps", limit=joint_limit,
+           predicted="its friction is viscous below 3 cm/s, in steps shorter than half of its time constant"),
 )
 
 

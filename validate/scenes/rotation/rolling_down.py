@@ -93,7 +93,8 @@ def model(p):
 
 read = read_rolling(lambda p: p.radius)
 world = partial(built, PYBULLET, model, read, iterations=60, overlap=0.0, slop=0.0)
-MAXIMAL = engine(PYBULLET, "", world(ground=False), "the same with useMaximalCoordinates=1",
+MAXIMAL = engine(PYBULLET, "", world(ground=False),
+                 "the ball in maximal coordinates, the ground in reduced ones; else the same",
                  order=1, limit=limits, predicted=new_velocity)
 RUNNERS = (
     ours(ROLLING, limit=limits, predicted=new_velocity),
