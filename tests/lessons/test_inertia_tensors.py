@@ -90,7 +90,8 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
           1e-14, given)
 
 
-@exercise("4.1", points=0.5, hint='after summing the masses: check_positive("total mass [kg]", M)')
+@exercise("4.1", points=0.5,
+          hint='check the sum, not each mass, which may be that of a hole: check_positive("total mass [kg]", M)')
 def test_a_body_without_mass_has_no_centre_of_mass(lesson, draw):
     m, x = cloud(draw, 2)
     close("total mass of two points [kg]", lesson.centre_of_mass(m, x)[0], sum(m), ROUNDED, f"m = {m}")
@@ -125,7 +126,8 @@ def test_linear_momentum_is_the_mass_times_the_velocity_of_the_centre(lesson, dr
               f"m = {masses}, v = {speeds.tolist()}")
 
 
-@exercise("4.3", points=0.5, hint="the lever arm (x − about) comes first in the cross product, then m v")
+@exercise("4.3", points=0.5,
+          hint="add up (x − about) × m v of every point: turning about the centre counts, too; the arm comes first")
 def test_angular_momentum_of_a_turning_body_is_its_tensor_times_omega(lesson, draw):
     m, x = cloud(draw, draw.whole(3, 6))
     X, omega = m @ x / m.sum(), draw(-3.0, 3.0, 3)
@@ -168,7 +170,9 @@ def test_angular_momentum_about_another_point_has_the_arm_of_the_whole_momentum(
 
 # ---------------------------------------------------------------------------------------------- tensors
 
-@exercise("4.4", points=1, hint="the off-diagonal entries are −Σ m x y: with a plus sign, I ω is not L")
+@exercise("4.4", points=1,
+          hint="Ixx = Σ m (y² + z²) and Ixy = −Σ m x y, about the origin of r: every entry has the mass, and two "
+               "lengths")
 def test_tensor_of_points_gives_their_angular_momentum_and_energy(lesson, draw):
     m, r = cloud(draw, draw.whole(3, 6))
     I = np.asarray(lesson.point_mass_inertia(m, r))
@@ -414,7 +418,7 @@ def test_away_from_its_centre_a_body_resists_like_a_point_more(lesson, draw):
 
 
 @exercise("4.12", points=0.5,
-          hint="shift each tensor from its own centre xᵢ to the common one: the offset is xᵢ − X, the mass mᵢ")
+          hint="return MassProperties(M, X, I); shift each tensor from its own centre xᵢ to X, with the mass mᵢ")
 def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
     clouds = [cloud(draw, n) for n in (draw.whole(3, 4), draw.whole(2, 5), draw.whole(4, 6))]
     # The second one is a hole: heavier than the first part, lighter than all others together.
@@ -522,8 +526,8 @@ def test_principal_axes_are_right_handed(lesson, draw):
 
 
 @exercise("4.13", points=0.25,
-          hint="equal moments allow many axes; return any that are orthogonal, right-handed unit vectors; equal "
-               "entries of the diagonal are no equal moments where a product of inertia is not 0")
+          hint="moments ascend with their signs: those of a hole are negative. Equal ones allow any orthogonal axes; "
+               "equal entries of the diagonal are no equal moments where a product of inertia is not 0")
 def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any_size(lesson, draw):
     """det(I − λ) = −λ³ + tr I λ² − ½(tr² I − tr I²) λ + det I. Roots 0.2 apart are known to about 1e-14."""
     low, middle, high = 0.5 + draw(0.0, 0.3), 1.0 + draw(0.0, 0.3), 1.5 + draw(0.0, 0.3)
@@ -798,8 +802,8 @@ NO_CORNER, OPEN = "a triangle's corner", "a corner on an open edge: number"
 
 
 @exercise("4.16", points=0.25,
-          hint="every edge i → j needs an edge j → i; a reversed or repeated triangle "
-               "violates that; name a corner of the open edge")
+          hint="every edge i → j needs an edge j → i, and corners have numbers from 0 to count − 1; a reversed or "
+               "repeated triangle violates the first; name a corner of the open edge")
 def test_open_and_crooked_meshes_are_refused(lesson, draw):
     x, faces = box_mesh(draw(0.3, 1.5, 3), np.zeros(3))
     k = draw.whole(0, len(faces) - 1)

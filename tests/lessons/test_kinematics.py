@@ -293,7 +293,7 @@ def shown(ellipse):
     return longer, shorter, np.tan(angle)
 
 
-@exercise("11.3", points=0.125, hint="for a = c the angle is ±45°; for one joint there is no pair of columns, so D = 0")
+@exercise("11.3", points=0.125, hint="for a = c the angle is ±45°; σ₂ = D/σ₁ keeps its digits; for one joint D = 0")
 def test_the_ellipse_of_joints_that_are_alike_or_alone(lesson, draw):
     """The longer axis of (p, q), (±q, ±p) is at ±45°; a billionth more makes a circle an ellipse."""
     p, q = draw(1.0, 2.0), draw(0.2, 0.8)
@@ -563,7 +563,8 @@ def test_an_axis_through_the_end_moves_it_nowhere(lesson, draw):
           np.vstack((np.cross(a, x[6] - x[:6]).T, a.T)), ROUND_OFF, given=f"joints and end at {x} m, axes {a}")
 
 
-@exercise("11.8", points=0.5, hint="d = q_target ∘ q̄ and not the other way round: the rotation is in the world")
+@exercise("11.8", points=0.5,
+          hint="d = q_target ∘ q̄, not the other way round; 2 atan2(|xyz|, w) keeps its digits up to half a turn")
 def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
     for sign in (1.0, -1.0):
         for _ in range(6):
@@ -1294,7 +1295,9 @@ def between_rows(at, times, rows):
     return np.stack([np.interp(at, times, column) for column in rows.T], axis=1)
 
 
-@exercise("11.19", points=1, hint="stay away from the rim of the reach, and give the hand more time")
+@exercise("11.19", points=1,
+          hint="write within the reach, but not at its rim; as wide and as long as the docstring says; and slowly "
+               "enough")
 def test_an_arm_writes_what_it_is_told_slowly_and_is_never_straight(lesson):
     lengths, points, seconds = lesson.my_writing()
     lengths, points = np.array(lengths, dtype=float), np.array(points, dtype=float)

@@ -1390,7 +1390,9 @@ def brake(ball):
     return ball.mu * abs(ball.gravity[2])
 
 
-@exercise("10.10", points=1, hint="|slip| over the rate at which friction, through v and ω, and gravity reduce it")
+@exercise("10.10", points=1,
+          hint="|slip| along the floor, so without u_z, over the rate at which friction, by v and ω, and gravity "
+               "reduce it")
 def test_the_slip_ends_when_theory_says(lesson, draw):
     """Friction takes μg from v and adds μg/c to the speed of the rim.  At first gravity brakes more than friction."""
     ball, _, _, _, _, share = bowled(lesson, draw)
@@ -1628,7 +1630,8 @@ def test_a_rocking_block_keeps_what_housner_says(lesson, draw):
         close("velocity of its centre then [m/s]", v, omega * np.array([-h, -b]), ROUND_OFF)
 
 
-@exercise("10.12", points=0.5, hint="v⁺ + ω⁺ × r = 0: the corner stops")
+@exercise("10.12", points=0.5,
+          hint="v⁺ + ω⁺ × r = 0: the corner stops. The angular momentum about it stays, also where ω changes its sign")
 def test_the_corner_stops_and_one_impulse_there_explains_it(lesson, draw):
     """In any direction, of light and of heavy bodies, near their centres and far from them; and hardly moving.
 
@@ -1639,6 +1642,7 @@ def test_the_corner_stops_and_one_impulse_there_explains_it(lesson, draw):
     usual = [(speed, heavy, np.append(size * unit_vector(draw, 2), speed * draw(-2.0, 2.0, 3)))
              for size, speed, heavy in 4 * kinds]
     arms, speeds, spins = often_zero(draw, 60, 2), often_zero(draw, 60, 2), often_zero(draw, 60, 1)
+    usual += [(speed, heavy, row * (1.0, 1.0, -1.0, -1.0, -1.0)) for speed, heavy, row in usual]     # and backwards
     for speed, heavy, row in usual + [(1.0, 1.0, often) for often in np.hstack((arms, speeds, spins))]:
         m, I, r, v, omega = *heavy * draw(0.5, 2.0, 2), row[:2], row[2:4], row[4]
         v_new, omega_new = lesson.corner_impact(v, omega, r, 1.0 / m, 1.0 / I)

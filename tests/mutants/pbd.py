@@ -260,6 +260,8 @@ wrong("8.5", "keeps the old velocity")(projecting(speed=lambda new, x, goal, v, 
 wrong("8.5", "forgets the prediction")(projecting(force=False))
 wrong("8.5", "does not divide by dt in the velocity")(projecting(speed=lambda new, x, goal, v, dt: new - x))
 wrong("8.5", "starts the iteration at the prediction")(projecting(start="goal"))
+edit("8.5", "stops when the links have their length, wherever the points are", "np.max(np.abs(change)) <=",
+     "np.max(np.abs(constraints(new, network)[0]), initial=0.0) <=")
 edit("8.5", "stops immovable points that move", "new = new + change",
      "change[network.inv_mass == 0.0] = 0.0\n        new = new + change")
 edit("8.5", "uses gravity in place of the acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
@@ -962,6 +964,14 @@ edit("8.18", "skips faces whose tetrahedron has no volume, although their corner
 
 
 # 8.19 --------------------------------------------------------------------------------------------------------------
+@right("8.19", "by the recursion of the angle, to leading order")
+def recursion(v, length, dt, t):
+    angle = v * dt / length
+    for _ in range(round(t / dt)):
+        angle *= 1.0 - angle * angle
+    return angle * length / dt
+
+
 @right("8.19", "by the angle per step")
 def circling_speed(v, length, dt, t):
     angle = v * dt / length

@@ -1134,6 +1134,10 @@ MOMENT, ANGULAR = f"1.0 / inv_inertia + {SQUARE} / inv_mass", "L = omega / inv_i
 SPIN_OF = f"omega = L / ({MOMENT})"
 AFTER = f"return omega * {ACROSS}, omega"
 edits("10.12",
+      ("lets nothing that turns to the left turn back", SPIN_OF,
+       f"spin, omega = omega, L / ({MOMENT}); omega = max(omega, 0.0) if spin > 0.0 else omega"),
+      ("lets nothing that turns to the right turn back", SPIN_OF,
+       f"spin, omega = omega, L / ({MOMENT}); omega = min(omega, 0.0) if spin < 0.0 else omega"),
       ("halves the new spin", "omega = L / (", "omega = 0.5 * L / ("),
       ("exchanges masses and their inverses in the inertia about the corner",
        "(1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)",
