@@ -127,6 +127,10 @@ def said_of_all(report):
            "runs may differ. The table takes the smallest ratio of each scene: the median of these, and their range. "
            "Medians of all races in which both reach the error:")
     yield ". ".join(f"At {count['name']} {races.summary_ratio(count)}; {ended(count)}" for count in counts) + "."
+    plain = races.headline_of(counts)["plain"]
+    if plain["races"]:
+        yield (f"Our loops are compiled by numba. In plain Python they are faster than the engine in {plain['faster']} "
+               f"of the {plain['races']} races to {percent(HEADLINE)} in which they were timed.")
     made = races.median_factors(every)
     if made["order"] is not None:
         yield (f"In each race a ratio is the product of two: the method's order, and the loop at the engine's own "
