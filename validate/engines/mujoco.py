@@ -82,25 +82,16 @@ def points(masses, x, v, dt, read, gravity=(0.0, 0.0, 0.0), **joint):
     return running(model, data, lambda: read(data.qpos.reshape(-1, d).copy()))
 
 
-def rubbed(m, friction, gravity, v, dt, read, force=None):
+def rubbed(m, friction, gravity, v, dt, read):
     """Make the EngineRun of a body that slides along x with the friction [N] of a joint: `frictionloss`; read(x).
 
-    gravity: along x [m/s²]    v: half a step before the start [m/s]    force(t) along x [N] at the time of each step
+    gravity: along x [m/s²]    v: half a step before the start [m/s]
     """
     joint = f'<joint type="slide" axis="1 0 0" frictionloss="{text(friction)}" solimpfriction="{text(STIFF)}"/>'
     model, data = world(dt, f"<body>{joint}{inertial(m, np.ones(3))}</body>", (gravity, 0.0, 0.0), "Euler",
                         tolerance=TOLERANCE)
     data.qvel[0] = v
-    run, pull, clock = running(model, data, lambda: read(data.qpos[0])), data.qfrc_applied, [0]
-    if force is None:
-        return run
-    advance = run.step
-
-    def step():
-        pull[0] = force(clock[0] * dt)
-        clock[0] += 1
-        advance()
-    return run._replace(step=step)
+    return running(model, data, lambda: read(data.qpos[0]))
 
 
 # ---------------------------------------------------------------------------------------------- switches

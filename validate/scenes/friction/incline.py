@@ -197,10 +197,6 @@ def jointed(p, dt):
     return mujoco.rubbed(1.0, -p.mu * across, along, first, dt, lambda x: np.array([x]))
 
 
-def joint_limit(p, dt):
-    return limits(p, dt)[2] + rounded(p, dt)
-
-
 TILTED = "gravity tilted, "
 RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
@@ -221,7 +217,7 @@ RUNNERS = (
            departure=Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
                                "slope that can hold it, a block creeps, more slowly with an impratio above the default",
                                held, Whose.DEFAULT)),
-    engine(MUJOCO, "friction of a joint", jointed, JOINT, order=2, limit=joint_limit,
+    engine(MUJOCO, "friction of a joint", jointed, JOINT, order=2, limit=limits,
            predicted=partial(new_velocity, at=0.5), supports=slides),
 )
 

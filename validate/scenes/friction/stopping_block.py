@@ -176,8 +176,9 @@ def jointed(p, dt):
 
 
 def joint_limit(p, dt):
-    """With a leapfrog start only the last, shorter step has an error.  The friction of MuJoCo's joint is −b v where
-    that is less than μg, b = 2/τ: it ends with a way v/b in place of v²/2μg, which is ½ μg/b² more.
+    """With a leapfrog start only the last, shorter step has an error.  The friction of MuJoCo's joint is −b v as soon
+    as that is less than μg.  Here b = 2/τ, and τ is the time constant.  From v = μg/b on, the block slides by v/b.
+    Coulomb's friction would stop it after v²/2μg, which is ½ μg/b² less.
     """
     return limits(p, dt)[2] + 0.5 * p.mu * p.g * (0.5 * mujoco.TIME_CONSTANT) ** 2 / np.linalg.norm(truth(p, T))
 

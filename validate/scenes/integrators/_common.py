@@ -81,9 +81,10 @@ class Point(NamedTuple):
                       order=1, limit=limits, predicted=motion.predict(NEW_VELOCITY_OLD_FORCE))
 
     def leaping_in_pybullet(self, motion, limits):
-        """Return the runner of pybullet with a leapfrog start, which halves its error or better: drag keeps the order.
+        """Return the runner of pybullet with a leapfrog start.
 
-        In pymunk it would double the error.
+        Its error is less than half as large.  The order stays the same, because drag depends on the velocity.  In
+        pymunk the error would be larger.
         """
         return engine(PYBULLET, "leapfrog start", self.built(PYBULLET, ahead=0.5),
                       "as in pybullet, first velocity − ½ a dt", order=1, limit=limits,

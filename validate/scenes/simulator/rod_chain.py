@@ -237,7 +237,7 @@ world = partial(built, model=model, read=read)
 LAGRANGIAN = "the same discrete Lagrangian in angles gives the size of its error, which is in its limit"
 SWEEPS = "10 iterations for each rod, at least 100"          # an impulse travels one rod per iteration
 SWEPT = "its sweeps over the joints, and the gaps that they leave, are bounded, but not modelled"
-FEWER = {PYMUNK: 20, PYBULLET: 30}       # iterations with which both come to 1 % in half the time or less
+FEWER = {PYMUNK: 20, PYBULLET: 30}       # iterations: enough for 1 %, in a third and in half of the time
 LEAPFROG: dict[str, Any] = {"order": LATE_LEAPFROG, "limit": leapfrog_limit, "predicted": SWEPT, "supports": is_short,
                             "measured": "what fewer sweeps leave, on runs of 100 to 1,000 steps"}
 FINER = (2000, 5000, 10_000, 20_000)
