@@ -875,6 +875,12 @@ def landing(lesson, rng):
                    inverse_matrix(1.0 / inv_mass, inv_inertia), G)
 
 
+def third_leaves(one, speed):
+    """Return the body of a Landing whose first two points approach with 2 m/s; the third leaves at `speed`."""
+    y = np.linalg.pinv(one.G) @ (-2.0, -2.0, speed)
+    return one.body._replace(v=y[:3], omega=y[3:])
+
+
 def most_dissipative(lesson, body, r, n, e, mu):
     """Return (v, ω) after the impact that dissipates most."""
     after, _ = lesson.most_dissipative_impact(lesson.contact_matrix, lesson.cone_impulse, lesson.apply_impulse, body, r,
@@ -894,8 +900,7 @@ def speeds_of_separation(lesson, rng):
 def approaches(lesson, rng):
     """Let the third point leave, so that the impact slows it."""
     one = landing(lesson, rng)
-    leaves = np.linalg.pinv(one.G) @ (-2.0, -2.0, 0.1)
-    slim = one.body._replace(v=leaves[:3], omega=leaves[3:], inv_inertia=20.0 * one.body.inv_inertia)
+    slim = third_leaves(one, 0.1)._replace(inv_inertia=20.0 * one.body.inv_inertia)
     return np.minimum(0.0, one.G @ most_dissipative(lesson, slim, one.r, one.n, one.e, 0.2)), np.zeros(3)
 
 
@@ -914,11 +919,15 @@ def pairs_of_cones(lesson, rng):
 @random_law("Without friction the impulses solve the complementarity problem of all points together.",
             "velocities after the impact: largest error [m/s, rad/s]", 1e-9)
 def frictionless_impacts(lesson, rng):
-    one = landing(lesson, rng)
-    after, _ = lesson.solve_impacts(one.body, one.r, one.n, one.e, 0.0)
-    u_n = one.G @ one.y
-    lam = enumerated(one.G @ one.W @ one.G.T, u_n - np.maximum(0.0, -one.e * u_n))
-    return velocities(after), one.y + one.W @ one.G.T @ lam
+    """Let a body hit with three points, and then with two, while the third leaves: the sweeps must settle the two."""
+    one, found, expected = landing(lesson, rng), [], []
+    for body in (one.body, third_leaves(one, 20.0)):
+        after, _ = lesson.solve_impacts(body, one.r, one.n, one.e, 0.0)
+        u_n = one.G @ velocities(body)
+        lam = enumerated(one.G @ one.W @ one.G.T, u_n - np.maximum(0.0, -one.e * u_n))
+        found.append(velocities(after))
+        expected.append(velocities(body) + one.W @ one.G.T @ lam)
+    return np.array(found), np.array(expected)
 
 
 @random_law("The impact of maximal dissipation loses 1 − e² of the energy that it loses with e = 0.",
