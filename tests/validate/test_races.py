@@ -61,6 +61,18 @@ def test_the_time_to_an_error_is_read_between_two_runs_with_its_range():
     assert races.reach([row("a", "plain", 10, 1e-1, 1.0)], 1e-2) is None
 
 
+def test_the_time_to_an_error_is_read_on_the_curve_and_not_across_a_lost_run():
+    runs = ((10, 0.9, 1.0), (20, 0.3, 2.0), (40, 1e-4, 4.0))
+    lost, coarse, fine = (row("a", "plain", *run) for run in runs)
+    assert races.reach([lost, fine], 1e-2).seconds == 4.0
+    between = races.reach([lost, coarse, fine], 1e-2).seconds
+    assert between == pytest.approx(4.0 * 0.5 ** (np.log(1e-2 / 1e-4) / np.log(0.3 / 1e-4)))
+    # the next coarser run counts, and not the one whose error is nearest
+    by_luck = row("a", "plain", 5, 0.02, 0.5)
+    assert races.reach([by_luck, lost, coarse, fine], 1e-2).seconds == between
+    assert races.reach([by_luck, lost, fine], 1e-2).seconds == 4.0
+
+
 def test_an_error_that_the_coarsest_run_meets_is_said_as_such():
     found = held([engine(constant=0.1)], [EULER])[0.1]
     assert found["engine"]["coarsest"] and found["ours"]["coarsest"]

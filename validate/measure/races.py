@@ -93,12 +93,12 @@ def reach(rows, error):
 def interpolation(at, rows, error):
     """Return a function of "seconds", "low" or "high": its value where the curve crosses the error, log-log.
 
-    at: the cheapest run that is accurate enough.  The nearest run that is coarser and cheaper is the other end.
+    at: the cheapest run that is accurate enough.  The next coarser run is the other end.  No line is drawn to a run
+    that is lost, because the curve begins after it.
     """
-    coarser = [row for row in rows if row["error"] > error and row["seconds"] < at["seconds"]]
-    if not coarser or at["error"] <= 0.0:
+    beside = max((row for row in rows if row["steps"] < at["steps"]), key=lambda row: row["steps"], default=at)
+    if at["error"] <= 0.0 or not error < beside["error"] < ASYMPTOTIC or beside["seconds"] >= at["seconds"]:
         return lambda key: at[key]
-    beside = min(coarser, key=lambda row: (row["error"], row["seconds"]))
     share = log(error / at["error"]) / log(beside["error"] / at["error"])
     return lambda key: exp((1.0 - share) * log(at[key]) + share * log(beside[key]))
 

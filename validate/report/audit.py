@@ -228,8 +228,7 @@ def of_time(row, error):
 def of_targets(curve, rows):
     """Yield what is wrong with the times that one curve takes to given errors."""
     name = f"{curve['label']}, {curve['speed']},"
-    points = [(row["error"], row["seconds"]) for row in rows
-              if (row["label"], row["speed"]) == (curve["label"], curve["speed"])]
+    points = [row for row in rows if (row["label"], row["speed"]) == (curve["label"], curve["speed"])]
     if len(curve["seconds"]) != len(TARGETS) or not points:
         yield f"the times to an error of {name} have no rows"
         return
@@ -261,16 +260,21 @@ def follows(row, key):
     return not differs(row[key], full / lean) and row["same"] == (distance(*row["observed"]) < SAME)
 
 
-def least_time(points, target):
-    """Return the shortest time for an error: that of the cheapest accurate run, or between it and a coarser one."""
-    good = min(((seconds, error) for error, seconds in points if error <= target), default=None)
-    if good is None:
+def least_time(rows, target):
+    """Return the shortest time for an error: of the cheapest accurate run, or between it and the run before it.
+
+    The run before it has the next smaller number of steps.  It must be a part of the curve: cheaper, and not lost.
+    """
+    rows = sorted(rows, key=lambda row: row["steps"])
+    good = [k for k, row in enumerate(rows) if row["error"] <= target]
+    if not good:
         return None
-    coarser = min(((error, seconds) for error, seconds in points if error > target and seconds < good[0]), default=None)
-    if coarser is None or good[1] <= 0.0:
-        return good[0]
-    share = np.log(target / good[1]) / np.log(coarser[0] / good[1])
-    return float(good[0] * (coarser[1] / good[0]) ** share)
+    k = min(good, key=lambda k: (rows[k]["seconds"], rows[k]["error"]))
+    fine, coarse = rows[k], rows[max(0, k - 1)]
+    if not (0.0 < fine["error"] and target < coarse["error"] < ASYMPTOTIC and coarse["seconds"] < fine["seconds"]):
+        return fine["seconds"]
+    share = np.log(target / fine["error"]) / np.log(coarse["error"] / fine["error"])
+    return float(fine["seconds"] * (coarse["seconds"] / fine["seconds"]) ** share)
 
 
 def of_calls(times):
@@ -358,7 +362,7 @@ def by_curve(rows, labels):
 
 def least_of(groups, error):
     """Return the least time to an error of some curves, or None."""
-    reached = [least_time([(row["error"], row["seconds"]) for row in group], error) for group in groups.values()]
+    reached = [least_time(group, error) for group in groups.values()]
     return min((t for t in reached if t is not None), default=None)
 
 
