@@ -7,8 +7,8 @@ e [-] restitution · φ [m] gap.
 A support pushes and never pulls: F_N ≥ 0.  Friction opposes motion along the surface with at most μ F_N, so the forces
 of a support fill a cone.  The index t denotes the part along the surface, y_t = y − (y · n) n.
 Every law for forces here also holds for accelerations: use a in place of F, and m = 1.
-Given in solutions/given/friction.py: make_block, pyramid_step, event_step, and the loops slip_times and
-advance_particle.
+Given in solutions/given/friction.py: make_block, average_sliding_step, pyramid_step, event_step, and the loops
+slip_times and advance_particle.
 *Left out:* rotation (a block that tips, a ball that rolls): lesson 5.  Friction that depends on speed, time or area.
 """
 

@@ -28,6 +28,7 @@ IMPLICIT_MESH = Method("implicit_spring_network_step", "implicit mesh", 1, "spri
 
 # friction
 SLIDING = Method("sliding_step", "sliding", 1, "friction", "#0072B2", "o")
+AVERAGE_SLIDING = Method("average_sliding_step", "mean velocities", 2, "friction", "#CC79A7", "^")
 PYRAMID = Method("pyramid_step", "pyramid", 1, "friction", "#D55E00", "D")
 EVENT = Method("event_step", "event", 2, "friction", "#009E73", "s")
 CONTACT = Method("contact_step", "contact", 1, "friction", "#E69F00", "v")

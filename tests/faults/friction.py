@@ -59,6 +59,8 @@ fault("contact_step", "x = x - phi * n", "x = x - (1.0 + p.e) * phi * n", "the p
 fault("position_friction_step", "if v @ n < 0.0:", "if True:", "friction also moves back what already leaves")
 fault("slip_times", "slipping = slides and bool(np.any(v))", "slipping = slides",
       "a block that stops and slides back is said not to have stopped", of="given.friction")
+fault("average_sliding_step", "(v + v_new)", "(v_new + v_new)", "the position advances with the new velocity",
+      of="given.friction")
 fault("pyramid_step", "p.mu_k, t_1", "p.mu_s, t_1", "a sliding block has static friction", of="given.friction")
 fault("advance_particle", "t + n * dt", "t", "every step begins at the time of the first", of="given.friction")
 fault("make_block", "Block(n / length", "Block(n", "the normal may have any length", of="given.friction")

@@ -114,6 +114,7 @@ def of_springs():
 
 def of_friction():
     return {
+        "average_sliding_step": [(friction.driven_acceleration, 0.0, scenes.still, around(3), 0.1, scenes.block)],
         "pyramid_step": [(friction.driven_acceleration, 0.0, scenes.still, around(3), 0.1, scenes.block)],
         "event_step": [(friction.driven_acceleration, 0.0, scenes.still, v, 0.1, scenes.block)
                        for v in (scenes.still, 0.01 * scenes.block.drive)]}

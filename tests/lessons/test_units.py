@@ -178,8 +178,8 @@ RESULTS = {
         "N s": "pyramid_impulse friction_impulse particle_contact_impulse my_friction",
         "m/s": "tangential",
         "m/s²": "incline_acceleration driven_acceleration falling_acceleration",
-        "m; m/s": "pyramid_step event_step advance_particle sliding_step kinetic_friction_step contact_step "
-                  "position_friction_step",
+        "m; m/s": "average_sliding_step pyramid_step event_step advance_particle sliding_step kinetic_friction_step "
+                  "contact_step position_friction_step",
         "s": "slip_times stopping_time breakaway_time",
         "m; -": "particle_plane_gap particle_bowl_gap",
         "m": "friction_position_correction sliding_distance",

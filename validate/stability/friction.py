@@ -500,6 +500,19 @@ def blocks_on_a_pyramid(lesson, rng):
     return lesson.pyramid_step(lesson.driven_acceleration, t, x, v, dt, p), (x + dt * end, end)
 
 
+@random_law("With mean velocities a block under constant forces moves as Galileo says: x = x₀ + v₀ t + ½ a t².",
+            "largest error of the state of the sliding block [m, m/s]", 1e-10)
+def mean_velocities(lesson, rng):
+    """Let a block slide along a straight line, pulled and braked, for three steps in which it does not stop."""
+    c, x, dt, speed = random_contact(rng), rng.normal(size=3), rng.uniform(0.01, 0.05), rng.uniform(3.0, 4.0)
+    c, pull = c._replace(load=rng.uniform(1.0, 5.0)), rng.normal()
+    p, state = block_at(lesson, c, pull), (x, speed * c.t_1)
+    for _ in range(3):
+        state = lesson.average_sliding_step(lesson.driven_acceleration, 0.0, *state, dt, p)
+    a, t = pull - c.mu_k * c.load, 3.0 * dt
+    return state, (x + (speed * t + 0.5 * a * t * t) * c.t_1, (speed + a * t) * c.t_1)
+
+
 @random_law("The normal of a bowl and of a trough is the derivative of the distance.",
             "largest error of the distance and normal [m, -]", 1e-10)
 def hollows(lesson, rng):
@@ -581,7 +594,8 @@ def two_steps(lesson, rng):
 def laws_of_friction(lesson, check):
     """Check the cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
     check.laws(lesson, (normal_forces, static_forces, kinetic_forces, impulses_of_the_cone, impulses_of_the_pyramid,
-                        slopes, blocks, blocks_on_a_pyramid, hollows, rebounds, two_steps, shifts),
+                        slopes, blocks, mean_velocities, blocks_on_a_pyramid, hollows, rebounds, two_steps,
+                        shifts),
                seed=31, times=TRIED)
 
 

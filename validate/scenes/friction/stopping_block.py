@@ -10,7 +10,7 @@ from solutions.given.friction import make_block
 from validate.check import Whose, states
 from validate.engines import mujoco
 from validate.engines.friction import slab
-from validate.methods import EVENT, PYRAMID, SLIDING
+from validate.methods import AVERAGE_SLIDING, EVENT, PYRAMID, SLIDING
 from validate.reference.friction import HALF, NOTHING_LEFT
 from validate.reference.schemes import summed
 from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Prediction, Scene, engine, ours
@@ -84,8 +84,8 @@ def limits(p, dt):
     """The velocity is exact at every step until it is zero.  The position uses the velocity at one end of each step,
     so its error is ½ v₀ dt.
 
-    The last step is shorter, which adds up to ⅛ μg dt² (see the incline): all that a leapfrog start leaves.  If the
-    method finds the time of the stop, only round-off is left.
+    The last step is shorter, which adds up to ⅛ μg dt² (see the incline): all that a leapfrog start or the mean of
+    both velocities leaves.  If the method finds the time of the stop, only round-off is left.
     """
     late, last = np.array((0.5 * p.v0 * dt, p.mu * p.g * dt * dt / 8.0)) / np.linalg.norm(truth(p, T))
     return {1: late + last + rounded(p, dt), 2: last + rounded(p, dt), EXACT: rounded(p, dt)}
@@ -125,6 +125,12 @@ def new_velocity(p, dt, at=1.0):
 
 
 old_velocity = partial(new_velocity, at=0.0)
+
+
+def mean_velocity(p, dt):
+    """The trapezoidal rule: its error is the mean of those of both rectangle rules."""
+    new, old = new_velocity(p, dt), old_velocity(p, dt)
+    return new._replace(error=0.5 * (new.error + old.error))
 
 
 def halfway_velocity(p, dt):
@@ -185,6 +191,7 @@ def joint_limit(p, dt):
 
 RUNNERS = (
     ours(SLIDING, limit=limits, predicted=new_velocity),
+    ours(AVERAGE_SLIDING, limit=limits, predicted=mean_velocity),
     ours(PYRAMID, limit=pyramid_limit, predicted=new_velocities, departure=BOX),
     # the deceleration is constant, and the stop is found
     ours(EVENT, order=EXACT, limit=limits, predicted=NOTHING_LEFT),
