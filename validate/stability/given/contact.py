@@ -8,7 +8,7 @@ from itertools import combinations, product
 import numpy as np
 
 from solutions.support.convex_2d import Cores, convex_bounds_2d, convex_contacts_2d
-from solutions.support.kept_contacts import AHEAD, begin_ways, have_moved, unknown_ways
+from solutions.support.kept_contacts import AHEAD, begin_ways, have_moved, mark_far, unknown_ways, widened
 from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 EXACT = 1e-9                 # of numbers around 1: the same by another sum
@@ -596,9 +596,33 @@ def ways_of_bodies(lesson, rng):
             (x + dt * v, turned, way, 1.0 * (way > 2e-3 * np.min(half, axis=1))))
 
 
+@random_law("A box is wider by the margin on all sides, and on one side by the way of eight steps, or by its own size.",
+            "widened boxes: largest error of their sides [m]", EXACT)
+def boxes_ahead(lesson, rng):
+    """Move them in all directions, over a part of their size or farther."""
+    d, dt, margin = rng.choice((2, 3)), rng.uniform(0.001, 0.01), rng.uniform(0.01, 0.05)
+    low, size, way = rng.normal(size=(6, d)), rng.uniform(0.1, 1.0, (6, d)), rng.choice((-2.0, -0.5, 0.5, 2.0), (6, d))
+    ahead = np.clip(way, -1.0, 1.0) * size
+    return (widened(low, low + size, way * size / (AHEAD * dt), margin, dt),
+            (low - margin + np.minimum(ahead, 0.0), low + size + margin + np.maximum(ahead, 0.0)))
+
+
+@random_law("Pairs are searched anew when a body has used up half of its margin on some side.",
+            "used margins: wrong answers [-]", 0.0)
+def used_margins(lesson, rng):
+    """Move bodies along each axis in both directions, by a little less and by a little more."""
+    d, margin = rng.choice((2, 3)), rng.uniform(0.01, 0.05)
+    axes, sides, shares = np.array(list(product(range(d), (-1.0, 1.0), (0.49, 0.51)))).T
+    n, way = len(axes), (sides * shares * margin)[:, None] * np.eye(d)[axes.astype(int)]
+    low, size, moved = rng.normal(size=(n, d)), rng.uniform(0.1, 1.0, (n, d)), np.zeros(n, bool)
+    mark_far(moved, low + way, low + size + way, low - margin, low + size + margin, margin)
+    return 1.0 * moved, 1.0 * (shares > 0.5)
+
+
 @case("steps-of-a-pile", "A step of a pile, and forces under torques", compiled=False)
 def steps_of_a_pile(lesson, check):
     """Compare flights, margins, separation, impulses, gaps and forces with Euler's equation and the laws of contact."""
     check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies,
-                        balance_in_space, friction_in_space, passing_bodies, meeting_bodies, gone_contacts), seed=32,
+                        balance_in_space, friction_in_space, passing_bodies, meeting_bodies, gone_contacts, boxes_ahead,
+                        used_margins), seed=32,
                times=15)

@@ -7,13 +7,14 @@ from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
-from scipy.optimize import lsq_linear
+from scipy.optimize import lsq_linear, minimize_scalar
 from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
-from solutions.given import passing
+from solutions.given import dividing, passing
 from solutions.given.bodies import TooFast
-from solutions.support import model, shapes
+from solutions.support import convex_3d, model, shapes
+from solutions.support.broad_phase import Pairs
 from solutions.support.events import extrema, value_at, zeros
 from solutions.support.quaternions import quaternion_from_matrix
 from solutions.support.small_systems import shortest_solution
@@ -671,7 +672,8 @@ def moments_of_shapes(lesson, rng):
     triangle = triangle if np.linalg.det(triangle[1:] - triangle[0]) > 0.0 else triangle[::-1]
     centre = np.mean(triangle, axis=0)
     sides = np.sum((np.roll(triangle, -1, axis=0) - triangle) ** 2)
-    of = lambda shape, d: shapes.moments_of_shape(shape, 1.0, d)
+    m = rng.uniform(0.5, 2.0)
+    of = lambda shape, d: np.array(shapes.moments_of_shape(shape, m, d)) / m
     corners = np.array([(x, y, z) for x in (-a, a) for y in (-b, b) for z in (-c, c)])
     solid, middle, _ = shapes.polyhedron_of(corners @ matrix_of(random_quaternions(rng, 1)[0]) + triangle[0, 0])
     return ((of(shapes.Capsule(h, r), 2), of(shapes.Capsule(h, r), 3), of(shapes.Box((a, b)), 2),
@@ -1146,6 +1148,39 @@ def capsule_on_a_face(lesson, rng):
     return unlike(rows, truth), (2, 0.0)
 
 
+@random_law("A place of a segment is nearest to a box, and a part of it lies over the face or the edge there.",
+            "segment and box: largest error of the least squared distance [m²], and of the ends of the part [m]", EXACT)
+def segments_over_boxes(lesson, rng):
+    """Search for the least distance.  Some segments are parallel to a face or to an edge."""
+    half, h, y = rng.uniform(0.3, 1.0, 3), rng.uniform(0.5, 2.0), 1.5 * rng.normal(size=3)
+    e = unit(rng) * rng.permutation(((1.0, 1.0, 1.0), (1.0, 1.0, 0.0), (1.0, 0.0, 0.0))[rng.integers(3)])
+    e /= np.linalg.norm(e)
+    beyond = lambda s: y + s * e - np.clip(y + s * e, -half, half)
+    out = beyond(convex_3d.nearest_place(tuple(y), tuple(e), h, half))
+    far, ends = rng.choice((0.0, np.max(np.abs(out)))), [(-h, h)]
+    for k in range(3):
+        if out[k] == 0.0 or abs(out[k]) < far:
+            within = sorted(((-half[k] - y[k]) / e[k], (half[k] - y[k]) / e[k])) if e[k] != 0.0 else (-h, h)
+            ends.append((1.0, 0.0) if e[k] == 0.0 and out[k] != 0.0 else within)
+    parts = (convex_3d.part_over(tuple(y), tuple(e), h, half, tuple(out), far),
+             (np.max(ends, axis=0)[0], np.min(ends, axis=0)[1]))
+    found, part = ((low, high) if low <= high else (0.0, 0.0) for low, high in parts)
+    squared = lambda s: np.sum(beyond(s) ** 2)
+    inner = minimize_scalar(squared, bounds=(-h, h), method="bounded", options={"xatol": 1e-12})
+    return (np.sum(out**2), *found), (min(inner.fun, squared(-h), squared(h)), *part)
+
+
+@random_law("A pair touches where one of its contacts has at most a given gap.",
+            "pairs that touch: wrong answers [-]", 0.0)
+def pairs_that_touch(lesson, rng):
+    """Try three pairs and four contacts, some of which belong to other pairs."""
+    pairs = Pairs(np.array([0, 2, 3, 3]), np.array([1, 2, 2]))
+    a, b, gap = rng.integers(0, 2, 4), rng.integers(1, 3, 4), rng.choice((0.01, 0.03), 4)
+    found = [dividing.touches(SimpleNamespace(a=a, b=b, gap=gap), pairs, s, 0.02) for s in range(3)]
+    return (np.array(found, float),
+            np.array([np.any((a == i) & (b == j) & (gap < 0.02)) for i, j in ((0, 1), (0, 2), (1, 2))], float))
+
+
 @random_law("Polyhedra with the corners of boxes that overlap touch as the boxes do.",
             "polyhedra: largest difference from the contacts of boxes [-, m]", EXACT)
 def polyhedra_as_boxes(lesson, rng):
@@ -1198,8 +1233,8 @@ def contacts_of_solids(lesson, check):
     Each solid is a core, the sum of some edges, with a radius: a point, a segment, or a box, which is also tried as a
     polyhedron.
     """
-    check.laws(lesson, (solids_apart, inside_a_solid, solids_on_planes, capsule_on_a_face, polyhedra_as_boxes,
-                        corner_to_corner), seed=38, times=20)
+    check.laws(lesson, (solids_apart, inside_a_solid, solids_on_planes, capsule_on_a_face, segments_over_boxes,
+                        pairs_that_touch, polyhedra_as_boxes, corner_to_corner), seed=38, times=20)
 
 
 # ---------------------------------------------------------------------------------------------- shapes, links, ways
