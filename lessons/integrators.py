@@ -148,7 +148,8 @@ def blanes_moan_step(acceleration, t, x, v, dt, p):
 
     kick:  v ← v + kick dt a(t, x)         drift:  x ← x + drift dt v,   t ← t + drift dt     alternately, see SPLITTING
     With SPLITTING = ((0, ½), (1, ½)) this is leapfrog, so Verlet is the simplest member of this family.  The energy
-    error stays bounded, as with Verlet.  It is smaller by orders of magnitude, for seven times the work.
+    error stays bounded, as with Verlet.  It is smaller by orders of magnitude, for seven accelerations per step in
+    place of two.
     *Source:* Blanes and Moan 2002, the Runge–Kutta–Nyström method SRKN₆ᵇ of order 4.
     """
     x, v = float_copy(x), float_copy(v)
@@ -347,7 +348,7 @@ def amplification_matrix(step, omega, zeta, dt):
     *Find* the columns of A: from which two states must you take a step to see them?
 
     States are arrays of shape (1,).  The acceleration is oscillator_acceleration, and its parameters are an Oscillator.
-    The motion grows at every step if an eigenvalue of A has an absolute value above 1.
+    If an eigenvalue of A has an absolute value above 1, nearly every motion grows in the end, by that factor per step.
     *Source:* Hairer and Wanner 1996, IV.2.
     """
     # YOUR CODE HERE

@@ -187,8 +187,8 @@ def rotation_matrix(q):
 def quaternion_update(q, omega, dt):
     """Return the orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  then unit; first order.
 
-    The axis of rotation is exact.  The angle is 2 atan(½|ω| dt) instead of |ω| dt, so it is never more than half a
-    turn.  unit raises BadInput for a quaternion 0, which is no orientation.
+    While ω is constant it is second order.  The axis of rotation is exact.  The angle is 2 atan(½|ω| dt) instead of
+    |ω| dt, so it is never more than half a turn.  unit raises BadInput for a quaternion 0, which is no orientation.
     *Source:* first lecture deck, “Use quaternions”; second lecture deck, “Don't forget to normalize q”.
     """
     # YOUR CODE HERE
@@ -399,7 +399,8 @@ def precession_rate(I_body, mgl, tilt, spin):
     The tip is released with just the push that it needs, so there is no nutation.  Which Ω turns L as the torque does?
 
     There are two such rates; return the one nearer to 0.  It exists for the inputs of the test.  The spin may have
-    either sign, and Ω follows it.  The axis may be level (tilt = π/2), and the top may hang (tilt > π/2).
+    either sign, and Ω follows it.  The axis may be level (tilt = π/2, where the other rate is infinite), and the top
+    may hang (tilt > π/2).
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.19: precession_rate")

@@ -255,8 +255,8 @@ def cone_impulse(u, n, K, u_sep, mu):
                   d = n cos β + sin β J_t/|J_t|   is on the rim of the cone, tan β = μ, on the side of the stick's J,
                                                   with J_t = tangential(J, n) of that J
 
-    n · K d > 0 for every μ, infinity included: it is positive for the J of stick, and d leans less towards J_t than
-    that J.  solve3(K[0], K[1], K[2], r) of lesson 5 returns K⁻¹ r: K is symmetric, and its rows are its columns.
+    Where the point slides, n · K d > 0: it is positive for the J of stick, and d leans less towards J_t than that J.
+    solve3(K[0], K[1], K[2], r) of lesson 5 returns K⁻¹ r: K is symmetric, and its rows are its columns.
     Raises what check_contact(u, n, K, mu) raises; call it first.
     *Source:* Coulomb's law on velocities after the impact; second lecture deck, “Coulomb's law”.  The side of
     the rim is a modelling choice (see the notebook).

@@ -420,8 +420,8 @@ def effective_inverse_mass_at(q, r, n, m, I_body):
     of the body, and its angular velocity, and both move the point.
 
     unrotate(q, ·) of lesson 5 converts a vector to body coordinates, where the tensor is the three moments I_body.
-    r starts at the centre of mass.  w increases with the distance of the centre of mass from the line of n through the
-    point.  r and n are in world coordinates.
+    r starts at the centre of mass.  For a given direction of r × n, w increases with the distance of the centre of mass
+    from the line of n through the point.  r and n are in world coordinates.
     *Source:* Müller et al. 2020, “Detailed rigid body simulation with extended position based dynamics”, eqs. 2, 3.
     """
     ### BEGIN SOLUTION 8.15

@@ -75,7 +75,8 @@ def complex_step(f, s, h, p):
     """Return the derivative of f at s from one value at a complex number:  Im f(s + i h) / h.
 
     f(s, p) computes a number or an array with a complex s, without np.abs, comparisons or conjugates.
-    Nothing is subtracted, so nothing cancels: the error is h² f‴/6 only, and h = 1e-20 gives all digits.
+    The formula subtracts nothing, so nothing cancels: the error is h² f‴/6 only, and h = 1e-20 gives all digits that
+    f itself does not lose.
     *Source:* Squire and Trapp 1998.
     """
     ### BEGIN SOLUTION 12.3
@@ -194,8 +195,9 @@ def bounce(v, a, dx, dv, n, e, gap_s, e_s):
 def remainder_orders(f, gradient, s, direction, steps, p):
     """Return (n − 1,) observed orders of  |f(s + h y) − f(s) − h g · y|,  one between each two successive h of steps.
 
-    *Find* them: a remainder is about C hᵏ, so two of them give k.  For the gradient g of f it is 2 (Taylor), for a
-    wrong one 1, until round-off hides the remainder of a short step.
+    *Find* them: a remainder is about C hᵏ, so two of them give k.  For the gradient g of f it is 2 (Taylor), or more
+    where f has no curvature along y.  For a wrong one it is 1, unless y is at right angles to the error of g.
+    Round-off hides the remainder of a short step.
 
     f(s, p) is a number; s, gradient g and direction y are (m,) arrays, steps (n,) numbers above zero, all different.
     Raises BadInput for a remainder of exactly 0, from which no order can be computed: call

@@ -392,9 +392,9 @@ def gain_without_source(energies, work):
     *Find* it from the energies E (k,) [J] and the work W (k,) [J] that was done until each time.  Work explains a gain
     of energy from any time j to any later time k, if it grew by as much.
 
-    The gain is 0 or more, since k may be j.  Friction and impacts only take energy, so a growth above the error of the
-    steps reveals a fault.  E and W may be lists.  Call checked_histories(energies, work) first: it returns both as
-    arrays.  Raises what checked_histories raises.
+    The gain is 0 or more, since k may be j.  Friction and impacts with e = 0 only take energy, so a growth above the
+    error of the steps then reveals a fault.  E and W may be lists.  Call checked_histories(energies, work) first: it
+    returns both as arrays.  Raises what checked_histories raises.
     """
     ### BEGIN SOLUTION 10.15
     energies, work = checked_histories(energies, work)

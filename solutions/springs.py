@@ -404,7 +404,7 @@ def implicit_spring_network_step(acceleration, t, x, v, dt, network):
 def hand_force(x, v, target, k, c, m, dt):
     """Return the force [N] (d,) of a spring and a damper that pull a point to a target: the pointer in a live scene.
 
-    The force at the beginning of a step throws a light point past the target, and each step throws it further.
+    With a long step, the force at its beginning throws a light point past the target, and each step throws it further.
     *Find* the force at the end of the step: F = −k (x⁺ − target) − c v⁺.  Both v⁺ and x⁺ are what F itself brings about
     in this step by symplectic Euler, and no other force acts on the point.
 
