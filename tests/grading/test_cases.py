@@ -1,5 +1,6 @@
 """A wrong answer of each pictured exercise makes a picture of the case in which it failed, a right one makes none."""
 
+import io
 import types
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from validate.grading import points
 from validate.mistakes import failing_case
 from validate.notebook import _Answer, cases
+from validate.notebook.cases import marks
 from validate.notebook.pytest_process import quiet
 from validate.subject import modules, needs
 from validate.subject.modules import ROOT
@@ -87,6 +89,20 @@ def test_a_case_survives_as_text_and_one_that_is_too_large_is_dropped():
     assert back.arguments[1:] == [[1.0, [2, True]], None, "text"] and (back.result, back.expected) == (3.0, None)
     huge = case._replace(arguments=[np.zeros(failing_case.MOST_NUMBERS + 1)])
     assert failing_case.encoded(huge) is None
+
+
+def test_an_answer_that_is_very_far_away_is_drawn_towards_its_direction_only():
+    """The renderer draws each dash of a line: one to a place 1e18 widths away would never end."""
+    view = marks.View("", np.eye(2), np.zeros(2), ("x", "y"))
+    given = [marks.Way(np.array([(0.0, 0.0), (1.0, 1.0)]), "given")]
+    answer = [marks.Way(np.array([(0.5, 0.5), (3e18, 4e18)]), "way"), marks.Disc(np.zeros(2), 1e18, "disc"),
+              marks.Arrow(np.zeros(2), np.array([1e18, 0.0]), "arrow")]
+    figure, inside = marks.picture([view], given, answer, [])
+    figure.savefig(io.BytesIO(), format="png", dpi=20)
+    axes = figure.axes[0]
+    ends = np.concatenate([line.get_xydata() for line in axes.lines])
+    assert not inside and np.abs(ends).max() < 2.0 * marks.BEYOND * np.ptp(axes.get_xlim())
+    assert np.allclose((ends - 0.5)[np.argmax(np.abs(ends[:, 1]))] / np.abs(ends).max(), (0.75, 1.0), rtol=1e-2)
 
 
 @pytest.mark.parametrize("result", [None, "text", np.nan, np.zeros((2, 2)), [np.inf], 1e300])

@@ -45,6 +45,7 @@ def pictures():
             for number, one in importlib.import_module(f"{__name__}.{name}").PICTURES.items()}
 
 
+@np.errstate(all="ignore")                               # a wrong answer may hold any numbers
 def drawn(case):
     """Return the Drawn picture of a Case; None where its exercise has none, or its numbers cannot be drawn."""
     how = pictures().get(case.exercise)

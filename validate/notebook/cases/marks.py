@@ -17,6 +17,7 @@ from scipy.spatial import ConvexHull, QhullError
 GIVEN = (("#0072B2", "s"), ("#8C6D31", "^"), ("#6A51A3", "D"), ("#5A5A5A", "v"))
 ANSWER, EXPECTED = ("#D55E00", "X"), ("#009E73", "o")
 FARTHEST = 3.0               # an answer is shown up to this many spans of the rest beyond it [-]
+BEYOND = 100.0               # what is farther away, in widths of the picture, is drawn at this distance [-]
 
 
 class View(NamedTuple):
@@ -34,6 +35,25 @@ class View(NamedTuple):
         """Return distances (n,) of points from the plane of the view through its origin."""
         offset = np.atleast_2d(np.asarray(points, dtype=float)) - self.origin
         return np.linalg.norm(offset - offset @ self.basis.T @ self.basis, axis=1)
+
+
+class Nearby(NamedTuple):
+    """A view in which a point that is far beyond the picture stands nearer, in the same direction from its middle.
+
+    A line is drawn dash by dash, also outside the picture.  So a line to a point 1e18 widths away would never end.
+    """
+    view: View
+    middle: np.ndarray       # (2,) of the picture
+    reach: float             # no point stands farther from there
+
+    @property
+    def basis(self):
+        return self.view.basis
+
+    def of(self, points):
+        """Return points (n, d) as they are drawn (n, 2)."""
+        way = self.view.of(points) - self.middle
+        return self.middle + way / np.maximum(1.0, np.linalg.norm(way, axis=1) / self.reach)[:, None]
 
 
 class Look(NamedTuple):
@@ -114,8 +134,8 @@ class Disc(NamedTuple):
         return view.of(self.centre) + self.r * np.array([(-1.0, -1.0), (1.0, 1.0)])
 
     def draw(self, axes, view, look):
-        centre = view.of(self.centre)[0]
-        axes.add_patch(Circle(centre, self.r, fill=bool(look.fill), fc=(look.colour, look.fill), ec=look.colour,
+        centre, r = view.of(self.centre)[0], min(self.r, view.reach)
+        axes.add_patch(Circle(centre, r, fill=bool(look.fill), fc=(look.colour, look.fill), ec=look.colour,
                               ls=look.line, lw=look.width, zorder=look.layer))
         style = {"color": look.colour, "marker": "."} if look.fill else _marker(look)
         axes.plot(*centre, **style, zorder=look.layer)
@@ -207,9 +227,10 @@ def picture(views, given, answer, expected):
     looks = [(mark, given_look(labels.index(mark.label))) for mark in given]
     looks += [(mark, EXPECTED_LOOK) for mark in expected] + [(mark, ANSWER_LOOK) for mark in answer]
     for view, axes in zip(views, figure.subplots(1, len(views), squeeze=False)[0]):
-        for mark, look in looks:
-            legend.setdefault(mark.label, mark.draw(axes, view, look))
         inside = _fit(axes, view, given + expected, answer) and inside
+        nearby = _nearby(axes, view)
+        for mark, look in looks:
+            legend.setdefault(mark.label, mark.draw(axes, nearby, look))
         axes.set(aspect="equal", xlabel=view.labels[0], ylabel=view.labels[1], title=view.title)
         axes.title.set_fontsize(10)
         axes.locator_params(nbins=5)
@@ -218,6 +239,12 @@ def picture(views, given, answer, expected):
     figure.legend(handles=handles, loc="outside lower center", ncols=1 if len(views) == 1 else 2, fontsize=9,
                   frameon=False)
     return figure, inside
+
+
+def _nearby(axes, view):
+    """Return the Nearby of a view, for axes whose limits are set."""
+    low, high = np.transpose((axes.get_xlim(), axes.get_ylim()))
+    return Nearby(view, 0.5 * (low + high), BEYOND * np.max(high - low))
 
 
 def _fit(axes, view, known, answer):
