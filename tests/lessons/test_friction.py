@@ -24,6 +24,11 @@ BARELY = 1e-9                # this share beyond a threshold, or within it, is f
 WAYS = ((2, True), (3, True), (2, False), (3, False))     # d and turned of a frame
 
 
+def smooth_or_rough(draw):
+    """Two drawn frictions, one below 1 and one above: steel on steel, and rubber on rubber."""
+    return draw(0.2, 0.6), draw(1.1, 2.0)
+
+
 def frame(draw, d, turned=True):
     """Rows n, t_1 (, t_2): a drawn unit normal and unit tangents in d dimensions.
 
@@ -146,7 +151,7 @@ def test_negative_friction_is_refused(lesson, draw):
 @exercise("3.3", points=0.5, hint="it points against the motion, not against F; its size is μ_k F_N at every speed")
 def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(lesson, draw):
     for d, turned in WAYS:
-        axes, load, mu = frame(draw, d, turned), draw(1.0, 10.0), draw(0.2, 1.0)
+        axes, load, mu = frame(draw, d, turned), draw(1.0, 10.0), smooth_or_rough(draw)[turned]
         n, F = axes[0], along_surface(draw, axes, draw(1.0, 20.0)) - load * axes[0]
         direction = along_surface(draw, axes, 1.0)
         for speed, sinking in ((1e-12, 0.0), (1e-6, 0.0), (draw(0.5, 9.0), 0.0), (draw(0.5, 9.0), draw(-2.0, 2.0))):
@@ -188,17 +193,17 @@ def test_kinetic_friction_needs_a_motion_and_a_load(lesson, draw):
 @exercise("3.4", points=0.5,
           hint="static friction decides whether the block starts to slide, kinetic friction acts while it slides")
 def test_a_block_slides_when_the_slope_is_steeper_than_the_cone_is_wide(lesson, draw):
-    theta, g = draw(0.2, 1.2), draw(1.0, 15.0)
-    down, n = np.array([np.cos(theta), -np.sin(theta)]), np.array([np.sin(theta), np.cos(theta)])
-    weight = np.array([0.0, -g])
-    mu_s, mu_k = draw(0.6, 0.95) * np.tan(theta), draw(0.1, 0.5) * np.tan(theta)
-    given = f"θ = {theta} rad, μ_s = {mu_s}, μ_k = {mu_k}, g = {g} m/s²"
-    # the force vectors in world coordinates
-    expected = weight @ down - mu_k * abs(weight @ n)
-    close("acceleration down the slope [m/s²]", lesson.incline_acceleration(theta, mu_s, mu_k, g), expected, ROUND_OFF,
-          given=given)
-    close("without friction [m/s²]", lesson.incline_acceleration(theta, 0.0, 0.0, g), weight @ down, ROUND_OFF,
-          given=given)
+    for theta, g in ((draw(0.2, 1.2), draw(1.0, 15.0)), (draw(1.3, 1.4), draw(1.0, 15.0))):     # the second: μ_k > 1
+        down, n = np.array([np.cos(theta), -np.sin(theta)]), np.array([np.sin(theta), np.cos(theta)])
+        weight = np.array([0.0, -g])
+        mu_s, mu_k = draw(0.6, 0.95) * np.tan(theta), draw(0.3, 0.5) * np.tan(theta)
+        given = f"θ = {theta} rad, μ_s = {mu_s}, μ_k = {mu_k}, g = {g} m/s²"
+        # the force vectors in world coordinates
+        expected = weight @ down - mu_k * abs(weight @ n)
+        close("acceleration down the slope [m/s²]", lesson.incline_acceleration(theta, mu_s, mu_k, g), expected,
+              ROUND_OFF, given=given)
+        close("without friction [m/s²]", lesson.incline_acceleration(theta, 0.0, 0.0, g), weight @ down, ROUND_OFF,
+              given=given)
 
 
 @exercise("3.4", points=0.5,
@@ -273,7 +278,9 @@ def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(les
                   v + lesson.friction_impulse(v, 1.0, 10.0, 1.0), 0.0 * v, 0.0, given=f"v_t = {v}, m = 1 kg")
     v, m, j_n = draw(1.0, 3.0, 2), draw(0.5, 5.0), draw(0.1, 2.0)
     still = np.zeros(2)
-    close("impulse at rest [N s]", lesson.friction_impulse(still, m, j_n, draw(0.2, 1.0)), still, 0.0)
+    for load, mu in itertools.product((0.0, j_n), (0.0, draw(0.2, 1.0), np.inf)):
+        close("impulse at rest [N s]: none", lesson.friction_impulse(still, m, load, mu), still, 0.0,
+              given=f"j_n = {load} N s, μ = {mu}")
     close("impulse where μ = 0 [N s]", lesson.friction_impulse(v, m, j_n, 0.0), still, 0.0, given=f"v_t = {v}")
     close("impulse where μ = ∞ [N s]: stops the body", lesson.friction_impulse(v, m, j_n, np.inf), -m * v, ROUND_OFF,
           given=f"v_t = {v}, m = {m}")
@@ -343,9 +350,9 @@ def block(lesson, n, mu_s, mu_k, gravity, drive=None, omega=0.0):
                         np.array(gravity, dtype=float), np.array(drive, dtype=float), omega)
 
 
-def slope(draw, lesson, mu_s_over, mu_k_over, d=3):
+def slope(draw, lesson, mu_s_over, mu_k_over, d=3, angles=(0.3, 1.0)):
     """(Block on a drawn slope, unit vector down it, tan θ, g cos θ), with the given ratios of both μ to tan θ."""
-    axes, theta = frame(draw, d), draw(0.3, 1.0)
+    axes, theta = frame(draw, d), draw(*angles)
     down = along_surface(draw, axes, 1.0)
     gravity = G * (np.sin(theta) * down - np.cos(theta) * axes[0])
     p = block(lesson, axes[0], mu_s_over * np.tan(theta), mu_k_over * np.tan(theta), gravity)
@@ -403,9 +410,8 @@ def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
 
     It is v₀²/2μg − ½ v₀ dt + ½ f(1 − f) μ g dt², where f is the fraction of the last step.
     """
-    for d in (2, 3):
-        axes = frame(draw, d)
-        mu, speed, dt = draw(0.2, 0.8), draw(1.0, 4.0), draw(0.01, 0.03)
+    for d, mu in zip((2, 3), smooth_or_rough(draw), strict=True):
+        axes, speed, dt = frame(draw, d), draw(1.0, 4.0), draw(0.01, 0.03)
         p, v0 = block(lesson, axes[0], mu, mu, -G * axes[0]), along_surface(draw, axes, speed)
         x, v = run(lesson, lesson.sliding_step, p, np.zeros(d), v0, dt, int(speed / (mu * G * dt)) + 2)
         given = f"v = {v0} m/s, μ = {mu}, dt = {dt} s"
@@ -421,7 +427,7 @@ def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
 @exercise("3.7", points=0.25, hint="use μ_s at rest and μ_k in motion, both with the normal force of this slope")
 def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
     dt, steps = draw(0.01, 0.05), 20
-    held, down_held, _, _ = slope(draw, lesson, 1.0 + BARELY, draw(0.1, 0.5))
+    held, down_held, _, _ = slope(draw, lesson, 1.0 + BARELY, draw(0.1, 0.5), angles=(0.9, 1.0))       # tan θ > 1
     x, v = run(lesson, lesson.sliding_step, held, np.zeros(3), np.zeros(3), dt, steps)
     close("position of a block that holds [m]", x, np.zeros(3), 0.0, given=f"{held}")
     close("velocity of a block that holds [m/s]", v, np.zeros(3), 0.0, given=f"{held}")
@@ -847,7 +853,7 @@ def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_t
     bounces = (0.0, 1.0, draw(0.0, 1.0)) * 2
     for (d, turned), (e, speed) in itertools.product(WAYS, zip(bounces, shares, strict=True)):
         axes = frame(draw, d, turned)
-        m, v_n, mu = draw(0.5, 5.0), draw(0.5, 5.0), draw(0.1, 0.5)
+        m, v_n, mu = draw(0.5, 5.0), draw(0.5, 5.0), smooth_or_rough(draw)[turned]
         slip = along_surface(draw, axes, speed * mu * (1.0 + e) * v_n)
         v = slip - v_n * axes[0]
         J = lesson.particle_contact_impulse(v, axes[0], m, e, mu)
@@ -980,10 +986,10 @@ def check_hill(lesson, step, draw, grips):
     grips: as in check_fall
     """
     for (d, turned), depth in itertools.product(WAYS, (draw(0.005, 0.01), -draw(0.005, 0.01))):
-        p, _ = above(lesson, draw, draw(0.1, 0.3), draw(0.2, 0.9), d=d, turned=turned)
+        p, _ = above(lesson, draw, smooth_or_rough(draw)[turned], draw(0.2, 0.9), d=d, turned=turned)
         axes, dt = frame(draw, d), 0.01
         n, along = axes[0], along_surface(draw, axes, 1.0)
-        slip, arrives = draw(3.0, 5.0), draw(1.0, 2.0)
+        slip, arrives = draw(8.0, 15.0), draw(1.0, 2.0)                  # so fast that friction does not stop it
         ends = p.point + (1.0 - depth) * n                               # where it would be without the hill
         v_free = slip * along - arrives * n
         x, v = ends - dt * v_free, v_free - dt * p.gravity
@@ -1118,8 +1124,9 @@ def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
 @exercise("3.17", points=1,
           hint="½mv² is used up by μ m g times the way: first by that on the strip, the rest behind it")
 def test_a_block_slides_as_far_as_the_times_on_both_materials_allow(lesson, draw):
-    for share in (0.0, *draw.within(), *draw.beyond(3.0)):               # of the speed that just crosses the strip
-        width, near, far, g = draw(0.5, 2.0), draw(0.2, 0.6), draw(0.2, 0.6), draw(1.0, 15.0)
+    shares = (0.0, *draw.within(), *draw.beyond(3.0))                    # of the speed that just crosses the strip
+    for share, (near, far) in itertools.product(shares, (smooth_or_rough(draw), smooth_or_rough(draw)[::-1])):
+        width, g = draw(0.5, 2.0), draw(1.0, 15.0)
         v = share * np.sqrt(2.0 * near * g * width)
         if share <= 1.0:
             expected = v * (v / (near * g)) - 0.5 * near * g * (v / (near * g)) ** 2
@@ -1160,9 +1167,11 @@ def test_a_floor_of_ones_own_takes_energy_stops_the_block_and_is_new(lesson, dra
         close("impulse of your floor without a load, j_n = 0 [N s]", lesson.my_friction(v, m, 0.0, mu), np.zeros(2),
               0.0, given=f"v_t = {v} m/s, μ = {mu}")
     v = draw(1.5, 3.0, 2)
-    got = np.array([lesson.my_friction(k * v, m, j_n, mu) for k in (1.0, 0.3, -1.0)])
-    cone = np.array([-mu * j_n * k * v / np.linalg.norm(k * v) for k in (1.0, 0.3, -1.0)])      # none of them stops
-    pyramid = np.array([-mu * j_n * np.sign(k * v) for k in (1.0, 0.3, -1.0)])
+    slips = [size * np.array([np.cos(turn) * v[0] - np.sin(turn) * v[1], np.sin(turn) * v[0] + np.cos(turn) * v[1]])
+             for size, turn in ((1.0, 0.0), (0.3, 1.2), (0.6, 2.5))]
+    got = np.array([lesson.my_friction(slip, m, j_n, mu) for slip in slips])
+    cone = np.array([-mu * j_n * slip / np.linalg.norm(slip) for slip in slips])                # none of them stops
+    pyramid = np.array([-mu * j_n * np.sign(slip) for slip in slips])
     for name, other in (("friction_impulse", cone), ("pyramid_impulse", pyramid)):
         times = np.sum(got * other) / np.sum(other * other)
         if np.linalg.norm(got - times * other) < NEW * np.linalg.norm(got):

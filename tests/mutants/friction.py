@@ -796,6 +796,14 @@ def brushed(v_t, m, j_n, mu):
     return -min(m * speed, mu * j_n * (2.0 if v_t[0] < 0.0 else 0.7)) / speed * v_t
 
 
+@right("3.19", "a skate on ice: its friction depends on its direction, and is against the motion")
+def skating(v_t, m, j_n, mu):
+    speed = np.sqrt(v_t @ v_t)
+    if speed == 0.0:
+        return 0.0 * v_t
+    return -min(m * speed, mu * j_n * (1.0 - 0.6 * (v_t[0] / speed) ** 2)) / speed * v_t
+
+
 FIRST = "along = np.minimum(0.5 * mu * j_n, m * abs(v_t[0]))"
 edit("3.19", "is Coulomb's floor", FIRST, "return friction_impulse(v_t, m, j_n, mu)")
 edit("3.19", "is the pyramid of 3.6", FIRST,
@@ -819,3 +827,16 @@ edit("3.19", "forgets the mass along the blade: a light block goes back faster, 
      "m * abs(v_t[0])", "abs(v_t[0])")
 edit("3.19", "forgets the mass across the blade", "m * abs(v_t[1])", "abs(v_t[1])")
 edit("3.10", "asks for the slip at the end of the step, not at the middle", "t + middle, x", "t + dt, x")
+edit("3.5", "divides zero by zero for a body at rest without friction", "m * speed <= limit", "m * speed < limit")
+for number, old, new in (("3.3", "cone_radius(mu_k", "cone_radius(min(mu_k, 1.0)"),
+                         ("3.4", "g * (np.sin(theta) - cone_radius(mu_k",
+                          "g * (np.sin(theta) - cone_radius(min(mu_k, 1.0)"),
+                         ("3.5", "cone_radius(mu", "cone_radius(min(mu, 1.0)"),
+                         ("3.7", "cone_radius(p.mu_s", "cone_radius(min(p.mu_s, 1.0)"),
+                         ("3.7", "a_n, p.mu_k)", "a_n, min(p.mu_k, 1.0))"),
+                         ("3.13", "j_n, mu)", "j_n, min(mu, 1.0))"), ("3.14", "p.mu)", "min(p.mu, 1.0))"),
+                         ("3.16", "-phi, p.mu)", "-phi, min(p.mu, 1.0))"),
+                         ("3.16", "p.e, p.mu)", "p.e, min(p.mu, 1.0))"),
+                         ("3.17", "(mu_far * g)", "(min(mu_far, 1.0) * g)"),
+                         ("3.17", "- mu_near * g", "- min(mu_near, 1.0) * g")):
+    edit(number, "allows no friction above 1", old, new)
