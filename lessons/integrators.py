@@ -193,11 +193,11 @@ def newton_matrix(acceleration, t, x, v, dt, p):
 
 
 def velocity_round_off(x, v, dt):
-    """Given.  Return how well [m/s] a step of dt can know a velocity:  ROUND_OFF (max|v| + max|x|/dt) + UNDERFLOW.
+    """Given.  Return how well [m/s] a step of dt can know a velocity:  ROUND_OFF (max|v| + max|x|/|dt|) + UNDERFLOW.
 
     The second term is the round-off of a position far from the origin, expressed as a velocity.
     """
-    return ROUND_OFF * (np.max(np.abs(v)) + np.max(np.abs(x)) / dt) + UNDERFLOW
+    return ROUND_OFF * (np.max(np.abs(v)) + np.max(np.abs(x)) / np.abs(dt)) + UNDERFLOW
 
 
 def solve(matrix, right):

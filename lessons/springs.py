@@ -352,7 +352,8 @@ def my_body(size):
 
     *Make it*: place some points, and join them by springs.  Many bodies are right.  The judge demands:
 
-    - At least five points, all with heights x[:, 1] above 0.  The larger of width and height is `size` [m] to 10 %.
+    - Five to 200 points, all with heights x[:, 1] above 0, the lowest below 10 m.
+    - The larger of width and height is `size` [m] to 10 %.
     - The springs hold the shape: every motion but that of a rigid body stretches or compresses some spring.
     - It carries its own weight: its slowest vibration has an angular frequency above √(2 g/size).
     - Symplectic Euler can run it: its fastest vibration is stable at dt = 1/1000 s.

@@ -515,7 +515,7 @@ def barrier_is():
 
 
 def my_rule(i, x, v, goals):
-    """Return the acceleration (2,) [m/s²] of person i of a crowd that crosses a circle of 4 m.
+    """Return the acceleration (2,) [m/s²] of person i of a crowd that crosses a circle of radius 4 m.
 
     *Make it*: a rule by which twelve people, evenly spread over the circle and at rest, go to the opposite places.
     x, v and goals (n, 2) are the places [m], velocities [m/s] and goals [m] of all.  Many rules are right.  The judge

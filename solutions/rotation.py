@@ -505,7 +505,8 @@ def my_thrown_body(period):
     - There are at least two boxes, and all masses and edges are above 0.
     - No two of the three principal moments are equal to 5 %.
     - L starts within 18° of the axis of the middle moment, but not closer than 0.25° to it.
-    - The body turns over again and again: the time between two flips is `period` [s] to 2 %.
+    - The body turns over again and again: the time between two flips is `period` [s] to 2 %.  At a flip, L passes
+      through the plane across the middle axis, so from a flip to the next the body turns over once.
     - |ω| period is below 300 rad.
 
     A body with twice the ω has the same flips in half the time.

@@ -672,7 +672,7 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
                              x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
 
 
-@exercise("6.8", points=0.0625,
+@exercise("6.8", points=0.03125,
           hint="a centre is inside only if |y_i| ≤ half_i for all i, without a tolerance; t of the contact is 0")
 def test_a_centre_barely_outside_an_edge_or_a_corner_is_not_inside(lesson, draw):
     """Powers of two: all differences are exact.  Ways out that add up to 0 are among them."""
@@ -688,6 +688,22 @@ def test_a_centre_barely_outside_an_edge_or_a_corner_is_not_inside(lesson, draw)
             close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
                   np.concatenate(([gap * size - r], x - r * n, x - way)) / size, 1e-11, given)
             close("t of the contact [s]: it is there at once", c.t, 0.0, 0.0, given)
+
+
+@exercise("6.8", points=0.03125,
+          hint="compare y and the clamped q in the box's axes: their difference is exactly 0 along two of them; "
+               "x and p_b have round-off of their own")
+def test_the_normal_of_a_centre_outside_a_face_by_round_off_is_that_of_the_face(lesson, draw):
+    """Far from the origin a difference of places has 1e-14 m of round-off, a tenth of the way out."""
+    for axis, sign in itertools.product(range(3), (1.0, -1.0)):
+        box, r = lesson.Box(draw(50.0, 100.0, 3), rotation(draw), draw(0.3, 2.0, 3)), draw(0.1, 0.5)
+        y = draw(-0.5, 0.5, 3) * box.half
+        y[axis] = sign * (box.half[axis] + 1e-13)
+        x = box.x + box.R @ y
+        given = f"x = {x}, r = {r}, {box}, 1e-13 m outside a face"
+        c = lesson.ball_box(x, r, box)
+        close("n of the contact: that of the face", c.n, sign * box.R[:, axis], 1e-11, given)
+        close("gap of the contact [m]", c.gap, -r, 1e-11, given)
 
 
 def corners_of(box):

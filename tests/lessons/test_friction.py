@@ -741,6 +741,19 @@ def test_a_slide_obeys_the_acceleration_of_its_time_and_place(lesson, draw):
             close("time to the stop, or of the step [s]", got, tau, 1e-11, given=given)
             close("displacement meanwhile [m]", x_new - place, way(tau) * to, 1e-11, given=given)
             close("velocity then [m/s]", v_new, end(tau) * to, 1e-11, given=given)
+    check_slip_from_rest_to_rest(lesson, draw)
+
+
+def check_slip_from_rest_to_rest(lesson, draw):
+    """In one long step a force makes a block slip at once, and lets it stop: v(τ) = τ (drive cos ω(t + ½τ) − μ g)."""
+    omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
+    p, to = on_the_line(draw, lesson, draw(0.3, 0.6), draw(1.25, 2.0), omega)        # cos ωt > cos 0.6 = 0.825
+    brakes = lambda tau: p.drive @ to * np.cos(omega * (t + 0.5 * tau)) - p.mu_k * G
+    stop = brentq(brakes, 0.0, 2.0 * (np.pi / omega - t), xtol=1e-14)
+    tau, _, v = lesson.advance_to_event(lesson.driven_acceleration, t, np.zeros(2), np.zeros(2), 1.5 * stop, p)
+    given = f"{p}, t = {t} s, dt = {1.5 * stop} s, from rest"
+    close("time to the stop of a slide that starts at rest [s]", tau, stop, 1e-11, given=given)
+    close("velocity after that stop [m/s]: exactly zero", v, np.zeros(2), 0.0, given=given)
 
 
 @exercise("3.11", points=0.25,

@@ -117,9 +117,11 @@ def step_by_stages(law, method, t, x, v, dt, p):
 
 def check_a_nonlinear_step(lesson, draw, method):
     """The step itself, with a law whose answer is in no table."""
-    law = draw.law(coupled_pendula)
-    for t, x, v, p in (*bodies(draw), *bodies_at_rest(draw)):
-        dt = draw(0.15, 0.2)
+    law, first = draw.law(coupled_pendula), next(bodies(draw))
+    # the same place and time with another velocity and another law, and again, but a step backwards in time
+    again = (*first[:2], -first[2], first[3]._replace(drag=0.7))
+    for k, (t, x, v, p) in enumerate((first, again, first, *bodies(draw), *bodies_at_rest(draw))):
+        dt = draw(0.15, 0.2) * (-1.0 if k == 2 else 1.0)
         expected = step_by_stages(law, method, t, x, v, dt, p)
         # Newton's last correction is below 1e-12 |w|, with |w| < 4, and squares what is left.
         close("x and v after a step of coupled bodies with a nonlinear law",
@@ -417,7 +419,7 @@ def test_the_predicted_growth_is_that_of_a_run_of_euler_over_one_period(lesson, 
         grown = np.hypot(x, v / omega) / begin
         # each step rounds twice
         close("growth of the amplitude in one period [-]", lesson.growth_per_period(steps), grown,
-              1e-15 * 4.0 * steps * grown, given=f"{steps} steps per period")
+              1e-15 * 4.0 * steps * grown, given=f"{steps} step{'s' * (steps > 1)} per period")
 
 
 @exercise("1.12", points=1, hint="from x = 1 and v = 0, one step of explicit Euler leads to x = 1 and v = −ω² dt")

@@ -446,7 +446,8 @@ def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
         m, I_body = size * draw(1.0, 3.0), size * moments(draw)
         state = draw(-1.0, 1.0, 3), orientation(draw), draw(-1.0, 1.0, 3), spin_of(draw)
         check_one_step(lesson, swirling_load, draw(0.5, 1.5), state, draw(0.1, 0.3), Driven(m, I_body, draw(0.5, 2.0)))
-    for pace, dt in ((1.0, draw(2.0, 9.0)), (1e-4, draw(0.1, 0.3)), (1e-7, draw(0.1, 0.3))):     # long, and slow
+    for pace, dt in ((1.0, draw(2.0, 9.0)), (1.0, -draw(0.1, 0.3)),          # long, and backwards in time
+                     (1e-4, draw(0.1, 0.3)), (1e-7, draw(0.1, 0.3))):        # slow
         state = draw(-1.0, 1.0, 3), orientation(draw), pace * draw(-1.0, 1.0, 3), pace * spin_of(draw)
         check_one_step(lesson, unloaded, draw(0.5, 1.5), state, dt, Driven(draw(1.0, 3.0), moments(draw), 1.0))
     general = draw(-1.0, 1.0, (3, 3))
@@ -583,7 +584,7 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     # Scaling L and I_body does not change the motion: a correction is small only relative to m.
     for size in (1e6, 1e-6):
         scaled = lesson.midpoint_free_rotation(q, size * L, size * I_body, dt)
-        close("orientation of a body a million times as heavy, or as light", turn(scaled), expected, 1e-11,
+        close("orientation of a body a million times as heavy, or as light, as a matrix", turn(scaled), expected, 1e-11,
               given=f"I_body = {size * I_body}, dt = {dt}")
     close("input q after the call: unchanged", q, kept, 0.0)
     long = lesson.midpoint_free_rotation((1.0 + 5e-10) * q, L, I_body, dt)        # check_rotation accepts this length
@@ -741,7 +742,7 @@ def check_turns_of_round_bodies(lesson, draw, bodies, dt):
             got = lesson.splitting_free_rotation(q, L, I_body, dt)
             given = f"q = {q}, I_body = {I_body}, ω = {omega}, dt = {dt}"
             close("length of the new quaternion", np.linalg.norm(got), 1.0, EXACT, given=given)
-            close("orientation after dt", turn(got), expected, EXACT, given=given)
+            close("orientation after dt, as a matrix", turn(got), expected, EXACT, given=given)
 
 
 @exercise("5.17", points=0.5,
@@ -756,7 +757,7 @@ def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
     L = inertia(q, I_body) @ omega
     there = np.asarray(lesson.splitting_free_rotation(q, L, I_body, 0.3), dtype=float)
     back = lesson.splitting_free_rotation(there, L, I_body, -0.3)
-    close("orientation after dt and −dt: back", turn(back), turn(q), EXACT)
+    close("orientation after dt and −dt, as a matrix: back", turn(back), turn(q), EXACT)
     # With nearly equal moments the order of the rotations changes less than 1e-8, and their sizes count.
     near = nearly_round(draw)
     b = np.argsort(near)[1]
@@ -764,7 +765,7 @@ def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
         heavy, pace = (size, 1.0) if size in SIZES else (1.0, size)
         L, ell = pace * inertia(q, near) @ omega, pace * near * (turn(q).T @ omega)
         got = lesson.splitting_free_rotation(q, heavy * L, heavy * near, 1.0)
-        close("orientation of a nearly round body, over the size of ω", turn(got) / pace,
+        close("orientation of a nearly round body, as a matrix, over the size of ω", turn(got) / pace,
               about(L / near[b]) @ turn(q) @ about((1.0 / near - 1.0 / near[b]) * ell) / pace, 3e-8,
               given=f"q = {q}, I_body = {heavy * near}, L = {heavy * L}")
     L = inertia(q, I_body) @ omega
@@ -811,9 +812,10 @@ def test_five_reversible_substeps_make_fourth_order(lesson, draw):
     growth = Growth(draw(-1.5, -0.5), draw(0.5, 1.0))
     gamma = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
     kept = L.copy()
-    for push, L0, q0 in ((0.0, L, q), (growth.push, L, q), (growth.push, np.zeros(3), STILL),
-                         (growth.push, draw.sparse(0.5, 1.5, 3), orientation_of_few(draw))):
-        p, dt = growth._replace(push=push), draw(0.3, 0.6)
+    for push, L0, q0, sign in ((0.0, L, q, 1.0), (growth.push, L, q, 1.0), (growth.push, np.zeros(3), STILL, 1.0),
+                               (growth.push, draw.sparse(0.5, 1.5, 3), orientation_of_few(draw), 1.0),
+                               (growth.push, L, q, -1.0)):                         # a step backwards in time
+        p, dt = growth._replace(push=push), sign * draw(0.3, 0.6)
         q_new, got = lesson.compose(bent_step, waves, t, q0, L0, dt, p)
         expected, now = L0, t
         for share in (gamma, gamma, 1.0 - 4.0 * gamma, gamma, gamma):

@@ -70,7 +70,7 @@ wrong("6.2", "forgets t")(impact(start=0.0))
 edit("6.2", "treats a gap below 1 nm as contact", "before <= 0.0", "before <= 1e-9")
 edit("6.2", "treats a gap below 1e-15 m as contact", "before <= 0.0", "before <= 1e-15")
 edit("6.2", "finds an impact at once if the ball is almost there", "before <= 0.0", "before <= 1e-6 * after")
-edit("6.2", "misses a ball that ends less than 1 pm below the plane", "after < 0.0", "after < -1e-12")
+edit("6.2", "finds an impact of a ball that ends less than 1 pm above the plane", "after < 0.0", "after < -1e-12")
 edit("6.2", "finds no impact for a point below the plane",
      "before <= 0.0:", "before < 0.0 == r: return NEVER\n    if before <= 0.0:")
 edit("6.2", "adds r to the distance before the step",
@@ -395,7 +395,9 @@ def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin,
         y = turn(box.R, x - box.x)
         depth = box.half - np.abs(y)
         if not (inside and np.all(depth >= 0.0)):
-            return worked.ball_contact(x, r, box.x + box.R @ np.clip(y, -box.half, box.half), 0.0)
+            q = np.clip(y, -box.half, box.half)
+            own = worked.ball_contact(y, r, q, 0.0)
+            return worked.Contact(x - r * (box.R @ own.n), box.x + box.R @ q, box.R @ own.n, own.gap, 0.0)
         i = int(pick(depth))
         n = out * sign(y[i]) * box.R[:, i]
         return worked.Contact(x - r * n, x + depth[i] * n, n, depth_sign * depth[i] - r, 0.0)
@@ -1050,3 +1052,5 @@ edit("6.20", "turns by the number of the person: neighbours go to different side
      "np.array([-x[i, 1], x[i, 0]])", "(-1.0) ** i * np.array([-x[i, 1], x[i, 0]])")
 edit("6.20", "accelerates more than a person can", "2.0 * (1.2", "6.0 * (1.2")
 edit("6.20", "runs to the goal too slowly to arrive", "1.2 * way", "0.3 * way")
+edit("6.8", "takes the normal from places in the world, whose round-off tilts it", "n = box.R @ own.n",
+     "n = ball_contact(x, r, box.x + box.R @ q, 0.0).n")

@@ -840,3 +840,4 @@ for number, old, new in (("3.3", "cone_radius(mu_k", "cone_radius(min(mu_k, 1.0)
                          ("3.17", "(mu_far * g)", "(min(mu_far, 1.0) * g)"),
                          ("3.17", "- mu_near * g", "- min(mu_near, 1.0) * g")):
     edit(number, "allows no friction above 1", old, new)
+edit("3.10", "evaluates the slip at τ in place of t + τ, while it halves", "t + middle, x", "middle, x")

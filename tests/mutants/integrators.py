@@ -512,3 +512,8 @@ edit("1.10", "finds no order above 5", "return np.sum(xi * eta) / np.sum(xi * xi
      "return min(5.0, np.sum(xi * eta) / np.sum(xi * xi))")
 edit("1.10", "keeps one run of each step", "xi = np.log(dts) -",
      "dts, kept = np.unique(dts, return_index=True); errors = errors[kept]; xi = np.log(dts) -")
+edit("1.7", "begins with the slope at the start of the step, not with v", "w = v.copy()",
+     "w = v + dt * acceleration(t, x, v, p)")
+for number, old, new in (("1.1", "dt * v,", "abs(dt) * v,"), ("1.3", "v + 0.5 * dt * a1", "v + 0.5 * abs(dt) * a1"),
+                         ("1.6", "x + dt * v +", "x + abs(dt) * v +")):
+    edit(number, "takes a step backwards for one forwards", old, new)

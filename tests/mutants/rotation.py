@@ -754,3 +754,5 @@ edit("5.21", "forgets that the centre of mass lies between the boxes", "(x - m @
 edit("5.21", "forgets that the boxes are apart", "(x - m @ x / np.sum(m))**2 + size", "size")
 edit("5.21", "does not spin", OMEGA, "np.zeros(3)")
 edit("5.21", "has an edge of no length", "[0.1, 0.3, 0.1]]", "[0.1, 0.3, 0.0]]")
+edit("5.12", "takes a step backwards for one forwards", "x + dt * v,", "x + abs(dt) * v,")
+edit("5.18", "takes a step backwards for one forwards", "share * dt, body)", "share * abs(dt), body)")
