@@ -85,8 +85,8 @@ def slip_limits(p, dt):
     and the distance by another dt² Aω s/6.  The velocity error at the end, divided by the deceleration there, is the
     delay of the stop.  If the next slip begins at that moment, it loses its first acceleration for the same time.  In
     order 1 the terms in dt² are bounded by Aω dt² s each for the beginning, the end and the sum.  The engines use
-    the same forces at the same times.  pymunk moves with the old velocity.  This has no effect, because a slip begins
-    and ends at rest.
+    the same forces at the same times.  pymunk moves with the old velocity.  This has no effect where the block rests
+    between its slips, because a slip then begins and ends at rest.
     """
     A, w, hold = p.force / p.m, p.omega, p.mu * p.g
     limits, size = by_order(0.0, T, dt), abs(slip_position(p, T)[0])

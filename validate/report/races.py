@@ -188,9 +188,12 @@ def headline_of(counts):
 
 
 def median_factors(races):
-    """Return the medians of what ratios at the headline are made of: {order, loop, calls, cold, cached, paid}."""
+    """Return the medians of what ratios at the headline are made of, and how many have an order and a loop (parted).
+
+    {order, loop, calls, cold, cached, paid, parted}
+    """
     found = {}
     for key in ("order", "loop", "calls", "cold", "cached", "paid"):
         values = [race[key] for race in at(races) if race[key] is not None]
         found[key] = median(values) if values else None
-    return found
+    return {**found, "parted": sum(race["order"] is not None for race in at(races))}

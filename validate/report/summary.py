@@ -133,10 +133,11 @@ def said_of_all(report):
                f"of the {plain['races']} races to {percent(HEADLINE)} in which they were timed.")
     made = races.median_factors(every)
     if made["order"] is not None:
-        yield (f"In each race a ratio is the product of two: the method's order, and the loop at the engine's own "
-               f"order. At {percent(HEADLINE)} their medians are {factor(made['order'])} and {factor(made['loop'])}. "
-               f"(The product of two medians is not the median of the products.) Calls from Python make the "
-               f"engine's time {factor(made['calls'])} as long.{compiled(made)}")
+        yield (f"In {made['parted']} of these races to {percent(HEADLINE)} the ratio is the product of two: the "
+               f"method's order, and the loop at the engine's own order. In the others the engine is exact, or none "
+               f"of our methods has its order. Their medians are {factor(made['order'])} and {factor(made['loop'])}. "
+               f"(The product of two medians is not the median of the products.) In the median calls "
+               f"from Python make the engine's time {factor(made['calls'])} as long.{compiled(made)}")
 
 
 def ended(count):
@@ -152,8 +153,8 @@ def compiled(made):
     """Return the sentence on compilation; nothing where it was not measured."""
     if made["cold"] is None:
         return ""
-    return (f" Compilation is not in these times: it takes {rounded(made['cold'])} s, and {rounded(made['cached'])} s "
-            "from the cache.")
+    return (f" Compilation is not in these times: in the median it takes {rounded(made['cold'])} s, and "
+            f"{rounded(made['cached'])} s from the cache.")
 
 
 def not_won(results):

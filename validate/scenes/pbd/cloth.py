@@ -93,11 +93,12 @@ def lag(p):
 def limit(p, dt):
     """One visit to a spring is an implicit Euler step.
 
-    With short steps, dt² < α m, the links of a cloth barely interact within a sweep.  XPBD then has the error of
-    implicit Euler, its lag times dt.  The limit is twice that, because the next order is smaller where this one is
-    below ½.  With longer steps a single sweep does not reach the end of the cloth.  A link is then too long by the
-    distance that its tension moves a point in one step.  At a corner that is g dt² for each of n²/2 points, and up to n
-    links may hang on it.
+    With short steps, dt² < α m, the links of a cloth barely interact within a sweep.  XPBD then errs by the lag of
+    implicit Euler times dt, and by what one sweep leaves of the sag, which is of second order.  A cloth at rest has
+    the second alone, so its order is 2.  The limit is twice the first, because the next order is smaller
+    where this one is below ½.  With longer steps a single sweep does not reach the end of the cloth.  A link is then
+    too long by the distance that its tension moves a point in one step.  At a corner that is g dt² for each of n²/2
+    points, and up to n links may hang on it.
     """
     floor, size = by_order(0.0, T, dt)[1] + UNCERTAINTY, np.linalg.norm(truth(p, T)) / p.n
     soft = 0.5 * p.n**3 * p.g * dt**2 / size

@@ -145,9 +145,9 @@ EXAM = iftomm(
     {BLANES_MOAN: ONE_MOTION, RK4: ONE_MOTION,
      ROPE: "bodies that turn: it moves points on strings",
      COMPOSED_ROPE: "bodies that turn: it moves points on strings, in five steps in place of one",
-     PYMUNK: "the second order, unless its first velocity is that of half a step later: it moves, then pulls",
-     PYBULLET: "the second order, unless its first rate is that of half a step before: it is symplectic Euler",
-     MUJOCO: "an energy that stays, unless it takes Euler's step: Runge–Kutta 4 loses some in every swing"},
+     PYMUNK: "the phase: its error grows with every swing, with a leapfrog start as without",
+     PYBULLET: "the phase: its error grows with every swing, with a leapfrog start as without",
+     MUJOCO: "with Runge–Kutta 4 an energy that stays, and with Euler's step the phase"},
     note="The library's own reference file was not at hand: the error is against the closed form.")
 
 

@@ -82,9 +82,9 @@ def limits(p, dt):
 def differenced_limits(p, dt):
     """MuJoCo's step is linear in each of x, v, k and c alone, so its central differences truncate nothing.
 
-    A difference of two velocities is rounded by a spacing of them, ω x₀ ε, over 2 APART, and a relative change of k is
-    k times that.  The place at the end depends on a velocity before it by 1/ω.  Over T/dt steps this is a random walk;
-    the limit is three times its size.
+    A difference of two velocities is rounded by a spacing of them, ω x₀ ε, over twice the step of the difference, and
+    a relative change of k is k times that.  The place at the end depends on a velocity before it by 1/ω.  Over T/dt
+    steps this is a random walk; the limit is three times its size.
     """
     omega, steps = np.sqrt(p.k / p.m), T / dt
     walk = np.sqrt(steps) * ROUND_OFF * p.x0 * max(p.k, p.c * omega) / (2.0 * APART) / np.linalg.norm(truth(p, T))

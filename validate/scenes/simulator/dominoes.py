@@ -249,8 +249,9 @@ def limit(p, dt):
     The error bar of the truth is added; where it is larger than 0.1 %, nothing is judged.  No theory says how far
     pybullet may be off.  The laws of contact judge what its run of 50 steps reports.
 
-    LEFT is measured.  The last impact comes after 0.93 s.  In two of the four rows it takes another course, unless the
-    steps are shorter than 1/7000 s.  So the errors of the loop level off at 0.16 %, and the limit has that much more.
+    A part of 0.16 % is measured.  The last impact comes after 0.93 s.  In two of the four rows it takes another course,
+    unless the steps are shorter than 1/7000 s.  So the errors of the loop level off at 0.16 %, and the limit has that
+    much more.
 
     The pile, and pymunk with 3 iterations, do not finish each impact.  In the first case their errors level off at
     0.9 %, and at 0.8 to 1.1 %.  The limit does not contain that, so they have no steps below 1/500 s.

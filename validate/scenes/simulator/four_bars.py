@@ -147,7 +147,7 @@ EXAM = iftomm(
      IN_ANGLES: "the mechanism itself: it solves one equation, derived for cranks that stay parallel",
      PYMUNK: "the motion, from the first flat position on",
      PYBULLET: "the motion, from the first flat position on",
-     MUJOCO: "rigid loops: the hinges that close them are springs with dampers"},
+     MUJOCO: "the motion, from the first flat position on; and rigid loops: springs with dampers close them"},
     note="The library's own reference file was not at hand: the error is against the derived equation.")
 
 

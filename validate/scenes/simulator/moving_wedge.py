@@ -143,7 +143,8 @@ def loop_limit(p, dt):
 
     Velocities are exact.
 
-    Ours: 25 sweeps leave contraction(p)²⁵ of an impulse in the first step; later steps, which start warm, remove it.
+    Ours: if a sweep leaves the share ρ of an impulse, 25 sweeps leave ρ²⁵ in the first step.  Later steps, which start
+    warm, remove it.
     """
     return 1.001 * relative_lag(p, dt) + contraction(p) ** SWEEPS * dt / T + 1e-9 + T / dt * ROUND_OFF
 

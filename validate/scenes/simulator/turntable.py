@@ -174,7 +174,8 @@ def read(state, p):
     return np.concatenate((state.x[1, :2], state.v[1, :2]))
 
 
-KEEPS_POINT = "it keeps its contact point for some steps, and the law of this is not derived here"
+KEEPS_POINT = ("it may keep its contact point for some steps, and the law of this is not derived here; where it does "
+               "not, it errs as our loop does")
 FEWER = 5                    # iterations of pybullet in the timed case: the ball has one contact
 RUNNERS = (
     ours(LOOP, limit=loop_limit, predicted=loop_error, in_quick=False),

@@ -113,5 +113,5 @@ def net_runners(net, motion, limits, **mesh_in_quick):
 
 
 ONE_SWEEP = "1 iteration: with more, its dampers err as much"
-DAMPED = "second order without dampers"
+DAMPED = "second order if no force depends on a velocity"
 SQUARE = ("n", "spacing", "m", "k")      # parameters of a SquareNet that must be positive

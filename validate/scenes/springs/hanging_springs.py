@@ -84,7 +84,7 @@ def truth(p, t):
 
 
 def limits(p, dt):
-    """Each mode errs on its own, because the system is linear.  pymunk is symplectic Euler: order 1."""
+    """Each mode errs on its own, because the system is linear.  Without drag pymunk is symplectic Euler: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
     return by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
