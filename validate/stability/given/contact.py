@@ -7,8 +7,20 @@ from itertools import combinations, product
 
 import numpy as np
 
-from solutions.support.convex_2d import Cores, convex_bounds_2d, convex_contacts_2d
-from solutions.support.kept_contacts import AHEAD, begin_ways, have_moved, mark_far, unknown_ways, widened
+from solutions.support.broad_phase import box_reaches, boxes_overlap, near_pairs
+from solutions.support.convex_2d import Cores, convex_bounds_2d, convex_contacts_2d, edge_along
+from solutions.support.kept_contacts import (
+    AHEAD,
+    GONE,
+    begin_ways,
+    have_moved,
+    mark_far,
+    mark_gone,
+    pairs_in_reach,
+    unknown_ways,
+    widened,
+)
+from solutions.support.kept_contacts import REACH as SHARE
 from validate.stability.case import case, matrix_of, random_law, random_quaternions, turned_by, unlike
 
 EXACT = 1e-9                 # of numbers around 1: the same by another sum
@@ -355,6 +367,39 @@ def overlapping(one, other, edge, sign):
     return [(0.0, 1.0, *(sign * n[edge]), *(place - 0.5 * gap * n[edge]), gap) for place, gap in rows if gap <= REACH]
 
 
+@random_law("Of all edges of a polygon that along a direction has the largest cosine of its normal with it.",
+            "edge along a direction: largest error of its number and cosine [-]", EXACT)
+def edges_along(lesson, rng):
+    """Try a pentagon among the corners of other shapes."""
+    core, q = regular(rng, 5), rng.uniform(0.0, 6.28)
+    cosines = sides_of(core)[0] @ (np.cos(q), np.sin(q))
+    return (edge_along(np.concatenate((rng.normal(size=(3, 2)), core, rng.normal(size=(2, 2)))), 3, 8, np.cos(q),
+                       np.sin(q)), (3 + np.argmax(cosines), np.max(cosines)))
+
+
+@random_law("Of two edges that separate almost alike that of the first shape counts, unless the other is better by a "
+            "thousandth of the depth.", "edges that separate alike: largest error of the contacts [-, m]", EXACT)
+def edges_alike(lesson, rng):
+    """Sink a wide shape into a narrower one and tilt it, so that its edge is better by half of that or by twice that.
+
+    A tilt by α lowers a corner of the wide edge by half its width times sin α, and brings a corner of the narrow one
+    nearer to the wide edge by less.
+    """
+    half, radius, sunk = rng.uniform((0.2, 0.5), (0.4, 0.9), (2, 2)), rng.uniform(0.0, 0.1, 2), rng.uniform(0.05, 0.1)
+    half[1, 0] += 0.3
+    alike, tilt = rng.choice((0.5, 2.0)), rng.choice((-1.0, 1.0))
+    tilt *= 1e-3 * alike * (np.sum(radius) + sunk) / (half[1, 0] - half[0, 0])
+    q, move = rng.uniform(0.0, 6.28) + np.array([0.0, tilt]), rng.normal(size=2)
+    middle = np.array([0.0, half[0, 1] - sunk]) + rotated(tilt, np.array([0.0, half[1, 1]]))
+    x = np.array([move, move + rotated(q[0], middle)])
+    a, b = (rotated(angle, AROUND * size) + place for angle, size, place in zip(q, half, x, strict=True))
+    truth = np.array(overlapping(a, b, 0, -1.0) if alike < 1.0 else overlapping(b, a, 2, 1.0))
+    truth[:, 4:6] -= 0.5 * (radius[0] - radius[1]) * truth[:, 2:4]           # from the cores to the surfaces
+    truth[:, 6] -= np.sum(radius)
+    found = convex_rows(lesson, [(AROUND * size, r) for size, r in zip(half, radius, strict=True)], x, q)
+    return unlike(found, truth), (2, 0.0)
+
+
 @random_law("A convex shape touches a line with each corner that reaches it, and its bounds are those of its corners.",
             "shape on a line: largest error of the contacts and bounds [-, m]", EXACT)
 def convex_on_a_line(lesson, rng):
@@ -370,6 +415,17 @@ def convex_on_a_line(lesson, rng):
             (len(truth), 0.0, np.min(corners, axis=0) - radius, np.max(corners, axis=0) + radius))
 
 
+@random_law("Several convex shapes touch a line with all of their corners that reach it.",
+            "shapes on a line: largest error of the contacts [-, m]", EXACT)
+def small_shapes_on_a_line(lesson, rng):
+    """Put small triangles, squares and pentagons so near to a line that each corner has a contact."""
+    cores = [0.02 * regular(rng, corners) for corners in rng.permutation((3, 4, 5))]
+    x, q = np.stack((3.0 * np.arange(3), rng.uniform(0.0, 0.02, 3)), axis=1), rng.uniform(0.0, 6.28, 3)
+    places = [rotated(angle, core) + place for angle, core, place in zip(q, cores, x, strict=True)]
+    truth = [(i, 3.0, 0.0, 1.0, p[0], 0.5 * p[1], p[1]) for i, corners in enumerate(places) for p in corners]
+    return unlike(convex_rows(lesson, [(core, 0.0) for core in cores], x, q, [(0.0, 1.0, 0.0)]), truth), (12, 0.0)
+
+
 @case("contact-points", "Contact points of boxes and of convex shapes", compiled=False)
 def contact_points(lesson, check):
     """Compare contacts with those that come from trying all corners, edges and planes.
@@ -379,8 +435,8 @@ def contact_points(lesson, check):
     plane are boxes, polygons, capsules and discs, alone and with a radius.
     """
     check.laws(lesson, (face_of_the_first, face_of_the_second, two_edges, face_on_face, box_on_a_plane, boxes_apart,
-                        convex_apart, edge_along_edge, convex_overlap, convex_on_a_line, boxes_in_the_plane), seed=31,
-               times=15)
+                        convex_apart, edge_along_edge, convex_overlap, convex_on_a_line, boxes_in_the_plane,
+                        edges_alike, edges_along, small_shapes_on_a_line), seed=31, times=15)
 
 
 # ---------------------------------------------------------------------------------------------- a step of a pile
@@ -447,6 +503,24 @@ def separation(lesson, rng):
     s = 2.0 * np.pi * hertz * 0.5 * dt
     return ((end.x[1] - end.x[0] - 0.3 * np.min(radius) * n) @ n / dt,
             0.03 * np.min(radius) * hertz / (1.0 + 1.0 / (s * (2.0 + s))))
+
+
+@random_law("Of many pairs that begin deep inside each other each one parts with its own speed.",
+            "deep pairs: largest error of the speeds of separation [m/s]", EXACT)
+def separations(lesson, rng):
+    """Put balls of many sizes into each other by 30 %, two and two, in space: see `separation`."""
+    radius, m, hertz, dt = rng.uniform(0.2, 0.5, (9, 2)), rng.uniform(0.5, 2.0, (9, 2)), rng.uniform(10.0, 30.0), 0.004
+    n, least = rng.normal(size=(9, 3)), np.min(radius, axis=1)
+    n /= np.linalg.norm(n, axis=1)[:, None]
+    x = np.stack((np.outer(5.0 * np.arange(9), (1.0, 0.0, 0.0)),) * 2, axis=1)
+    x[:, 1] += 0.3 * least[:, None] * n
+    state, pile = lesson.make_pile(x.reshape(18, 3), [(1.0, 0.0, 0.0, 0.0)] * 18, m.ravel(), np.full((18, 3), 0.1),
+                                   np.repeat(radius.reshape(18, 1), 3, axis=1), [(0.0, 0.0, 1.0, 50.0)], np.zeros(3),
+                                   0.3, 2, hertz, 1.0, 0.01)
+    end = lesson.advance_pile(lesson.ball_bounds, lesson.round_contacts, state, dt, 1, pile).x[:18].reshape(9, 2, 3)
+    s = 2.0 * np.pi * hertz * 0.5 * dt
+    return (np.sum((end[:, 1] - end[:, 0]) * n, axis=1) / dt - 0.3 * least / dt,
+            0.03 * least * hertz / (1.0 + 1.0 / (s * (2.0 + s))))
 
 
 @random_law("A step changes momentum and angular momentum of two boxes by gravity and by the impulses that it returns.",
@@ -544,6 +618,18 @@ def gone_contacts(lesson, rng):
     return (second.v[1], second.omega[1]), (first.v[1] - dt * g * up, first.omega[1])
 
 
+@random_law("A contact that is gone has no impulse, and is far from all places; others stay as they are.",
+            "marked contacts: largest error of impulses, gaps and places [N s, m]", 0.0)
+def marked_contacts(lesson, rng):
+    """Mark three of six contacts."""
+    d, left = rng.choice((2, 3)), rng.permutation(6)[:3]
+    (J, p, n), gap, none = rng.normal(size=(3, 6, d)), rng.normal(size=6), np.zeros(6, np.int64)
+    c, truth = lesson.ContactSet(none, none, none, n, p, gap), (J.copy(), p.copy(), gap.copy())
+    truth[0][left], truth[1][left], truth[2][left] = 0.0, GONE, GONE
+    mark_gone(c, gap, J, left)
+    return (J, c.p, gap), truth
+
+
 @random_law("Forces of contacts under loads with torques obey Newton, Euler, and the laws of contact and friction.",
             "forces and torques: largest violation [N, m/s², rad/s²]", EXACT)
 def forces_under_torques(lesson, rng):
@@ -607,6 +693,71 @@ def boxes_ahead(lesson, rng):
             (low - margin + np.minimum(ahead, 0.0), low + size + margin + np.maximum(ahead, 0.0)))
 
 
+@random_law("Boxes overlap where no axis separates them; a box reaches a plane with its nearest corner.",
+            "boxes and planes: wrong answers [-]", 0.0)
+def boxes_that_reach(lesson, rng):
+    """Put a box beside others along each axis, and over planes, by a little too far or just near enough."""
+    d = rng.choice((2, 3))
+    axes, sides, shares = np.array(list(product(range(d), (-1.0, 1.0), (0.99, 1.01)))).T
+    n, ways = len(axes), rng.uniform(-0.9, 0.9, (len(axes), d))
+    ways[np.arange(n), axes.astype(int)] = sides * shares
+    half, planes = rng.uniform(0.1, 1.0, (n + 1, d)), rng.normal(size=(n, d + 1))
+    x = rng.normal(size=d) + np.vstack((np.zeros(d), ways * (half[0] + half[1:])))
+    low, high, signs = x - half, x + half, np.array(list(product((-1.0, 1.0), repeat=d)))
+    for k in range(n):
+        planes[k, d] = shares[k] - 1.0 - np.min((x[k + 1] + signs * half[k + 1]) @ planes[k, :d])
+    found = [(boxes_overlap(low, high, 0, k + 1), boxes_overlap(low, high, k + 1, 0),
+              box_reaches(low, high, k + 1, planes[k])) for k in range(n)]
+    return np.array(found, float), np.repeat(1.0 * (shares < 1.0), 3).reshape(n, 3)
+
+
+def pairs_of(found, low, planes):
+    """Return 1 for each pair of a box and a later box, or a plane, that is among the Pairs found, (n, n + p)."""
+    table = np.zeros((len(low), len(low) + planes))
+    for i in range(len(low)):
+        table[i, found.partner[found.first[i]:found.first[i + 1]]] += 1.0
+    return table
+
+
+def pairs_by_hand(low, high, planes):
+    """Return the same by all corners, low and high (n, d), and planes."""
+    n, d = low.shape
+    overlap = np.all((low[:, None] <= high) & (low <= high[:, None]), axis=2) & np.triu(np.ones((n, n), bool), 1)
+    corners = np.where(np.array(list(product((False, True), repeat=d)))[:, None], high, low)
+    reaches = np.min(corners @ planes[:, :d].T, axis=0) + planes[:, d] <= 0.0
+    return 1.0 * np.hstack((overlap, reaches))
+
+
+@random_law("A grid finds each pair of boxes that overlap once: in a crowd, beside one far away, and far out.",
+            "pairs in a grid: wrong answers [-]", 0.0)
+def pairs_in_a_grid(lesson, rng):
+    """Far out, boxes of half a metre and the ways between them round to 0."""
+    found, truth, d = [], [], rng.choice((2, 3))
+    for kind in range(4):
+        x, half, planes = rng.uniform(-2.0, 2.0, (20, d)), rng.uniform(0.1, 0.5, (20, d)), rng.normal(size=(3, d + 1))
+        x *= 0.1 if kind == 1 else 1.0
+        x[rng.integers(20)] += 1e3 * (kind == 2)
+        x += 1e17 * (kind == 3)
+        found.append(pairs_of(near_pairs(x - half, x + half, planes), x, 3))
+        truth.append(pairs_by_hand(x - half, x + half, planes))
+    return np.array(found), np.array(truth)
+
+
+@random_law("Pairs come within reach where their widened boxes, or such a box and a plane, are nearer than half of the "
+            "margin.", "pairs within reach: wrong answers [-]", 0.0)
+def pairs_within_reach(lesson, rng):
+    """Put boxes beside a first one along each axis, and over planes across the axes, by a little more or less."""
+    d, margin = rng.choice((2, 3)), rng.uniform(0.05, 0.2)
+    axes, sides, shares = np.array(list(product(range(d), (-1.0, 1.0), (0.99, 1.01)))).T
+    n, axes, half = len(axes), axes.astype(int), rng.uniform(0.1, 1.0, (len(axes) + 1, d))
+    out = sides[:, None] * np.eye(d)[axes]
+    x = rng.normal(size=d) + np.vstack((np.zeros(d), out * (half[0] + half[1:] + SHARE * margin * shares[:, None])))
+    offsets = SHARE * margin * shares - np.min((x[:, None] - np.sign(out) * half[:, None]) @ out[0], axis=1)[:n]
+    planes = np.column_stack((np.tile(out[0], (n, 1)), offsets))
+    near = pairs_of(pairs_in_reach(x - half, x + half, planes, margin), x, n)
+    return (near[0, 1:n + 1], near[np.arange(n), n + 1 + np.arange(n)]), np.tile(1.0 * (shares < 1.0), 2)
+
+
 @random_law("Pairs are searched anew when a body has used up half of its margin on some side.",
             "used margins: wrong answers [-]", 0.0)
 def used_margins(lesson, rng):
@@ -624,5 +775,6 @@ def steps_of_a_pile(lesson, check):
     """Compare flights, margins, separation, impulses, gaps and forces with Euler's equation and the laws of contact."""
     check.laws(lesson, (leaves_its_margin, tumbling_flight, separation, forces_under_torques, ways_of_bodies,
                         balance_in_space, friction_in_space, passing_bodies, meeting_bodies, gone_contacts, boxes_ahead,
-                        used_margins), seed=32,
+                        used_margins, boxes_that_reach, pairs_in_a_grid, pairs_within_reach, separations,
+                        marked_contacts), seed=32,
                times=15)
