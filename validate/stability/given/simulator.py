@@ -3,7 +3,7 @@
 Each truth comes from vectors and matrices, from conserved quantities, or from the reversal of time.
 """
 
-from itertools import product
+from itertools import combinations, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from solutions.given import dividing, passing
+from solutions.given import joints as joints_of
+from solutions.given import simulator as swinging
 from solutions.given.bodies import TooFast
 from solutions.support import convex_3d, model, shapes
 from solutions.support.broad_phase import Pairs
@@ -143,6 +145,25 @@ def without_joined(lesson, rng):
     left = [k for k in range(12) if not {(contacts.a[k], contacts.b[k]), (contacts.b[k], contacts.a[k])} & {*pairs}]
     kept = lesson.without_joined(contacts, jointed.joints)
     return kept, (np.searchsorted(contacts.a[left], np.arange(7)), *(part[left] for part in contacts[1:]))
+
+
+@random_law("Joints form a loop where their rows depend on each other; two joints act on each other where they share a "
+            "body that can move.", "joints: wrong answers about loops, and largest error of the band [-]", 0.0)
+def loops_and_bands(lesson, rng):
+    """Join seven bodies as a tree, three of which nothing moves, and in half of the cases two of them once more.
+
+    A joint is a row of 1 and −1 at its bodies, and 0 at what nothing moves.
+    """
+    inv_mass, still = np.ones(7), rng.permutation(7)[:3]
+    inv_mass[still] = 0.0
+    parts = [still, *np.flatnonzero(inv_mass)[:, None]]
+    order, once_more = rng.permutation(5), rng.integers(2)
+    ends = [(order[k], order[rng.integers(k)]) for k in range(1, 5)] + [rng.permutation(5)[:2]] * once_more
+    a, b = rng.permutation([[rng.choice(parts[end]) for end in rng.permutation(pair)] for pair in ends]).T
+    rows = (np.eye(7)[a] - np.eye(7)[b]) * inv_mass
+    near = np.argwhere(rows @ rows.T != 0.0)
+    return ((joints_of.form_loops(a, b, inv_mass), joints_of.farthest_neighbour(a, b, inv_mass)),
+            (np.linalg.matrix_rank(rows) < len(rows), np.max(near[:, 0] - near[:, 1])))
 
 
 def with_impulses(lesson, rng):
@@ -302,6 +323,22 @@ def joints_are_reversible(lesson, rng):
     return step_of(lesson, d)(load, 0.3 + dt, *end, -dt, p), begin
 
 
+@random_law("Composed steps with joints change momenta by no more than the integral of a load that is linear in time.",
+            "composed steps: largest error of the momenta [kg m/s, kg m²/s]", EXACT)
+def composed_steps_keep_momenta(lesson, rng):
+    """Give all bodies the same acceleration, and torques: about the common centre of mass only the torques count."""
+    state, p = random_tree(lesson, rng, 2)
+    (still, grows), twists, t, dt = rng.normal(size=(2, 2)), rng.normal(size=(2, 5)), rng.uniform(0.0, 1.0), 0.02
+    m = masses(p.inv_mass)
+    load = lambda t, x, q, v, omega, p: (np.outer(m, still + t * grows), twists[0] + t * twists[1])
+    end = lesson.composed_joint_step_2d(load, t, *state[:4], dt, p)
+    (P, L), (P_new, L_new) = momenta_of(*state[:4], p), momenta_of(*end, p)
+    about = [np.cross(in_space(m @ x) / np.sum(m), one) for x, one in ((state.x, P), (end[0], P_new))]
+    push, twist = still + (t + 0.5 * dt) * grows, np.sum(twists[0] + (t + 0.5 * dt) * twists[1])
+    return ((P_new, L_new - about[1]),
+            (P + dt * np.sum(m) * in_space(push), L - about[0] + dt * twist * np.array([0.0, 0.0, 1.0])))
+
+
 @random_law("A hinge of two ball joints turns about the line through both only, and keeps the momenta.",
             "hinge in space: largest error of spin, momenta and gaps [rad/s, kg m²/s, m]", EXACT)
 def hinge_in_space(lesson, rng):
@@ -395,7 +432,7 @@ def joints(lesson, check):
     check.laws(lesson, (judges_in_the_plane, work_of_driven_rows, parting_speeds, without_joined, joints_stay_closed,
                         joints_keep_momenta, joints_are_reversible, hinge_in_space, force_of_a_joint,
                         joined_bodies_bounce, residual_of_a_step, force_of_contacts, bound_of_the_overlap,
-                        shortest_of_all),
+                        shortest_of_all, loops_and_bands, composed_steps_keep_momenta),
                seed=33, times=10)
 
 
@@ -528,6 +565,56 @@ def plates_that_pass(lesson, rng):
     return np.array(found), np.array([1.0, 1.0, 0.0, 0.0])
 
 
+@random_law("The gap of two balls of a cradle is that of discs; it closes where they overlap and come together.",
+            "gaps of a cradle: largest error of gap and derivatives, and wrong answers [m, -]", EXACT)
+def gaps_of_a_cradle(lesson, rng):
+    """Try balls 1 and 2 of four, wide apart and deep in each other, as they come together and as they part.
+
+    The derivative by an angle is the velocity of the centre at 1 rad/s, along the line of centres.
+    """
+    k, (L, R), theta = rng.integers(3), rng.uniform((0.5, 0.02), (1.0, 0.05)), rng.uniform(-0.5, 0.5, 4)
+    omega = rng.uniform(-0.05, 0.05, 4)
+    theta[k + 1] = theta[k] + rng.uniform(-0.02, 0.02)
+    pitch = 2.0 * R * rng.uniform(1.3, 1.5) if rng.integers(2) else R * rng.uniform(1.0, 1.2)
+    cradle = lesson.Cradle(pitch, L, R, 1.1 * L * L, 9.81)
+    places = np.outer(pitch * np.arange(4), (1.0, 0.0)) + L * np.stack((np.sin(theta), -np.cos(theta)), axis=1)
+    way, speeds = places[k + 1] - places[k], L * np.stack((np.cos(theta), np.sin(theta)), axis=1)
+    n, gap = way / np.linalg.norm(way), np.linalg.norm(way) - 2.0 * R
+    slopes = np.array([-n @ speeds[k], n @ speeds[k + 1]])
+    return ((*swinging.cradle_gap(theta, k, cradle), swinging.closes(theta, omega, k, cradle),
+             swinging.closes(theta, -omega, k, cradle)),
+            (gap, *slopes, *(gap < 0.0 and sign * slopes @ omega[k:k + 2] < 0.0 for sign in (1.0, -1.0))))
+
+
+def pushed(curve):
+    """Return the step of two balls of a cradle that swing mirror-wise: the right one as this polynomial of t bends."""
+    sides, bend = np.array([-1.0, 1.0]), curve.deriv(2)
+
+    def step(acceleration, t, theta, omega, dt, p):
+        later = [bend.integ(k)(t + dt) - bend.integ(k)(t) for k in (1, 2)]
+        return theta + dt * omega + sides * (later[1] - dt * bend.integ(1)(t)), omega + sides * later[0]
+    return step
+
+
+@random_law("Balls that meet in a cradle swing back, at the time at which they touch, and each step has its own time.",
+            "two balls of a cradle: largest error of the angles and their rates [rad, rad/s]", EXACT)
+def balls_that_swing_back(lesson, rng):
+    """Push two balls by what grows with time, so that they move apart, come together and would rest at the end of dt.
+
+    There the way that is left is long for their speed, and they touch in the second half of the step.
+    """
+    t, dt, L, R = rng.uniform((0.0, 0.05, 0.5, 0.02), (1.0, 0.1, 1.0, 0.05))
+    most, rest, touch = t + dt * np.array([rng.uniform(0.02, 0.1), 1.0005, rng.uniform(0.6, 0.9)])
+    curve = (np.poly1d([most, rest], r=True) * rng.uniform(20.0, 100.0)).integ()
+    curve -= curve(t) + rng.uniform(0.0, 0.1)
+    cradle = lesson.Cradle(2.0 * R - 2.0 * L * np.sin(curve(touch)), L, R, 1.1 * L * L, 9.81)
+    theta, omega = np.outer((curve(t), curve.deriv()(t)), (-1.0, 1.0))
+    end, rate = lesson.advance_swinging(pushed(curve), t, theta, omega, dt, 3, cradle)
+    back, last = -2.0 * curve.deriv()(touch), t + 3.0 * dt
+    return (end[1], end[0], rate[1], rate[0]), np.outer(
+        (curve(last) + back * (last - touch), curve.deriv()(last) + back), (1.0, -1.0)).ravel()
+
+
 @random_law("Zeros, extrema and values of a polynomial of degree 5 are those of its coefficients.",
             "polynomial: largest error of the times and values [s, -]", 1e-7)
 def polynomials(lesson, rng):
@@ -554,7 +641,8 @@ def polynomials(lesson, rng):
 def special_steps(lesson, check):
     """Compare what only some scenes use with closed forms and conserved quantities."""
     check.laws(lesson, (mean_velocities, slip_on_a_moving_floor, turns_of_all_bodies, boxes_collide,
-                        infinite_mass_moves, plates_that_pass, polynomials), seed=34, times=10)
+                        infinite_mass_moves, plates_that_pass, polynomials, balls_that_swing_back,
+                        gaps_of_a_cradle), seed=34, times=10)
 
 
 # ---------------------------------------------------------------------------------------------- a loop from a Model
@@ -722,6 +810,41 @@ def aims_of_pairs(lesson, rng):
     return lesson.parting_aims(speeds, pressed, contacts, dt, p), np.array(truth)
 
 
+@random_law("Sweeps have settled when no impulse has changed by more than a share of the largest one among bodies that "
+            "touch.", "settled sweeps: wrong answers [-]", 0.0)
+def settled_sweeps(lesson, rng):
+    """Change one impulse of nine on three islands by a little less or more than that; others are much larger."""
+    d, island, found = rng.choice((2, 3)), rng.permutation(np.repeat((0, 2, 5), 3)), []
+    J = rng.uniform(0.5, 1.0, (9, d)) * rng.choice((-1.0, 1.0), (9, d)) * 10.0 ** (island[:, None] - 2.0)
+    for k, c, share in product(range(9), range(d), (-1.01, -0.99, 0.99, 1.01)):
+        before = J.copy()
+        before[k, c] += 0.01 * share * np.max(np.abs(J[island == island[k]]))
+        found.append(lesson.is_settled(J, before, island, np.full(6, 1e9), SimpleNamespace(settled=0.01)))
+    return np.array(found, float), np.tile((0.0, 1.0, 1.0, 0.0), 9 * d)
+
+
+@random_law("A contact that bounces, or waits for its bounce, keeps no impulse; all others keep theirs.",
+            "kept impulses: largest error [N s]", 0.0)
+def impulses_that_are_kept(lesson, rng):
+    """Try contacts that leave with a speed, that rest, that may close, and that wait."""
+    d, kinds = rng.choice((2, 3)), rng.permutation(np.repeat(np.arange(4), 2))
+    J = rng.normal(size=(8, d))
+    kept = J.copy()
+    lesson.forget_bounces(kept, np.array([rng.choice((0.05, 2.0)), 0.0, -0.05, -np.inf])[kinds])
+    return kept, J * np.isin(kinds, (1, 2))[:, None]
+
+
+@random_law("Where nothing rubs, only the part of a kept impulse along the normal stays.",
+            "kept impulses along normals: largest error [N s]", EXACT)
+def kept_along_normals(lesson, rng):
+    """What stays is parallel to the normal, and what goes is at right angles to it."""
+    d = rng.choice((2, 3))
+    n, J = rng.normal(size=(2, 5, d))
+    n /= np.linalg.norm(n, axis=1)[:, None]
+    kept = lesson.along_normals(J, n)
+    return (np.cross(in_space(kept), in_space(n)), np.sum((J - kept) * n, axis=1)), (np.zeros((5, 3)), np.zeros(5))
+
+
 @random_law("A sweep over pairs limits friction by μ_a μ_b of the new J_n; without friction and rotation no arm "
             "counts.", "pairs: largest error after a sweep [m/s, rad/s, N s]", EXACT)
 def sweeps_of_pairs(lesson, rng):
@@ -822,7 +945,8 @@ def loop_from_a_model(lesson, check):
     """
     check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
                         overlap_goes, weight_on_a_rod, pull_of_a_soft_rod,
-                        momenta_on_a_rod), seed=35, times=10)
+                        momenta_on_a_rod, settled_sweeps, impulses_that_are_kept,
+                        kept_along_normals), seed=35, times=10)
     right_parts(lesson, check)
     pairs_of_a_model(check)
     composed_motions(lesson, check)
@@ -846,6 +970,11 @@ COMPOSITIONS = (             # bodies, gravity, joints, the parts of their loop 
     ((ball((0.0, 1.0), mu=0.5), FLOOR), DOWN, (), ["accelerate", *FEEL, "contact_impulses", "move_and_turn"]),
     ((ball((0.0, 1.0), mu=0.5), ball((1.0, 1.0), mu=0.2), FLOOR), (0.0, 0.0), (),
      [*FEEL, "contact_impulses_of_pairs", "move_and_turn"]),
+    ((*[model.Body((0.0, 1.0), 1.0)] * 9, ball((0.0, 1.0)), FLOOR), DOWN, (),
+     ["accelerate", *FEEL, "contact_impulses_of_centres", "move"]),
+    ((model.Body((0.0, 1.0), 1.0, shapes.Box((0.1, 0.1)), inertia=np.inf), FLOOR), DOWN, (),
+     ["accelerate", *FEEL, "contact_impulses_of_centres", "move"]),
+    ((ball((0.0, 1.0), mu=0.05), FLOOR), DOWN, (), ["accelerate", *FEEL, "contact_impulses", "move_and_turn"]),
     ((*MANY, FLOOR), DOWN, (), ["accelerate", "detect_many", "separate", "contact_impulses_of_pairs", "move_and_turn"]),
     ((*MANY, FLOOR), DOWN, (model.Hinge(0, 1, (0.25, 0.13)),),
      ["accelerate", "detect_unjoined", "separate_with_joints", "contact_impulses_with_joints", "move_and_turn"]),
@@ -1046,10 +1175,11 @@ def solid(rng, kind, size=1.0):
 
 def contacts_of(lesson, bodies):
     """Return (rows (a, b, normal, place, gap), corners low and high of the boxes around the bodies), by a loop."""
-    loop = lesson.compose(model.make_model(bodies, (0.0, 0.0, 0.0)))
+    loop = lesson.compose(model.make_model(bodies, (0.0,) * len(bodies[0].x)))
     x, q, p = loop.state.x, loop.state.q, loop.p
     low, high, turn = loop.bounds(x, q, p.half)
     c = loop.narrow(x, turn, p.half, p.planes, p.pairs, REACH)
+    assert np.array_equal(c.first, np.searchsorted(c.a, np.arange(len(c.first))))
     return np.column_stack((c.a, c.b, c.n, c.p, c.gap)), low, high
 
 
@@ -1058,6 +1188,7 @@ def nearest(rows):
     return rows[np.argmin(rows[:, -1])] if len(rows) else np.full(9, np.nan)
 
 
+ONE_PAIR = Pairs(np.array([0, 1, 1]), np.array([1]))
 ROUND = [("ball", "capsule"), ("capsule", "capsule"), ("capsule", "box"), ("ball", "box"), ("ball", "polyhedron"),
          ("capsule", "polyhedron")]
 
@@ -1170,6 +1301,77 @@ def segments_over_boxes(lesson, rng):
     return (np.sum(out**2), *found), (min(inner.fun, squared(-h), squared(h)), *part)
 
 
+@random_law("Each pair in a cluster of balls that is near enough has one contact, halfway between both surfaces.",
+            "cluster of balls: largest error of the contacts [-, m]", EXACT)
+def cluster_of_balls(lesson, rng):
+    """Put five balls on each other, in the plane or in space, over a floor; a capsule beside them touches nothing."""
+    d = rng.choice((2, 3))
+    x, radii, n = rng.normal(size=(5, d)), rng.uniform(0.3, 0.8, 5), np.eye(d)[rng.integers(d)]
+    floor, far, truth = rng.uniform(0.0, 0.2) - np.min(x @ n - radii), rng.integers(6), []
+    bodies = [model.Body(tuple(place), 1.0, shapes.Ball(r)) for place, r in zip(x, radii, strict=True)]
+    bodies.insert(far, model.Body((20.0,) * d, 1.0, shapes.Capsule(0.3, 0.1)))
+    rows = contacts_of(lesson, [*bodies, model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(n), floor))])[0]
+    for i, j in combinations(range(6), 2):
+        way, r = (x[i] - x[j], radii[j]) if j < 5 else ((x[i] @ n + floor) * n, 0.0)
+        out, gap = way / np.linalg.norm(way), np.linalg.norm(way) - radii[i] - r
+        if gap <= REACH:
+            truth.append((i + (i >= far), j + (j >= far), *out, *(x[i] - (radii[i] + 0.5 * gap) * out), gap))
+    return unlike(rows, truth), (len(truth), 0.0)
+
+
+@random_law("Capsules beside each other touch at both ends of the part that they have in common.",
+            "capsules side by side: largest error of the contacts [-, m]", EXACT)
+def capsules_side_by_side(lesson, rng):
+    """Lay one along the other, shifted, in the same or in the other direction, parallel or half a degree off.
+
+    Half a degree off, the lower end of the first lies over the second, so that it is the nearest part.
+    """
+    (x, y, up), (long, radius), angle = rng.normal(size=(3, 3)), rng.uniform(0.1, 1.0, (2, 2)), rng.choice((0.0, 0.01))
+    e, n = np.linalg.qr(np.stack((y, up), axis=1))[0].T
+    u, (share, gap) = np.cos(angle) * e + np.sin(angle) * n, rng.uniform((-0.8, -0.05), (0.8, 0.03))
+    shift = share * np.sum(long) if angle == 0.0 else long[0] * np.cos(angle) + share * long[1]
+    ends = np.array([max(-long[0], (-long[1] - shift) / (u @ e)), min(long[0], (long[1] - shift) / (u @ e))])
+    height = np.sum(radius) + gap - ends[0] * np.sin(angle)
+    centre = x + shift * e + height * n
+    turn = np.array([axes_along(rng.choice((-1.0, 1.0)) * way, rng) for way in (u, e)])
+    solids = convex_3d.RoundedBoxes(np.outer(long, (1.0, 0.0, 0.0)), radius, np.ones((2, 3)))
+    c = convex_3d.rounded_contacts(np.array([centre, x]), turn, solids, np.zeros((0, 4)), ONE_PAIR, REACH)
+    truth = [(*n, *(centre + s * u - (radius[0] + 0.5 * here) * n), here)
+             for s, here in zip(ends, gap + (ends - ends[0]) * np.sin(angle), strict=True)]
+    return unlike(np.column_stack((c.n, c.p, c.gap)), truth), (2, 0.0)
+
+
+@random_law("A capsule beside an edge of a box, and along it, touches the edge with both ends.",
+            "capsule along an edge: largest error of the contacts [-, m]", EXACT)
+def capsule_along_an_edge(lesson, rng):
+    """Lay it aslant over the edge, so that it lies over no face.  Between its ends may be a third contact."""
+    half, (long, r, gap, share) = rng.uniform(0.3, 1.0, 3), rng.uniform((0.1, 0.1, -0.05, -0.9), (0.9, 0.3, 0.03, 0.9))
+    R, place, aside = rotations(random_quaternions(rng, 1))[0], rng.normal(size=3), rng.uniform(0.2, 0.5 * np.pi - 0.2)
+    e, u, w = np.roll(np.eye(3), rng.integers(3), axis=0)
+    n, h, shift = np.cos(aside) * u + np.sin(aside) * w, long * half @ e, share * (1.0 - long) * half @ e
+    x = np.array([place, place + R @ (half * (1.0 - e) + (r + gap) * n + shift * e)])
+    turn, order = np.array([R, axes_along(rng.choice((-1.0, 1.0)) * R @ e, rng)]), rng.permutation(2)
+    solids = convex_3d.RoundedBoxes(np.array([half, (h, 0.0, 0.0)])[order], np.array([0.0, r])[order], np.ones((2, 3)))
+    c = convex_3d.rounded_contacts(x[order], turn[order], solids, np.zeros((0, 4)), ONE_PAIR, REACH)
+    ends = c.p[[np.argmin(c.p @ R @ e), np.argmax(c.p @ R @ e)]]
+    truth = [place + R @ (half * (1.0 - e) + (shift + s) * e + 0.5 * gap * n) for s in (-h, h)]
+    return ((np.ptp(c.n, axis=0), c.n[0], np.ptp(c.gap), c.gap[0], ends),
+            (np.zeros(3), R @ n * (1.0 if order[0] else -1.0), 0.0, gap, np.array(truth)))
+
+
+@random_law("Segments that cross are parted across both of them, and balls at one place along some way.",
+            "segments that cross: largest error of the deepest contact [-, m]", EXACT)
+def segments_that_cross(lesson, rng):
+    """Lay the middles of capsules or balls on each other."""
+    x, turn = rng.normal(size=3), rotations(random_quaternions(rng, 2))
+    long, radius = rng.integers(0, 2, 2) * rng.uniform(1.0, 2.0, 2), rng.uniform(0.1, 0.2, 2)
+    solids = convex_3d.RoundedBoxes(np.outer(long, (1.0, 0.0, 0.0)), radius, np.ones((2, 3)))
+    c = convex_3d.rounded_contacts(np.array([x, x]), turn, solids, np.zeros((0, 4)), ONE_PAIR, REACH)
+    k = np.argmin(c.gap)
+    return ((c.n[k] @ c.n[k], (c.n[k] @ turn[:, :, 0].T) * long, c.p[k] - 0.5 * (radius[1] - radius[0]) * c.n[k],
+             c.gap[k]), (1.0, np.zeros(2), x, -np.sum(radius)))
+
+
 @random_law("A pair touches where one of its contacts has at most a given gap.",
             "pairs that touch: wrong answers [-]", 0.0)
 def pairs_that_touch(lesson, rng):
@@ -1234,7 +1436,8 @@ def contacts_of_solids(lesson, check):
     polyhedron.
     """
     check.laws(lesson, (solids_apart, inside_a_solid, solids_on_planes, capsule_on_a_face, segments_over_boxes,
-                        pairs_that_touch, polyhedra_as_boxes, corner_to_corner), seed=38, times=20)
+                        pairs_that_touch, polyhedra_as_boxes, corner_to_corner, cluster_of_balls,
+                        segments_that_cross, capsules_side_by_side, capsule_along_an_edge), seed=38, times=20)
 
 
 # ---------------------------------------------------------------------------------------------- shapes, links, ways
@@ -1418,6 +1621,60 @@ def steps_that_are_tested(lesson, rng):
     return np.array(found, float), np.array([0.0, 1.0])
 
 
+@random_law("The box around the way of a body holds it at both ends, and what a point that turns leaves its chord by.",
+            "boxes around ways: largest error of their sides and of the ways of points [m]", EXACT)
+def boxes_around_ways(lesson, rng):
+    """Turn bodies a little and by more than a whole turn: R (1 − cos ½φ) and 2 R.  Half of them look round."""
+    d, dt, n = rng.choice((2, 3)), rng.uniform(0.01, 0.1), 8
+    state, (angle, side, seen) = random_bodies(lesson, rng, d, n)[0], np.array(list(product(
+        (0.01, 7.0), (-1.0, 1.0), (0.0, 1.0)))).T
+    omega = side * angle / dt if d == 2 else (side * angle / dt)[:, None] * [unit(rng) for _ in range(n)]
+    half, (begin, end) = rng.uniform(0.1, 1.0, (n, d)), rng.normal(size=(2, n, d))
+    turn = rng.normal(size=(n, d, d))
+    sides = [(begin - half, begin + half, turn), (end - half, end + half, turn + seen[:, None, None])]
+    after = state._replace(q=state.q + dt * omega if d == 2 else state.q, omega=omega)
+    found = passing.swept_boxes(state, after, *sides, dt, half)
+    R = seen * np.linalg.norm(half, axis=1)
+    bulge = R * np.where(angle < 1.0, 1.0 - np.cos(0.5 * angle), 2.0)
+    return found, (np.minimum(begin, end) - half - bulge[:, None], np.maximum(begin, end) + half + bulge[:, None],
+                   R * angle, bulge)
+
+
+@random_law("Two bodies share a joint where one holds both, in either order; without joints none do.",
+            "bodies that share a joint: wrong answers [-]", 0.0)
+def bodies_that_share_a_joint(lesson, rng):
+    """Try all pairs of five bodies."""
+    pairs = [tuple(rng.permutation(5)[:2]) for _ in range(rng.integers(0, 4))]
+    a, b = np.array(pairs, int).reshape(-1, 2).T
+    found = [(passing.share_a_joint(SimpleNamespace(a=a, b=b), i, j), passing.share_a_joint(None, i, j))
+             for i, j in combinations(range(5), 2)]
+    return np.array(found, float), np.array([({i, j} in map(set, pairs), 0.0) for i, j in combinations(range(5), 2)])
+
+
+@random_law("Two bodies may touch where their boxes meet and an impulse moves or turns one of both.",
+            "bodies that may touch: wrong answers [-]", 0.0)
+def bodies_that_may_touch(lesson, rng):
+    """Try two of four boxes, and a box and one of two planes, with all that can hold them; other bodies are free.
+
+    In space a body that turns does so about one axis only.
+    """
+    d, found, truth = rng.choice((2, 3)), [], []
+    for near, plane, *free in product((False, True), repeat=6):
+        i, j = np.sort(rng.permutation(4)[:2])
+        j, n, low = 4 + rng.integers(2) if plane else j, unit(rng)[:d], np.outer(3.0 * np.arange(4), np.ones(d))
+        if near and not plane:
+            low[j] = low[i] + 0.9 * rng.choice((-1.0, 1.0), d)
+        offsets = np.where((np.arange(2) == j - 4) == near, -0.1, 0.1) - np.sum(np.minimum(n, 0.0)) - low[i] @ n
+        record = SimpleNamespace(half=np.ones((4, d)), inv_mass=np.ones(6), inv_inertia=np.ones((6, d)[:d - 1]),
+                                 planes=np.column_stack((np.tile(n, (2, 1)), offsets)))
+        record.inv_mass[[i, j]] = free[:2]
+        for body, turns in zip((i, j), free[2:], strict=True):
+            record.inv_inertia[body] = turns if d == 2 else turns * np.eye(3)[rng.integers(3)]
+        found.append(passing.may_touch(low, low + 1.0, i, j, record))
+        truth.append(near and any(free))
+    return np.array(found, float), np.array(truth, float)
+
+
 @random_law("In space a fifth of each overlap beyond the slop goes per step; a body that turns for it takes its spin "
             "along.", "overlap in space: largest error of places, turns and velocities [m, -, m/s, rad/s]", EXACT)
 def overlap_goes_in_space(lesson, rng):
@@ -1460,7 +1717,8 @@ def shapes_and_ways(lesson, check):
     """Compare shapes with the tetrahedra that they are made of, and ways in a step with the times at which balls touch.
     """
     check.laws(lesson, (solids_of_places, half_sizes, share_of_a_touch, share_of_a_turn, steps_that_are_tested,
-                        overlap_goes_in_space), seed=40, times=10)
+                        overlap_goes_in_space, boxes_around_ways, bodies_that_may_touch,
+                        bodies_that_share_a_joint), seed=40, times=10)
 
 
 # ---------------------------------------------------------------------------------------------- what few Models need
@@ -1520,6 +1778,43 @@ def slow_impact_in_free_fall(lesson, rng):
     floor = model.Body((0.0, 0.0), shape=shapes.HalfSpace((0.0, 1.0)), e=1.0)
     end = ends_of(lesson, [*row, *pair, floor], (0.0, -g), dt, 1)
     return end.v[:6], np.vstack((np.zeros((4, 2)), down + fall, down + fall + aside))
+
+
+@random_law("Up to the speed that gravity adds in a step a ball stays on a floor; a faster one bounces.",
+            "slow impacts on a floor: largest error of the speed after them [m/s]", EXACT)
+def slow_impacts_on_a_floor(lesson, rng):
+    """Let balls come with 2 % less or more than that.  Gravity is weak, and not always along the normal.
+
+    Ball and floor bounce well, badly, or not.
+    """
+    d, dt, e, (n, g) = rng.choice((2, 3)), 0.01, rng.choice((0.0, 0.05, 0.8), 2), [unit(rng) for _ in range(2)]
+    n, g = n[:d] / np.linalg.norm(n[:d]), rng.uniform(0.1, 1.0) * g[:d]
+    g, found, shares = -np.sign(g @ n) * g, [], np.array([0.98, 1.02])
+    floor = model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(n)), e=e[1])
+    speeds = shares * dt * np.linalg.norm(g)
+    for speed in speeds:
+        ball = model.Body(tuple((0.1 - 1e-5) * n), 1.0, shapes.Ball(0.1), v=tuple(-speed * n), e=e[0])
+        found.append(ends_of(lesson, [ball, floor], tuple(g), dt, 1).v[0] @ n)
+    return np.array(found), e[0] * e[1] * speeds * (shares > 1.0)
+
+
+@random_law("A point that hits a floor leaves it with e times the speed that it had before forces and torques acted.",
+            "bounce under a torque: largest error of the speed of the point [m/s]", EXACT)
+def bounce_under_a_torque(lesson, rng):
+    """Let one end of a tilted capsule hit the floor, while a force and a torque that depend on time act on it."""
+    d, dt, (t, e, tilt, speed) = rng.choice((2, 3)), 0.005, rng.uniform((0.0, 0.3, 0.5, 1.0), (1.0, 0.9, 1.0, 3.0))
+    q, moment = rng.normal() if d == 2 else random_quaternions(rng, 1)[0], rng.uniform(0.2, 0.5)
+    R, (v, F), (spin, tau) = rotations([q])[0][:d, :d], rng.normal(size=(2, d)), rng.normal(size=(2, 1, 3)[:d])
+    n, end = R @ np.array([np.sin(tilt), np.cos(tilt), 0.0])[:d], -0.6 * R[:, 0]
+    at_end = lambda v, spin: n @ (v + np.cross(about_normal(spin)[0], in_space(end))[:d])
+    v = v - (at_end(v, spin) + speed) * n
+    push = lambda t, x, q, v, omega: (np.cos(t) * np.stack((F, 0.0 * F)), np.sin(t) * np.concatenate((tau, 0.0 * tau)))
+    bodies = [model.Body(tuple((0.2 - 1e-6 - end @ n) * n), 1.0, shapes.Capsule(0.6, 0.2), v=tuple(v), e=e,
+                         **({"q": q, "omega": float(spin[0]), "inertia": moment} if d == 2 else
+                            {"q": tuple(q), "omega": tuple(spin[0]), "inertia": (moment,) * 3})),
+              model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(n)), e=1.0)]
+    after = composed_run(lesson, bodies, (0.0,) * d, (), dt, 1, t, loads=[push])
+    return at_end(after.v[0], after.omega[:1]), e * speed
 
 
 @random_law("A block that cannot turn is slowed by μ g on a floor.",
@@ -1620,6 +1915,20 @@ def light_row_beside_heavy_balls(lesson, rng):
     return end.v[np.argsort(order)[:5]], np.outer(np.ones(5), m[0] * speed / m.sum() * along)
 
 
+@random_law("A contact of two equal balls stays halfway between them, one on a plane at the foot of its ball.",
+            "contacts that are carried along: largest error of their places [m]", EXACT)
+def carried_contacts(lesson, rng):
+    """Try up to six balls and two planes, of which each ball touches all others."""
+    d, n, dt = rng.choice((2, 3)), rng.integers(1, 7), rng.uniform(0.01, 0.1)
+    (x, v), normals = rng.normal(size=(2, n + 2, d)), rng.normal(size=(2, d))
+    a, b = np.array([(i, j) for i in range(n) for j in range(i + 1, n + 2)]).T
+    places = lambda x: np.array([0.5 * (x[i] + x[j]) if j < n else x[i] - 0.1 * normals[j - n] for i, j in zip(a, b)])
+    contacts = lesson.ContactSet(np.searchsorted(a, np.arange(n + 1)), a, b, rng.normal(size=(len(a), d)), places(x),
+                                 rng.normal(size=len(a)))
+    found = lesson.carried(contacts, v, dt, SimpleNamespace(half=SimpleNamespace(half=np.ones((n, d)))))
+    return found, contacts._replace(p=places(x + dt * v))
+
+
 @random_law("A rod that swings through a block within a step is refused, and one that ends before it is not.",
             "rods that swing past a block: wrong verdicts [-]", 0.0)
 def swings_past_a_block(lesson, rng):
@@ -1677,7 +1986,8 @@ def parts_of_a_model(lesson, check):
     """
     check.laws(lesson, (only_moves, own_torque, gap_closes, slow_impact_in_free_fall, slides_without_turning,
                         deep_balls_part, doubled_hinge, hinge_and_rod, deep_balls_on_springs,
-                        light_row_beside_heavy_balls, swings_past_a_block), seed=41, times=10)
+                        light_row_beside_heavy_balls, swings_past_a_block, slow_impacts_on_a_floor,
+                        bounce_under_a_torque, carried_contacts), seed=41, times=10)
     errors = sum(squeezed(lesson, d) for d in (2, 3))
     check("A ball between a wall and a piston ends in an error.", "errors of a ball without room [of 2]",
           law=2.0, found=float(errors), within=0.0, saw=f"{errors} of 2 runs ended in Diverged.")
