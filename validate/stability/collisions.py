@@ -7,6 +7,8 @@ compares a formula with itself.
 import numpy as np
 
 from solutions import collisions as worked
+from solutions.support.simplices import GJK_RELATIVE_GAP, far_enough
+from solutions.support.trees import Tree, partition_at_median
 from validate.engines.bullet import Bullet
 from validate.reference.collisions import anew_steering, depth_of, held_steering, hull_nearest
 from validate.reference.schemes import MIDPOINT, VERLET, step_of
@@ -932,6 +934,47 @@ def cut_segments(lesson, rng):
     return (np.array(parts) if all(len(part) == 2 for part in parts) else np.inf), np.array([(a, cut), (cut, b)])
 
 
+@random_law("The nearest point is found where the bounds of its distance differ by 1e-14 of the size, at any scale.",
+            "bounds of a distance: wrong answers [-]", 0.0)
+def bounds_of_a_distance(lesson, rng):
+    """Let the bounds |v| and v · w/|v| differ by half of that or by twice that, and let |v| be as small beside |w|."""
+    scale, found = 10.0 ** rng.uniform(-80.0, 80.0), []
+    for share in (0.5, 2.0):
+        n, out = unit(rng.normal(size=3)), rng.normal(size=3)
+        v, aside = rng.uniform(0.5, 2.0) * n, out - (out @ n) * n
+        size = np.hypot(np.linalg.norm(v), np.linalg.norm(aside))
+        w = v + aside - share * GJK_RELATIVE_GAP * size * n
+        found += [far_enough(scale * v, scale * w), far_enough(share * GJK_RELATIVE_GAP * size * n * scale, -scale * w)]
+    return np.array(found, float), np.array([1.0, 1.0, 0.0, 0.0])
+
+
+class Counted:
+    """Numbers that can be read so many times: a search that does not end in time raises AssertionError."""
+
+    def __init__(self, numbers, most):
+        self.numbers, self.left = numbers, most
+
+    def __getitem__(self, place):
+        self.left -= 1
+        assert self.left > 0, "the search takes too long"
+        return self.numbers[place]
+
+
+@random_law("Of the boxes of a node the half with the smaller middles comes first.",
+            "halves at the median: largest error of the middles, and of the order of other boxes [m, -]", 1e-12)
+def halves_at_the_median(lesson, rng):
+    """Order some of 20 boxes, whose middles are on both sides of the origin.  Each is read ten times on the average."""
+    (low, size), axis = rng.normal(size=(2, 20, 2)), rng.integers(2)
+    high, first, count, order = low + np.abs(size), rng.integers(0, 5), rng.integers(2, 15), rng.permutation(20)
+    before, half = order.copy(), first + count // 2
+    boxes = [Counted(corners, 10 * count) for corners in (low, high)]
+    partition_at_median(Tree(*[None] * 5, order, *boxes), first, count, axis)
+    middles, sets = 0.5 * (low + high)[:, axis], (slice(first, half), slice(half, first + count))
+    ordered = np.sort(middles[before[first:first + count]])
+    return ((*(np.sort(middles[order[part]]) for part in sets), order[:first], order[first + count:]),
+            (ordered, before[:first], before[first + count:]))
+
+
 def trees_agree(lesson, rng):
     """Return whether two trees find the pairs of random boxes that brute force finds."""
     corners = rng.uniform(0.0, 4.0, (30, 2)), rng.uniform(0.0, 4.0, (20, 2))
@@ -947,7 +990,8 @@ def points_and_times(lesson, check):
     The nearest points of segments and hulls are those of non-negative least squares.  A ball is thrown so that it
     touches after a known fraction of the step.
     """
-    check.laws(lesson, (points_of_contact, nearest_of_hulls, impact_times, cut_segments), seed=69, times=50)
+    check.laws(lesson, (points_of_contact, nearest_of_hulls, impact_times, cut_segments, bounds_of_a_distance,
+                        halves_at_the_median), seed=69, times=50)
     rng = np.random.default_rng(69)
     check.agree("Two trees find the boxes of both that touch.", "trees with other pairs [of 50]",
                 sum(not trees_agree(lesson, rng) for _ in range(50)), 0.0)
