@@ -101,11 +101,11 @@ def table_head():
 def show(fault, found):
     """Print one fault and what it turned."""
     if found["turned"]:
-        console.print(f"[green]✓[/green] {fault.lesson}.{fault.function}: {fault.wrong}\n"
+        console.print(f"[green]✓[/green] {fault.lesson}.{fault.function}: {escape(fault.wrong)}\n"
                       f"  {found['place']} in {found['seconds']:.1f} s: {escape(found['turned'])}")
     else:
         why = fault.missed or f"tried {', '.join(found['tried']) or 'nothing: no place executes it'}"
-        console.print(f"[red]MISSED[/red] {fault.lesson}.{fault.function}: {fault.wrong}\n  {escape(why)}")
+        console.print(f"[red]MISSED[/red] {fault.lesson}.{fault.function}: {escape(fault.wrong)}\n  {escape(why)}")
 
 
 def verdict(done):
