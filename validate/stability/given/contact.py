@@ -418,12 +418,12 @@ def convex_on_a_line(lesson, rng):
 @random_law("Several convex shapes touch a line with all of their corners that reach it.",
             "shapes on a line: largest error of the contacts [-, m]", EXACT)
 def small_shapes_on_a_line(lesson, rng):
-    """Put small triangles, squares and pentagons so near to a line that each corner has a contact."""
-    cores = [0.02 * regular(rng, corners) for corners in rng.permutation((3, 4, 5))]
+    """Put small polygons of eight to ten corners so near to a line that each corner has a contact."""
+    cores = [0.02 * regular(rng, corners) for corners in rng.permutation((8, 9, 10))]
     x, q = np.stack((3.0 * np.arange(3), rng.uniform(0.0, 0.02, 3)), axis=1), rng.uniform(0.0, 6.28, 3)
     places = [rotated(angle, core) + place for angle, core, place in zip(q, cores, x, strict=True)]
     truth = [(i, 3.0, 0.0, 1.0, p[0], 0.5 * p[1], p[1]) for i, corners in enumerate(places) for p in corners]
-    return unlike(convex_rows(lesson, [(core, 0.0) for core in cores], x, q, [(0.0, 1.0, 0.0)]), truth), (12, 0.0)
+    return unlike(convex_rows(lesson, [(core, 0.0) for core in cores], x, q, [(0.0, 1.0, 0.0)]), truth), (27, 0.0)
 
 
 @case("contact-points", "Contact points of boxes and of convex shapes", compiled=False)
