@@ -823,6 +823,21 @@ def settled_sweeps(lesson, rng):
     return np.array(found, float), np.tile((0.0, 1.0, 1.0, 0.0), 9 * d)
 
 
+@random_law("Contacts are on one island where bodies that can move lead from one to the other.",
+            "islands: wrong answers [-]", 0.0)
+def islands_of_contacts(lesson, rng):
+    """Draw some contacts of nine bodies, two of which nothing moves: powers of a matrix show which are connected."""
+    inv_mass = np.ones(9)
+    inv_mass[rng.permutation(9)[:2]] = 0.0
+    a, b = np.sort([rng.permutation(9)[:2] for _ in range(rng.integers(3, 10))]).T
+    a, b = a[inv_mass[a] + inv_mass[b] > 0.0], b[inv_mass[a] + inv_mass[b] > 0.0]
+    links = np.eye(9)
+    links[a, b] = links[b, a] = inv_mass[a] * inv_mass[b]
+    one = np.where(inv_mass[a] > 0.0, a, b)
+    island = lesson.islands_of(SimpleNamespace(a=a, b=b), SimpleNamespace(inv_mass=inv_mass))
+    return 1.0 * (island[:, None] == island), 1.0 * (np.linalg.matrix_power(links, 8) > 0.0)[np.ix_(one, one)]
+
+
 @random_law("A contact that bounces, or waits for its bounce, keeps no impulse; all others keep theirs.",
             "kept impulses: largest error [N s]", 0.0)
 def impulses_that_are_kept(lesson, rng):
@@ -946,7 +961,7 @@ def loop_from_a_model(lesson, check):
     check.laws(lesson, (loads_of_a_model, model_in_space, moments_of_shapes, aims_of_pairs, sweeps_of_pairs,
                         overlap_goes, weight_on_a_rod, pull_of_a_soft_rod,
                         momenta_on_a_rod, settled_sweeps, impulses_that_are_kept,
-                        kept_along_normals), seed=35, times=10)
+                        kept_along_normals, islands_of_contacts), seed=35, times=10)
     right_parts(lesson, check)
     pairs_of_a_model(check)
     composed_motions(lesson, check)
