@@ -183,11 +183,12 @@ def segment_on_box(x, turn, shapes, i, j, sign, reach, c, m):
     half = row(shapes.core, i)
     s = nearest_place(y, e, h, half)
     out = outside(plus(y, s, e), half)
-    if dot(out, out) <= (SAME * max(half[0], half[1], half[2])) ** 2:
+    near = SAME * max(half[0], half[1], half[2])
+    if dot(out, out) <= near * near:
         return way_out(x, turn, shapes, i, j, y, e, sign, reach, c, m)
     m = above_box(x, turn, shapes, i, j, plus(y, s, e), sign, reach, c, m)
     far = max(abs(out[0]), abs(out[1]), abs(out[2]))
-    same, face = part_over(y, e, h, half, out, 0.0), part_over(y, e, h, half, out, far)
+    same, face = part_over(y, e, h, half, out, near), part_over(y, e, h, half, out, far)
     places = (s, same[0], same[1], face[0], face[1])
     for k in range(1, 5):
         there = same[0] <= same[1] if k < 3 else face[0] <= face[1]
@@ -202,8 +203,8 @@ def part_over(y, e, h, half, out, far):
     """Return (low, high): the part of a segment that lies over a face or an edge of a box; low > high: none.
 
     out: the way to the segment from the nearest point of the box.  Along axes in which it is 0 or shorter than `far`
-    [m], the part ends at the sides of the box: with far = 0 it is over the face or edge on which that point lies.  With
-    far = the largest entry it is over a face, even if a tilted segment bears on an edge.
+    [m], the part ends at the sides of the box.  With a `far` of round-off it is over the face or edge on which that
+    point lies.  With far = the largest entry it is over a face, even if a tilted segment bears on an edge.
     """
     low, high = -h, h
     for k in range(3):

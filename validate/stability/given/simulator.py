@@ -1359,17 +1359,21 @@ def capsules_side_by_side(lesson, rng):
 @random_law("A capsule beside an edge of a box, and along it, touches the edge with both ends.",
             "capsule along an edge: largest error of the contacts [-, m]", EXACT)
 def capsule_along_an_edge(lesson, rng):
-    """Lay it aslant over the edge, so that it lies over no face.  Between its ends may be a third contact."""
+    """Lay it aslant over the edge, so that it lies over no face, and at times reaches beyond the end of the edge.
+
+    Between the ends of what they have in common may be a third contact.
+    """
     half, (long, r, gap, share) = rng.uniform(0.3, 1.0, 3), rng.uniform((0.1, 0.1, -0.05, -0.9), (0.9, 0.3, 0.03, 0.9))
     R, place, aside = rotations(random_quaternions(rng, 1))[0], rng.normal(size=3), rng.uniform(0.2, 0.5 * np.pi - 0.2)
     e, u, w = np.roll(np.eye(3), rng.integers(3), axis=0)
-    n, h, shift = np.cos(aside) * u + np.sin(aside) * w, long * half @ e, share * (1.0 - long) * half @ e
+    n, h, shift = np.cos(aside) * u + np.sin(aside) * w, long * half @ e, share * half @ e
     x = np.array([place, place + R @ (half * (1.0 - e) + (r + gap) * n + shift * e)])
     turn, order = np.array([R, axes_along(rng.choice((-1.0, 1.0)) * R @ e, rng)]), rng.permutation(2)
     solids = convex_3d.RoundedBoxes(np.array([half, (h, 0.0, 0.0)])[order], np.array([0.0, r])[order], np.ones((2, 3)))
     c = convex_3d.rounded_contacts(x[order], turn[order], solids, np.zeros((0, 4)), ONE_PAIR, REACH)
     ends = c.p[[np.argmin(c.p @ R @ e), np.argmax(c.p @ R @ e)]]
-    truth = [place + R @ (half * (1.0 - e) + (shift + s) * e + 0.5 * gap * n) for s in (-h, h)]
+    truth = [place + R @ (half * (1.0 - e) + np.clip(shift + s, -half @ e, half @ e) * e + 0.5 * gap * n)
+             for s in (-h, h)]
     return ((np.ptp(c.n, axis=0), c.n[0], np.ptp(c.gap), c.gap[0], ends),
             (np.zeros(3), R @ n * (1.0 if order[0] else -1.0), 0.0, gap, np.array(truth)))
 
