@@ -4,6 +4,8 @@ Truths are closed forms, power series and imaginary parts; none of them is a for
 *Source:* each case derives its theory; Squire and Trapp 1998 for the complex step.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -398,12 +400,33 @@ def aimed(lesson, rng):
     return (found, float(misses[-1] <= 1e-12), float(len(misses) <= 8)), (root, 1.0, 1.0)
 
 
+class Push(NamedTuple):
+    """Of a body of 1 kg: s cos t."""
+    s: float                 # amplitude [N]
+
+
+@random_law("The sensitivities of a body that is pushed by s cos t are sums over its steps.",
+            "pushed body: largest error of the state and its derivatives by s [m, m/s, m/N, m/(N s)]", 1e-9)
+def pushed_in_time(lesson, rng):
+    """Each step has its own time: v gains dt s cos tₖ, and dv/ds gains dt cos tₖ."""
+    (x, v, dx, dv), n, p = rng.normal(size=(4, 1)), 5, Push(rng.normal())
+    t, dt = rng.uniform(0.0, 2.0), rng.uniform(0.01, 0.1)
+    none = np.zeros((1, 1))
+    end = lesson.advance_tangents(lesson.tangent_step, lambda t, x, v, p: np.array([p.s * np.cos(t)]),
+                                  lambda t, x, v, p: (none, none, np.array([[np.cos(t)]])), t, x, v, dx[:, None],
+                                  dv[:, None], dt, n, p)
+    gains = np.cumsum(dt * np.cos(t + dt * np.arange(n)))
+    way, gain = dt * np.sum(gains), gains[-1]
+    truth = x + n * dt * v + p.s * way, v + p.s * gain, dx + n * dt * dv + way, dv + gain
+    return tuple(np.ravel(one) for one in end), truth
+
+
 @case("laws-of-sensitivities", "Sensitivities of steps, events and flights", compiled=False)
 def laws_of_sensitivities(lesson, check):
     """Compare every function with imaginary parts of the same motion, or with a closed form."""
     check.laws(lesson, (tangent_of_symplectic, tangent_of_implicit, time_of_impact, turning_point, through_bounce,
-                        jump_of_acceleration, flight_over_planes, series_of_differences, best_of_sum, horizon, aimed),
-               seed=12, times=TRIED)
+                        jump_of_acceleration, flight_over_planes, series_of_differences, best_of_sum, horizon, aimed,
+                        pushed_in_time), seed=12, times=TRIED)
 
 
 @case("throws-that-cannot-hit", "Throws that overshoot, and throws that cannot hit", compiled=False)
