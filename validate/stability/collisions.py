@@ -960,7 +960,7 @@ class Counted:
         return self.numbers[place]
 
 
-@random_law("Of the boxes of a node the half with the smaller middles comes first.",
+@random_law("The half of a node's boxes that has the smaller middles comes first.",
             "halves at the median: largest error of the middles, and of the order of other boxes [m, -]", 1e-12)
 def halves_at_the_median(lesson, rng):
     """Order some of 20 boxes, whose middles are on both sides of the origin.  Each is read ten times on the average."""

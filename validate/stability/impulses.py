@@ -942,8 +942,8 @@ def shares_of_the_loss(lesson, rng):
     return least / lost, 1.0 - one.e**2
 
 
-@random_law("Without friction maximal dissipation has 1 + e times the impulses of the least energy, or less: a point "
-            "that leaves does not come back.",
+@random_law("Without friction, maximal dissipation takes 1 + e times the impulses that leave the least energy, or "
+            "fewer: a point that leaves does not come back.",
             "a point that leaves: largest error of the velocities [m/s, rad/s]", 1e-5)
 def slowed_points(lesson, rng):
     """Two points approach.  The third leaves with `most` times the speed that impulses of least energy take away."""

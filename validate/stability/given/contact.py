@@ -367,7 +367,7 @@ def overlapping(one, other, edge, sign):
     return [(0.0, 1.0, *(sign * n[edge]), *(place - 0.5 * gap * n[edge]), gap) for place, gap in rows if gap <= REACH]
 
 
-@random_law("Of all edges of a polygon that along a direction has the largest cosine of its normal with it.",
+@random_law("The edge of a polygon along a direction is the one whose normal has the largest cosine with it.",
             "edge along a direction: largest error of its number and cosine [-]", EXACT)
 def edges_along(lesson, rng):
     """Try a pentagon among the corners of other shapes."""
@@ -377,7 +377,7 @@ def edges_along(lesson, rng):
                        np.sin(q)), (3 + np.argmax(cosines), np.max(cosines)))
 
 
-@random_law("Of two edges that separate almost alike that of the first shape counts, unless the other is better by a "
+@random_law("Of two edges that separate almost alike, that of the first shape counts, unless the other is better by a "
             "thousandth of the depth.", "edges that separate alike: largest error of the contacts [-, m]", EXACT)
 def edges_alike(lesson, rng):
     """Sink a wide shape into a narrower one and tilt it, so that its edge is better by half of that or by twice that.

@@ -1378,7 +1378,7 @@ def capsule_along_an_edge(lesson, rng):
             (np.zeros(3), R @ n * (1.0 if order[0] else -1.0), 0.0, gap, np.array(truth)))
 
 
-@random_law("Segments that cross are parted across both of them, and balls at one place along some way.",
+@random_law("Segments that cross are parted at right angles to both, and balls at one place along any direction.",
             "segments that cross: largest error of the deepest contact [-, m]", EXACT)
 def segments_that_cross(lesson, rng):
     """Lay the middles of capsules or balls on each other."""
@@ -1640,7 +1640,7 @@ def steps_that_are_tested(lesson, rng):
     return np.array(found, float), np.array([0.0, 1.0])
 
 
-@random_law("The box around the way of a body holds it at both ends, and what a point that turns leaves its chord by.",
+@random_law("The box around the way of a body holds it at both ends, and how far a turning point leaves its chord.",
             "boxes around ways: largest error of their sides and of the ways of points [m]", EXACT)
 def boxes_around_ways(lesson, rng):
     """Turn bodies a little and by more than a whole turn: R (1 − cos ½φ) and 2 R.  Half of them look round."""
