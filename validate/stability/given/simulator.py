@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from solutions.checks import Diverged
 from solutions.given import dividing, passing
 from solutions.given import joints as joints_of
+from solutions.given import rows as rows_of_bodies
 from solutions.given import simulator as swinging
 from solutions.given.bodies import TooFast
 from solutions.support import convex_3d, model, shapes
@@ -1659,6 +1660,28 @@ def boxes_around_ways(lesson, rng):
                    R * angle, bulge)
 
 
+@random_law("In every direction a shape reaches as far as its core and its radius.",
+            "cores of shapes: largest error of their reach [m]", EXACT)
+def reach_of_shapes(lesson, rng):
+    """Try discs, capsules and boxes in many directions."""
+    h, r, a, b = rng.uniform(0.2, 1.0, 4)
+    turns = rng.uniform(0.0, 2.0 * np.pi, 16)
+    n = np.stack((np.cos(turns), np.sin(turns)))
+    cores = [shapes.core_of(shape) for shape in (shapes.Ball(r), shapes.Capsule(h, r), shapes.Box((a, b)))]
+    return (tuple(np.max(corners @ n, axis=0) + radius for corners, radius in cores),
+            (np.full(16, r), h * np.abs(n[0]) + r, a * np.abs(n[0]) + b * np.abs(n[1])))
+
+
+@random_law("A push at the corner of a box moves it as easily as a quarter of its mass; that decides the sweeps.",
+            "boxes of several masses: largest error of the ratio of the heaviest to the lightest end [-]", EXACT)
+def lightest_ends(lesson, rng):
+    """In the plane I = ⅓ m r² for the half diagonal r, and in space about each axis for the part of r across it."""
+    d, m = rng.choice((2, 3)), rng.uniform(0.1, 10.0, 4)
+    bodies = [model.Body((0.0,) * d, mass, shapes.Box(tuple(rng.uniform(0.1, 1.0, d)))) for mass in m]
+    made = model.make_model([*bodies, model.Body((0.0,) * d, shape=shapes.HalfSpace(tuple(np.eye(d)[0])))], (0.0,) * d)
+    return rows_of_bodies.difference(made.bodies, d), 4.0 * np.max(m) / np.min(m)
+
+
 @random_law("Two bodies share a joint where one holds both, in either order; without joints none do.",
             "bodies that share a joint: wrong answers [-]", 0.0)
 def bodies_that_share_a_joint(lesson, rng):
@@ -1737,7 +1760,7 @@ def shapes_and_ways(lesson, check):
     """
     check.laws(lesson, (solids_of_places, half_sizes, share_of_a_touch, share_of_a_turn, steps_that_are_tested,
                         overlap_goes_in_space, boxes_around_ways, bodies_that_may_touch,
-                        bodies_that_share_a_joint), seed=40, times=10)
+                        bodies_that_share_a_joint, reach_of_shapes, lightest_ends), seed=40, times=10)
 
 
 # ---------------------------------------------------------------------------------------------- what few Models need
