@@ -1660,6 +1660,23 @@ def boxes_around_ways(lesson, rng):
                    R * angle, bulge)
 
 
+@random_law("A pair overlaps as deeply as its deepest contact, and keeps the normal with which it met.",
+            "kept overlaps: largest error of overlaps and normals [m, -]", 0.0)
+def kept_overlaps(lesson, rng):
+    """Try three pairs, which overlap already or do not, and six contacts, some of which belong to other pairs."""
+    d, pairs = rng.choice((2, 3)), Pairs(np.array([0, 2, 3, 3]), np.array([1, 2, 2]))
+    overlap, normal, n = rng.choice((0.0, 0.05), 3), rng.normal(size=(3, d)), rng.normal(size=(6, d))
+    a, b, gap = rng.integers(0, 2, 6), rng.integers(1, 4, 6), -rng.uniform(0.01, 0.1, 6)
+    truth = overlap.copy(), normal.copy()
+    for s, (i, j) in enumerate(((0, 1), (0, 2), (1, 2))):
+        mine = np.flatnonzero((a == i) & (b == j))
+        if overlap[s] == 0.0 and len(mine):
+            truth[1][s] = n[mine[0]]
+        truth[0][s] = max([overlap[s], *-gap[mine]])
+    passing.keep_overlaps(overlap, normal, pairs, SimpleNamespace(a=a, b=b, gap=gap, n=n))
+    return (overlap, normal), truth
+
+
 @random_law("In every direction a shape reaches as far as its core and its radius.",
             "cores of shapes: largest error of their reach [m]", EXACT)
 def reach_of_shapes(lesson, rng):
@@ -1760,7 +1777,7 @@ def shapes_and_ways(lesson, check):
     """
     check.laws(lesson, (solids_of_places, half_sizes, share_of_a_touch, share_of_a_turn, steps_that_are_tested,
                         overlap_goes_in_space, boxes_around_ways, bodies_that_may_touch,
-                        bodies_that_share_a_joint, reach_of_shapes, lightest_ends), seed=40, times=10)
+                        bodies_that_share_a_joint, reach_of_shapes, lightest_ends, kept_overlaps), seed=40, times=10)
 
 
 # ---------------------------------------------------------------------------------------------- what few Models need
