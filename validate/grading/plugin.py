@@ -393,8 +393,9 @@ def pytest_sessionfinish(session):
 
 def lines_of_points(outcomes):
     """Return the points of each lesson, and below it those of its exercises, as soon as one of them is attempted."""
-    table, states, lines = score(outcomes), needs.states((o.exercise, o.status) for o in outcomes), []
-    lessons = {}
+    table, lessons, lines = score(outcomes), {}, []
+    ran = needs.states((o.exercise, o.status) for o in outcomes if o.status != "not run")
+    states = dict.fromkeys(table, NOT_ATTEMPTED) | ran                   # an interrupted run leaves some out
     for exercise in sorted(table, key=needs.in_order):
         lessons.setdefault(needs.table()[exercise]["lesson"], []).append(exercise)
     for lesson, exercises in lessons.items():
@@ -448,10 +449,11 @@ def pytest_terminal_summary(terminalreporter, config):
         how = "another --part" if config.getoption("--long") else "pytest --long"
         them = "it" if left_out == 1 else "them"
         terminalreporter.line(f"{left_out} long {tests} {were} left out: {how} runs {them}, too")
-    if not hasattr(config, "points") or not config.points.outcomes:
+    outcomes = config.points.all() if hasattr(config, "points") else []
+    if all(o.status == "not run" for o in outcomes):                     # as with --collect-only
         return
     terminalreporter.section("points")
-    for line in lines_of_points(config.points.all()):
+    for line in lines_of_points(outcomes):
         terminalreporter.line(line)
     for file, names in imports_without_a_grader(config).items():
         terminalreporter.line(f"{file} imports {', '.join(names)}: a grader need not have that, and a file that does "
