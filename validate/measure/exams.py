@@ -87,7 +87,7 @@ def results(exam, one, truth, longest):
     pace = seconds_per_step(exam, one)
     for steps in exam.steps:
         if pace is None or pace * steps > longest:
-            row["left"] = "" if pace is None else f"finer runs would have taken longer than {longest:g} s each"
+            row["left"] = "" if pace is None else f"finer runs were expected to take longer than {longest:g} s each"
             break
         found = judged(exam, one, truth, steps)
         row["runs"].append(found)

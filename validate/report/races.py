@@ -188,12 +188,13 @@ def headline_of(counts):
 
 
 def median_factors(races):
-    """Return the medians of what ratios at the headline are made of, and how many have an order and a loop (parted).
+    """Return {order, loop, calls, cold, cached, paid}, medians of what ratios at the headline are made of.
 
-    {order, loop, calls, cold, cached, paid, parted}
+    parted, ratios: how many races there have an order and a loop, and how many have a ratio
     """
     found = {}
     for key in ("order", "loop", "calls", "cold", "cached", "paid"):
         values = [race[key] for race in at(races) if race[key] is not None]
         found[key] = median(values) if values else None
-    return {**found, "parted": sum(race["order"] is not None for race in at(races))}
+    return {**found, "parted": sum(race["order"] is not None for race in at(races)),
+            "ratios": sum(race["ratio"] is not None for race in at(races))}

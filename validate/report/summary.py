@@ -133,9 +133,10 @@ def said_of_all(report):
                f"of the {plain['races']} races to {percent(HEADLINE)} in which they were timed.")
     made = races.median_factors(every)
     if made["order"] is not None:
-        yield (f"In {made['parted']} of these races to {percent(HEADLINE)} the ratio is the product of two: the "
-               f"method's order, and the loop at the engine's own order. In the others the engine is exact, or none "
-               f"of our methods has its order. Their medians are {factor(made['order'])} and {factor(made['loop'])}. "
+        yield (f"In {made['parted']} of the {made['ratios']} races to {percent(HEADLINE)} that have a ratio, it is the "
+               f"product of two: the method's order, and the loop at the engine's own order. (In the others no method "
+               f"of ours is compared at the engine's order.) The medians of the two are {factor(made['order'])} and "
+               f"{factor(made['loop'])}. "
                f"(The product of two medians is not the median of the products.) In the median calls "
                f"from Python make the engine's time {factor(made['calls'])} as long.{compiled(made)}")
 

@@ -949,7 +949,7 @@ def bounds_of_a_distance(lesson, rng):
 
 
 class Counted:
-    """Numbers that can be read so many times: a search that does not end in time raises AssertionError."""
+    """Numbers that may be read `most` times.  A search that does not end reads more, and raises AssertionError."""
 
     def __init__(self, numbers, most):
         self.numbers, self.left = numbers, most

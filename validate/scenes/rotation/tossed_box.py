@@ -129,7 +129,7 @@ def measure(outputs, reference):
     return box_error(outputs, truth(p, 0.0), p.moments(), p.m, body(p).gravity)
 
 
-KEPT = "nothing here: it keeps L and, but for round-off, the energy; the rest is round-off of the fall"
+KEPT = "nothing that shows here: what is left is round-off of the fall"
 SPLIT = "the energy of a turn, which errs without growing; L is a part of the state and stays as it is"
 EXAM = Exam(
     organiser="scpeters/benchmark", problem="A tossed box, complex case",
@@ -140,7 +140,7 @@ EXAM = Exam(
     measure=measure, unit="larger of the largest relative errors of angular momentum and of energy", grade=None,
     enough=0.0,
     gives_up={MIDPOINT_TURN: KEPT, SPLITTING: SPLIT, COMPOSED_SPLITTING: KEPT + ", in five steps in place of one",
-              RUNGE_KUTTA: "the energy of a turn, by a few 1e-13 here; the rest is round-off of the fall",
+              RUNGE_KUTTA: "a little energy in every turn; most of what is left here is round-off of the fall",
               GYROSCOPIC: "L, of which a step of first order keeps neither size nor direction",
               PYBULLET: "the second order, and L", MUJOCO: "energy that stays: it changes a little in every turn"},
     published=(("Simbody", "relative error of angular momentum 0.0064"), ("Bullet", "0.0125; of energy 0.0136"),

@@ -324,7 +324,7 @@ def joints_are_reversible(lesson, rng):
     return step_of(lesson, d)(load, 0.3 + dt, *end, -dt, p), begin
 
 
-@random_law("Composed steps with joints change momenta by no more than the integral of a load that is linear in time.",
+@random_law("Composed steps with joints change momenta by the integral of the load, and by nothing else.",
             "composed steps: largest error of the momenta [kg m/s, kg m²/s]", EXACT)
 def composed_steps_keep_momenta(lesson, rng):
     """Give all bodies the same acceleration, and torques: about the common centre of mass only the torques count."""
@@ -600,7 +600,7 @@ def pushed(curve):
 @random_law("Balls that meet in a cradle swing back, at the time at which they touch, and each step has its own time.",
             "two balls of a cradle: largest error of the angles and their rates [rad, rad/s]", EXACT)
 def balls_that_swing_back(lesson, rng):
-    """Push two balls by what grows with time, so that they move apart, come together and would rest at the end of dt.
+    """Push two balls harder and harder.  They move apart, come together, and would rest at the end of dt.
 
     There the way that is left is long for their speed, and they touch in the second half of the step.
     """
@@ -1295,7 +1295,7 @@ def capsule_on_a_face(lesson, rng):
     return unlike(rows, truth), (2, 0.0)
 
 
-@random_law("A place of a segment is nearest to a box, and a part of it lies over the face or the edge there.",
+@random_law("Found are the place of a segment that is nearest to a box, and the part that lies over a face or an edge.",
             "segment and box: largest error of the least squared distance [m²], and of the ends of the part [m]", EXACT)
 def segments_over_boxes(lesson, rng):
     """Search for the least distance.  Some segments are parallel to a face or to an edge."""
@@ -1641,7 +1641,7 @@ def steps_that_are_tested(lesson, rng):
     return np.array(found, float), np.array([0.0, 1.0])
 
 
-@random_law("The box around the way of a body holds it at both ends, and how far a turning point leaves its chord.",
+@random_law("The box around the way of a body has room for it at both ends, and for points that turn between them.",
             "boxes around ways: largest error of their sides and of the ways of points [m]", EXACT)
 def boxes_around_ways(lesson, rng):
     """Turn bodies a little and by more than a whole turn: R (1 − cos ½φ) and 2 R.  Half of them look round."""
@@ -1689,7 +1689,7 @@ def reach_of_shapes(lesson, rng):
             (np.full(16, r), h * np.abs(n[0]) + r, a * np.abs(n[0]) + b * np.abs(n[1])))
 
 
-@random_law("A push at the corner of a box moves it as easily as a quarter of its mass; that decides the sweeps.",
+@random_law("A push at the corner of a box meets a quarter of its mass.",
             "boxes of several masses: largest error of the ratio of the heaviest to the lightest end [-]", EXACT)
 def lightest_ends(lesson, rng):
     """In the plane I = ⅓ m r² for the half diagonal r, and in space about each axis for the part of r across it."""
